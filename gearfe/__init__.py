@@ -1,0 +1,31 @@
+"""Gear mesh stiffness with its error: finite elements beside energy methods, carried on into dynamics."""
+
+import importlib
+
+_HOME = {
+    "Gear": "geometry.gear",
+    "GearPair": "geometry.pair",
+    "Material": "gearfe.material",
+    "StiffnessCurve": "gearfe.curve",
+    "compare": "gearfe.compare",
+    "load_scene": "gearfe.scene",
+    "mesh_stiffness": "gearfe.stiffness",
+    "render_stress": "gearfe.render",
+    "root_stress": "gearfe.loaded_tooth",
+    "tooth_flexibility": "gearfe.loaded_tooth",
+}
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name):
+    """Load the public names on first use, so that ``gearfe --help`` stays quick."""
+    if name not in _HOME:
+        raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(__all__)}")
+    value = getattr(importlib.import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__():
+    """Public names."""
+    return __all__

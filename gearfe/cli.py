@@ -1,0 +1,160 @@
+"""The ``gearfe`` command: one function per verb, no logic of its own."""
+
+import argparse
+import contextlib
+import sys
+
+
+def main(argv=None):
+    """Run the command line; returns the exit code."""
+    parser = argparse.ArgumentParser(prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods.")
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
+    _scene_arguments(verb)
+    verb.add_argument("--method", default="fe", help="fe, textbook or published (default: fe)")
+    verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
+    verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
+    verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
+    verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
+    verb = _verb(verbs, "compare", compare, "table of every formulation's error against finite elements, by zone, with cost")
+    _scene_arguments(verb)
+    verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
+    verb = _verb(verbs, "render", render, "von Mises stress of the loaded teeth, without a screen")
+    _scene_arguments(verb, phases=False)
+    verb.add_argument("--phase", type=float, default=0.0, help="mesh phase (default: 0, a pair enters)")
+    verb.add_argument("-o", "--output", metavar="FILE", required=True, help="picture: .png")
+    _verb(verbs, "scenes", scenes, "list the built-in scenes with their assumptions")
+    _verb(verbs, "info", info, "versions, and what this machine has")
+    arguments = parser.parse_args(argv)
+    try:
+        arguments.run(arguments)
+    except (ValueError, RuntimeError) as error:
+        print(f"gearfe: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _verb(verbs, name, run, text):
+    verb = verbs.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    verb.set_defaults(run=run)
+    return verb
+
+
+def _scene_arguments(verb, *, phases=True):
+    verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
+    verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
+    verb.add_argument("--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)")
+    if phases:
+        verb.add_argument("--phases", type=int, default=64, metavar="N", help="phases per mesh cycle (default: 64)")
+
+
+@contextlib.contextmanager
+def _working(text):
+    """A moving bar with the seconds gone, on a terminal only."""
+    if not sys.stderr.isatty():
+        yield
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        progress.add_task(text, total=None)
+        yield
+
+
+def _print_scene(scene):
+    print(f"{scene.title}\n")
+    for note in scene.assumptions:
+        print(f"  assumed: {note['what']}: {note['why']}")
+    for item in scene.later:
+        print(f"  not modelled yet: {item}")
+    print()
+
+
+def stiffness(arguments):
+    """``gearfe stiffness``."""
+    from .scene import load_scene
+    from .stiffness import mesh_stiffness
+
+    scene = load_scene(arguments.scene)
+    chosen = scene.pair(arguments.pair)
+    force = chosen.force if arguments.force is None else arguments.force
+    _print_scene(scene)
+    with _working(f"stiffness by {arguments.method}"):
+        curve = mesh_stiffness(
+            chosen.pair, force, chosen.materials, method=arguments.method, phases=arguments.phases,
+            extended=not arguments.no_extended, refine=arguments.refine,
+        )  # fmt: skip
+    print(f"{arguments.method}, {force:g} N along the line of action, width {curve.meta['width_mm']:g} mm:")
+    for zone, value in curve.zones().items():
+        print(f"  {zone:7s} {value:.4e} N/m")
+    if arguments.output:
+        curve.save(arguments.output)
+        print(f"written: {arguments.output}")
+    if arguments.plot:
+        curve.plot(arguments.plot)
+        print(f"written: {arguments.plot}")
+
+
+def compare(arguments):
+    """``gearfe compare``."""
+    from .compare import compare as run
+    from .scene import load_scene
+
+    scene = load_scene(arguments.scene)
+    _print_scene(scene)
+    with _working("finite elements and energy methods"):
+        result = run(scene, arguments.pair, phases=arguments.phases, refine=arguments.refine)
+    meta = result.reference.meta
+    load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases, error against fe\n")
+    print(result.table())
+    if arguments.plot:
+        from .render import plot_curves
+
+        plot_curves(result.curves, arguments.plot)
+        print(f"\nwritten: {arguments.plot}")
+
+
+def render(arguments):
+    """``gearfe render``."""
+    from .render import render_stress
+    from .scene import load_scene
+
+    scene = load_scene(arguments.scene)
+    with _working("stress of both gears"):
+        largest = render_stress(scene.pair(arguments.pair), arguments.output, phase=arguments.phase, refine=arguments.refine)
+    print(f"largest von Mises stress {largest:.0f} MPa (in the contact)\nwritten: {arguments.output}")
+
+
+def scenes(arguments):
+    """``gearfe scenes``."""
+    from .scene import load_scene, scene_names
+
+    for name in scene_names():
+        scene = load_scene(name)
+        print(f"{name}: pairs {', '.join(scene.pairs)}")
+        _print_scene(scene)
+
+
+def info(arguments):
+    """``gearfe info``."""
+    import importlib.metadata
+    import os
+    import platform
+
+    print(f"Python {platform.python_version()} on {platform.machine()}, {os.cpu_count()} cores")
+    for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib"):
+        try:
+            print(f"{name} {importlib.metadata.version(name)}")
+        except importlib.metadata.PackageNotFoundError:
+            print(f"{name} is not installed")
+    from geometry.mesher import gmsh_session
+
+    try:
+        with gmsh_session():
+            print("gmsh starts")
+    except RuntimeError as error:
+        print(error)
+    print("solver: SuperLU (scipy), one thread")

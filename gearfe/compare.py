@@ -1,0 +1,79 @@
+"""How far analytical stiffness is from finite elements: tables of error by zone, with what each value cost."""
+
+import time
+from dataclasses import dataclass
+
+from .stiffness import mesh_stiffness
+
+FORMULATIONS = ("textbook", "published")
+ZONES = ("single", "double", "triple", "mean", "max")
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Curves by method, the first being the reference, and the seconds each took (imports excluded)."""
+
+    pair_name: str
+    curves: dict
+    seconds: dict
+
+    @property
+    def reference(self):
+        """The curve the others are compared with."""
+        return next(iter(self.curves.values()))
+
+    def rows(self):
+        """Rows (zone, reference k [N/m], {method: (k [N/m], relative error)})."""
+        truth = self.reference.zones()
+        others = {name: curve.zones() for name, curve in list(self.curves.items())[1:]}
+        for zone in sorted(truth, key=lambda z: ZONES.index(z) if z in ZONES else 2):
+            yield zone, truth[zone], {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()}
+
+    def table(self):
+        """Markdown table: per zone the reference and every formulation with its error; last row the seconds."""
+        names = list(self.curves)
+        lines = [
+            "| zone | " + " | ".join([f"{names[0]} [N/m]", *(f"{n} [N/m] | error" for n in names[1:])]) + " |",
+            "|---" * (2 * len(names)) + "|",
+        ]
+        for zone, truth, others in self.rows():
+            cells = [f"{k:.4g} | {100 * error:+.1f} %" for k, error in others.values()]
+            lines.append(f"| {zone} | " + " | ".join([f"{truth:.4g}", *cells]) + " |")
+        cost = [f"{self.seconds[names[0]]:.3f}", *(f"{self.seconds[n]:.4f} | " for n in names[1:])]
+        lines.append("| seconds | " + " | ".join(cost) + " |")
+        return "\n".join(lines)
+
+
+def compare(scene, pair=None, *, phases=64, refine=1.0):
+    """Compare every built-in formulation with finite elements on one pair of `scene`.
+
+    Parameters
+    ----------
+    scene : Scene
+    pair : str, optional
+        Name of the pair; default the first.
+    phases : int or array
+        As in `mesh_stiffness`.
+    refine : float
+        Resolution of the finite elements.
+
+    Returns
+    -------
+    Comparison
+    """
+    chosen = scene.pair(pair)
+    _warm_up()
+    curves, seconds = {}, {}
+    for method in ("fe", *FORMULATIONS):
+        started = time.perf_counter()
+        curves[method] = mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method=method, phases=phases, refine=refine)
+        seconds[method] = time.perf_counter() - started
+    return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
+
+
+def _warm_up():
+    """Import what the methods load lazily, so that the seconds are those of the work."""
+    from geometry.mesher import gmsh_session
+
+    with gmsh_session():
+        pass

@@ -1,0 +1,92 @@
+"""`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessCurve:
+    """Mesh stiffness along the line of action.
+
+    Attributes
+    ----------
+    phase : ndarray, shape (n,)
+        Mesh phase: 0 when a pair enters at the start of the path of contact, 1 one transverse base pitch later.
+    k : ndarray, shape (n,)
+        Secant stiffness, force over loaded transmission error [N/m].
+    k_tangent : ndarray, shape (n,)
+        Tangent stiffness dF/dx [N/m].
+    lte : ndarray, shape (n,)
+        Loaded minus unloaded transmission error, as a length on the line of action [m].
+    order : ndarray, shape (pairs,)
+        Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
+    force : ndarray, shape (n, pairs)
+        Force each pair carries [N].
+    pressure : ndarray, shape (n, pairs)
+        Largest contact pressure of each pair [Pa]; nan for methods without one.
+    error : ndarray, shape (n,) or None
+        Estimated discretisation error of k [N/m], if one was asked for.
+    meta : dict
+        Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
+    """
+
+    phase: np.ndarray
+    k: np.ndarray
+    k_tangent: np.ndarray
+    lte: np.ndarray
+    order: np.ndarray
+    force: np.ndarray
+    pressure: np.ndarray
+    error: np.ndarray | None = None
+    meta: dict = field(default_factory=dict)
+
+    @property
+    def share(self):
+        """Load share of each pair ``(n, pairs)``, rows sum to 1."""
+        return self.force / self.force.sum(axis=1, keepdims=True)
+
+    def zones(self):
+        """Mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs, on the path of contact), ``mean``, ``max``.
+
+        A zone none of the phases falls into is left out.
+        """
+        inside = self.phase % 1.0 <= self.meta["eps_alpha"] % 1.0 + 1e-9
+        low = int(self.meta["eps_alpha"])
+        names = {1: "single", 2: "double", 3: "triple"}
+        out = {}
+        for pairs, rows in ((low, ~inside), (low + 1, inside)):
+            if rows.any():
+                out[names.get(pairs, f"{pairs} pairs")] = float(self.k[rows].mean())
+        return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
+
+    def save(self, path):
+        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        from .export import save
+
+        save(self, path)
+
+    def to_csv(self, path):
+        """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly."""
+        from .export import write_csv
+
+        write_csv(self, path)
+
+    @classmethod
+    def from_csv(cls, path):
+        """Read what `to_csv` wrote.
+
+        Raises
+        ------
+        ValueError
+            If the file is not such a table, or its phases do not rise.
+        """
+        from .export import read_csv
+
+        return read_csv(path)
+
+    def plot(self, path=None):
+        """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
+        from .render import plot_curves
+
+        return plot_curves({self.meta.get("method", "k"): self}, path)

@@ -1,0 +1,1 @@
+"""Potential-energy flexibilities of one gear tooth, in closed form."""

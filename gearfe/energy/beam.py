@@ -1,0 +1,47 @@
+"""What the closed forms share: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F
+SAINSOT = np.array(
+    [
+        [-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045],
+        [60.111e-5, 28.100e-3, -83.431e-4, -9.9256e-3, 0.1624, 0.9086],
+        [-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236],
+        [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
+    ]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Components:
+    """Flexibility of one tooth at some contact positions, itemised; arrays [mm per N/mm of width]."""
+
+    bending: np.ndarray
+    shear: np.ndarray
+    axial: np.ndarray
+    foundation: np.ndarray
+
+    @property
+    def total(self):
+        """Sum of the four parts [mm per N/mm]."""
+        return self.bending + self.shear + self.axial + self.foundation
+
+
+def sainsot(h, theta):
+    """Polynomials (L*, M*, P*, Q*) at ``h = r_f / r_bore`` and root half angle `theta` [rad].
+
+    Fitted for ``1.4 <= h <= 7`` and ``0.01 <= theta <= 0.12``; outside, and for rings, they mean nothing.
+
+    References
+    ----------
+    P. Sainsot, P. Velex, O. Duverger, J. Mech. Des. 126(4) (2004) 748-752, Table 1.
+    """
+    return SAINSOT @ np.array([1 / theta**2, h**2, h / theta, 1 / theta, h, 1.0])
+
+
+def load_angle(gear, roll):
+    """Angle [rad] of the tooth force to the normal of the tooth centre-line, positive towards the root."""
+    return np.asarray(roll) / gear.r_b - gear.base_half_angle

@@ -1,0 +1,69 @@
+"""Article S4's formulas (crack-pitting coupled herringbone planetary stage), as printed where they can be computed."""
+
+import math
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from .beam import Components, load_angle, sainsot
+
+GAUSS = leggauss(32)
+
+
+def components(gear, material, roll):
+    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
+
+    As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
+    ``cos(a)**2 / (E L)``, and the coefficient table.
+
+    Corrections it needed, because the printed text cannot be computed:
+
+    1. the integrals of k_b, k_s, k_a have lost their factors (all print ``.../(2 E L dL)``): those of the source they
+       abridge are used, with the beam starting on the base circle and a prism of constant thickness between root and
+       base circle when r_f < r_b;
+    2. d and h_x are garbled (they lack the factors alpha_2 +- alpha): the same source's are used;
+    3. u_f, S_f and theta_f are not defined: Sainsot's, with the root half angle of a straight radial flank below the
+       base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``.
+
+    The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
+
+    References
+    ----------
+    X. Liang, M. J. Zuo, T. H. Patel, J. Mech. Eng. Sci. 228(3) (2014) 535-547, eqs. 6-20 (the planetary form).
+    """
+    roll = np.atleast_1d(np.asarray(roll, dtype=float))
+    force = load_angle(gear, roll)
+    alpha_2 = gear.base_half_angle
+    cos, sin = np.cos(force), np.sin(force)
+    points, weights = GAUSS
+    low = max(gear.r_f, gear.r_b)
+    stop = alpha_2 - math.tan(math.acos(gear.r_b / low))
+    half = (stop + force)[:, None] / 2
+    at = -force[:, None] + half * (1 + points)
+    step = half * weights * (alpha_2 - at) * np.cos(at)
+    depth = np.sin(at) + (alpha_2 - at) * np.cos(at)
+    arm = 1 + cos[:, None] * ((alpha_2 - at) * np.sin(at) - np.cos(at))
+    bending = (step * 3 * arm**2 / (2 * depth**3)).sum(axis=1) / material.E
+    shear = (step * 1.2 * (1 + material.nu) / depth).sum(axis=1) * cos**2 / material.E
+    axial = (step / (2 * depth)).sum(axis=1) * sin**2 / material.E
+    theta = math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f)) if gear.r_f < gear.r_b else float(gear.half_thickness(gear.r_f))
+    if gear.r_f < gear.r_b:
+        depth = (gear.r_b * math.cos(alpha_2) - gear.r_f * math.cos(theta)) / gear.r_b
+        far = 1 - (gear.r_f / gear.r_b) * cos * math.cos(theta)
+        near = 1 - cos * math.cos(alpha_2)
+        bending += (far**3 - near**3) / (2 * material.E * cos * math.sin(alpha_2) ** 3)
+        shear += 1.2 * (1 + material.nu) * cos**2 * depth / (material.E * math.sin(alpha_2))
+        axial += sin**2 * depth / (2 * material.E * math.sin(alpha_2))
+    ratio = (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
+    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
+    tan = np.tan(force)
+    foundation = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan)
+    return Components(bending, shear, axial, foundation)
+
+
+def contact(materials):
+    """Contact flexibility [mm per N/mm] of ``k_h = E L / 2 (1 - mu**2)`` as printed, averaged over two materials.
+
+    It is 1.57 times more flexible than the textbook's ``pi E L / 4 (1 - mu**2)``.
+    """
+    return sum((1 - m.nu**2) / m.E for m in materials)

@@ -1,0 +1,168 @@
+"""Flexibility of one gear between its contacts, by finite elements (plane strain or plane stress).
+
+Each loaded flank carries *hat pressures* of unit resultant along the involute normal; the displacement of a contact is
+the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On one tooth it is split::
+
+    C(i, j) = S(s_i, s_j) + c * mean(-ln |s_i - s_j|)
+
+into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline, RectBivariateSpline
+from scipy.sparse import coo_matrix
+
+from geometry.mesher import section, stations
+from geometry.tooth import flank_normal
+
+from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
+from .hertz import half_plane, hat_logarithm
+
+SPAN = 2  # edges on either side of a hat's top
+# default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
+# three next teeth, all other teeth
+EDGES = {"flank": 0.05, "tip": 0.0125, "low": 0.02, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
+# a contact is never placed closer to the tip corner than this arc [m_n]; the first hat sits there at default resolution
+TIP_CLAMP = 0.035
+
+
+@dataclass(frozen=True, slots=True)
+class Hats:
+    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm], roll at their centroids [mm], load columns."""
+
+    knots: np.ndarray
+    roll: np.ndarray
+    load: object
+
+
+def hats(section_, tooth):
+    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex."""
+    gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
+    arc = roll**2 / (2 * gear.r_b)
+    knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
+
+    def height(s):
+        start, top, stop = knots[:, :, None, None]
+        rise = np.minimum((s - start) / (top - start), (stop - s) / (stop - top))
+        return np.maximum(rise, 0.0) * 2 / (stop - start)
+
+    first = SPAN * np.arange(knots.shape[1])
+    return Hats(knots, np.sqrt(2 * gear.r_b * knots.mean(axis=0)), flank_load(section_, tooth, height, first, 2 * SPAN))
+
+
+def flank_load(section_, tooth, pressure, first, count):
+    """Consistent nodal forces ``(2 nodes, n)`` [N/mm] of pressures on the loaded flank of `tooth`.
+
+    Parameters
+    ----------
+    section_ : Section
+    tooth : int
+    pressure : callable
+        Maps arcs ``(n, count, points)`` from the base circle [mm] to pressures [MPa], row by row.
+    first : ndarray, shape (n,)
+        First flank edge each pressure acts on.
+    count : int
+        Number of edges each pressure acts on.
+    """
+    gear, mesh = section_.gear, section_.mesh
+    tooth %= gear.z
+    roll = section_.roll[tooth]
+    points, weights = GAUSS_3
+    shapes, slopes = edge_shapes(points)
+    nodes = edge_nodes(mesh, section_.flank[tooth])
+    length = np.hypot(*np.einsum("dne,np->dep", mesh.doflocs[:, nodes], slopes)) * weights
+    rolls = (roll[:-1, None] + roll[1:, None]) / 2 + (roll[1:, None] - roll[:-1, None]) / 2 * points
+    normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z)
+    edge = np.asarray(first)[:, None] + np.arange(count)
+    height = pressure(rolls[edge] ** 2 / (2 * gear.r_b))
+    force = -np.einsum("np,hep,hep,dhep->nhed", shapes, height, length[edge], normal[:, edge])
+    rows = 2 * nodes[:, edge][..., None] + np.arange(2)
+    columns = np.broadcast_to(np.arange(edge.shape[0])[:, None, None], force.shape)
+    shape = (2 * mesh.doflocs.shape[1], edge.shape[0])
+    return coo_matrix((force.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
+
+
+def turned(vectors, angle):
+    """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
+
+
+@dataclass(frozen=True, slots=True)
+class Flexibility:
+    """Flexibility of one gear between simultaneous contacts, local contact excluded.
+
+    `near` is the smooth part S(s, s) along the flank as a spline in roll length [mm per N/mm], `far[k]` the influence of
+    a load on tooth 0 at tooth k on the loaded side, a spline in both roll lengths; `limits` the rolls between which they
+    hold. Positions outside are clamped to them.
+    """
+
+    near: object
+    far: dict
+    limits: tuple
+    dofs: int = 0
+
+    def matrix(self, roll, order):
+        """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on teeth `order` ``(n,)``."""
+        arc = np.clip(roll, *self.limits) ** 2
+        n = len(order)
+        out = np.zeros((*roll.shape, n))
+        for i in range(n):
+            out[..., i, i] = self.near(arc[..., i])
+            for j in range(i):
+                spline = self.far.get(abs(order[i] - order[j]))
+                if spline is not None:
+                    low, high = (j, i) if order[i] > order[j] else (i, j)
+                    out[..., i, j] = out[..., j, i] = spline.ev(arc[..., low], arc[..., high])
+        return out
+
+
+def mesh_gear(gear, *, neighbours, refine=1.0, teeth=None, patches=()):
+    """Section of `gear` with tooth 0 loaded and the next `neighbours` teeth on the loaded side read.
+
+    `refine` divides every edge length of `EDGES`; `teeth` and `patches` as in `geometry.mesher`.
+    """
+    if not refine > 0:
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    rolls = {0: stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], patches=patches, span=SPAN)}
+    for tooth in range(1, neighbours + 1):
+        rolls[tooth] = stations(gear, edge["read"], tip=2 * edge["tip"], span=SPAN)
+    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth)
+
+
+def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """Flexibility of a healthy gear by finite elements: one factorisation, one tooth loaded.
+
+    The teeth of a healthy gear are alike, so a load on tooth 0 read on tooth k is also a load on any tooth read k teeth
+    further.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    state : {"plane strain", "plane stress"}
+    refine : float
+        Divides every edge length; 1 is the default resolution.
+    teeth : int, optional
+        Model only so many teeth on a plain rim (see `geometry.mesher.section`).
+
+    Returns
+    -------
+    Flexibility
+    """
+    mesh = mesh_gear(gear, neighbours=neighbours, refine=refine, teeth=teeth)
+    body = Body(mesh.mesh, material, state=state)
+    own = hats(mesh, 0)
+    moved = body.solve(own.load)
+    smooth = np.diag(own.load.T @ moved - half_plane(material, state) * hat_logarithm(own.knots, own.knots))
+    far = {}
+    for tooth in range(1, neighbours + 1):
+        read = hats(mesh, tooth)
+        far[tooth] = RectBivariateSpline(own.roll**2, read.roll**2, (read.load.T @ moved).T)
+    highest = np.sqrt(gear.roll_a**2 - 2 * gear.r_b * TIP_CLAMP * gear.m_n)
+    return Flexibility(CubicSpline(own.roll**2, smooth), far, (own.roll[0], highest), moved.shape[0])

@@ -1,0 +1,71 @@
+"""Local contact of two flanks: the half-plane logarithm, line contact, and the linear shortcuts of the textbook."""
+
+import math
+
+import numpy as np
+
+
+def half_plane(material, state="plane strain"):
+    """Coefficient c [mm per N/mm] of the half-plane: a line load P moves the surface by ``-c P ln r`` (Flamant).
+
+    ``c = 2 (1 - nu**2) / (pi E)`` in plane strain (K. L. Johnson, Contact Mechanics, 1985, eq. 2.19).
+    """
+    return 2 / (math.pi * material.plane_modulus(state))
+
+
+def contact_modulus(materials, state="plane strain"):
+    """Contact modulus E* [MPa] of two materials, ``1 / E* = sum (1 - nu**2) / E``."""
+    return 1 / sum(1 / m.plane_modulus(state) for m in materials)
+
+
+def half_width(line_load, radius, modulus):
+    """Half width a [mm] of a line contact, ``a**2 = 4 P R / (pi E*)`` (Johnson 1985, eq. 4.43)."""
+    return np.sqrt(4 * line_load * radius / (math.pi * modulus))
+
+
+def peak_pressure(line_load, radius, modulus):
+    """Largest contact pressure [MPa], ``p0 = 2 P / (pi a)`` (Johnson 1985, eq. 4.45)."""
+    return np.sqrt(line_load * modulus / (math.pi * radius))
+
+
+def log_kernel(distance):
+    """Fourth antiderivative of ``ln |x|``: ``x**4 / 24 (ln |x| - 25/12)``, zero at 0."""
+    x = np.abs(np.asarray(distance, dtype=float))
+    safe = np.where(x > 0, x, 1.0)
+    return x**4 / 24 * (np.log(safe) - 25 / 12)
+
+
+def hat_logarithm(knots_1, knots_2):
+    """Mean of ``-ln |x - y|`` over hats of unit area: the flat-surface kernel between hat pressures.
+
+    A hat of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is nine
+    values of `log_kernel`; exact for uneven hats.
+
+    Parameters
+    ----------
+    knots_1, knots_2 : ndarray, shape (3, n) and (3, m)
+        Start, top and end of the hats along the arc [mm].
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+    """
+    out = 0.0
+    for p, mass_p in zip(knots_1, _hat_masses(knots_1), strict=True):
+        for q, mass_q in zip(knots_2, _hat_masses(knots_2), strict=True):
+            out = out - mass_p[:, None] * mass_q[None, :] * log_kernel(p[:, None] - q[None, :])
+    return out
+
+
+def _hat_masses(knots):
+    left, right = knots[1] - knots[0], knots[2] - knots[1]
+    top = 2 / (left + right)
+    return top / left, -top / left - top / right, top / right
+
+
+def linear_hertz(materials, state="plane strain"):
+    """Linear contact flexibility [mm per N/mm] of the textbook: stiffness ``pi E L / 4 (1 - nu**2)`` for equal materials.
+
+    Yang and Sun, J. Mech. Transm. Autom. Des. 107 (1985) 529-535; for two materials the compliances are averaged.
+    """
+    return 2 / (math.pi * contact_modulus(materials, state))

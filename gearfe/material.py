@@ -1,0 +1,51 @@
+"""`Material`: linear isotropic elasticity, and what its constants become in a plane."""
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """Young's modulus `E` [MPa] and Poisson's ratio `nu`.
+
+    Raises
+    ------
+    ValueError
+        If ``E <= 0`` or nu is outside ``0 <= nu < 0.5``.
+
+    >>> Material(E=207e3, nu=0.25).shear_modulus
+    82800.0
+    """
+
+    E: float = 206e3
+    nu: float = 0.3
+
+    def __post_init__(self):
+        """Refuse constants no stable material has."""
+        if not (math.isfinite(self.E) and self.E > 0):
+            raise ValueError(f"E = {self.E} MPa, but Young's modulus must be positive and finite")
+        if not 0 <= self.nu < 0.5:
+            raise ValueError(f"nu = {self.nu}, but plane strain needs 0 <= nu < 0.5; use 0.4999 for rubber")
+
+    @property
+    def shear_modulus(self):
+        """Shear modulus [MPa]."""
+        return self.E / (2 * (1 + self.nu))
+
+    def lame(self, state):
+        """Plane Lame constants (lambda, mu) [MPa]; `state` is "plane strain" or "plane stress"."""
+        mu = self.shear_modulus
+        if check_state(state) == "plane stress":
+            return self.E * self.nu / (1 - self.nu**2), mu
+        return self.E * self.nu / ((1 + self.nu) * (1 - 2 * self.nu)), mu
+
+    def plane_modulus(self, state):
+        """``E / (1 - nu**2)`` in plane strain, ``E`` in plane stress [MPa]."""
+        return self.E if check_state(state) == "plane stress" else self.E / (1 - self.nu**2)
+
+
+def check_state(state):
+    """Return `state`, or raise ValueError if it is not a plane state."""
+    if state not in ("plane strain", "plane stress"):
+        raise ValueError(f"state = {state!r}, but it must be 'plane strain' or 'plane stress'")
+    return state

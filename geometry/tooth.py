@@ -1,0 +1,150 @@
+"""The transverse outline of one tooth: root arc, trochoid fillet, involute flank, tip arc.
+
+Points are given as radius [mm] and angle from the tooth centre-line [rad]; the centre-line of tooth 0 is +y and the
+loaded flank lies at positive angles, which are counted clockwise: ``(X, Y) = R (sin, cos)``.
+"""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .involute import inv
+
+
+def cartesian(radius, angle):
+    """Points ``(2, n)`` [mm] at `radius` [mm] and `angle` [rad], clockwise from +y."""
+    return np.array([radius * np.sin(angle), radius * np.cos(angle)])
+
+
+def flank(gear, roll):
+    """Radius [mm] and angle [rad] of the loaded involute flank at roll length `roll` [mm]."""
+    tangent = np.asarray(roll) / gear.r_b
+    return np.hypot(roll, gear.r_b), gear.base_half_angle - (tangent - np.arctan(tangent))
+
+
+def flank_normal(gear, roll):
+    """Unit vector ``(2, n)`` pointing out of the loaded flank, tangent to the base circle."""
+    turn = gear.base_half_angle - np.asarray(roll) / gear.r_b
+    return np.array([np.cos(turn), -np.sin(turn)])
+
+
+def _rack_tip(gear):
+    """Centre (xi, eta) of the rack tip rounding in the transverse section, from the pitch line [mm]."""
+    rho = gear.tip_radius
+    xi = math.pi / 4 - (gear.dedendum - rho) * math.tan(gear.alpha_n) - rho / math.cos(gear.alpha_n)
+    return max(xi, 0.0) * gear.m_t, (gear.x - gear.dedendum + rho) * gear.m_n
+
+
+def fillet(gear, phi):
+    """Radius [mm] and angle [rad] of the generated fillet at rack tip angle `phi` [rad].
+
+    `phi` is the angle of the rack tip's normal in the normal section: alpha_n where the rounding meets the rack
+    flank, pi/2 at the root circle. A rack point touches the gear when its normal passes through the pitch point
+    (law of gearing); in the transverse section of a helical gear the rounding is an ellipse.
+    """
+    phi = np.asarray(phi, dtype=float)
+    xi_c, eta_c = _rack_tip(gear)
+    rho = gear.tip_radius * gear.m_n
+    slope = math.cos(gear.beta)
+    xi = xi_c + rho * np.cos(phi) / slope
+    eta = eta_c - rho * np.sin(phi)
+    across = -eta * slope * np.cos(phi) / np.sin(phi)
+    rolled = (across - xi) / gear.r
+    space = np.arctan2(across, gear.r + eta) - rolled
+    return np.hypot(across, gear.r + eta), math.pi / gear.z - space
+
+
+@lru_cache(maxsize=256)
+def form_point(gear):
+    """Where fillet and involute meet: rack tip angle [rad] and roll length [mm].
+
+    Without undercut they are tangent at ``phi = alpha_n``. When the straight rack flank reaches below the
+    interference point, the trochoid cuts the involute and the crossing is found by bisection; at the limit itself
+    (z = 17 with a standard rack is a hair beyond it) both answers coincide.
+
+    Raises
+    ------
+    ValueError
+        If nothing is left of the involute, or the undercut severs the tooth.
+    """
+    _, eta_c = _rack_tip(gear)
+    depth = -(eta_c - gear.tip_radius * gear.m_n * math.sin(gear.alpha_n))
+    phi = gear.alpha_n
+    if depth > gear.r * math.sin(gear.alpha_t) ** 2:
+        phi = _undercut(gear)
+    radius = float(fillet(gear, phi)[0])
+    roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))
+    if radius >= gear.r_a:
+        raise ValueError(
+            f"z = {gear.z}, x = {gear.x}: undercut removes the whole involute (form radius {radius:.5g} mm, tip {gear.r_a:.5g} mm); raise x"
+        )
+    waist = fillet(gear, np.linspace(phi, math.pi / 2, 200))[1].min()
+    if waist <= 0:
+        raise ValueError(f"z = {gear.z}, x = {gear.x}: undercut severs the tooth at its root; raise x")
+    return phi, roll
+
+
+def _undercut(gear):
+    """Rack tip angle at which the trochoid crosses the involute."""
+
+    def excess(phi):
+        radius, angle = fillet(gear, phi)
+        return float(gear.half_thickness(max(radius, gear.r_b)) - angle)
+
+    if fillet(gear, math.pi / 2)[0] >= gear.r_b:
+        return gear.alpha_n
+    at_base = brentq(lambda phi: float(fillet(gear, phi)[0]) - gear.r_b, gear.alpha_n, math.pi / 2, xtol=1e-15)
+    if excess(at_base) <= 0 or excess(gear.alpha_n) >= 0:
+        return gear.alpha_n
+    return brentq(excess, gear.alpha_n, at_base, xtol=1e-15)
+
+
+def root_half_angle(gear):
+    """Half angle [rad] of the tooth where its fillet touches the root circle."""
+    return math.pi / gear.z - _rack_tip(gear)[0] / gear.r
+
+
+@lru_cache(maxsize=256)
+def _fillet_arc(gear):
+    """Arc length [mm] from the root circle against rack tip angle, finely sampled for interpolation."""
+    phi = np.linspace(math.pi / 2, form_point(gear)[0], 400)
+    points = cartesian(*fillet(gear, phi))
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
+    return phi, arc
+
+
+def fillet_length(gear):
+    """Arc length of the fillet [mm]."""
+    return float(_fillet_arc(gear)[1][-1])
+
+
+def root_curve(gear, arc):
+    """Radius [mm] and angle [rad] along root circle (`arc` < 0) and fillet (`arc` > 0), arc lengths [mm] from their joint."""
+    phi, length = _fillet_arc(gear)
+    arc = np.asarray(arc, dtype=float)
+    radius, angle = fillet(gear, np.interp(arc, length, phi))
+    return np.where(arc < 0, gear.r_f, radius), np.where(arc < 0, root_half_angle(gear) - arc / gear.r_f, angle)
+
+
+def tangent_point(gear, inclination=math.radians(30)):
+    """Rack tip angle [rad] where the fillet tangent makes `inclination` [rad] with the tooth centre-line.
+
+    The 30-degree point is the critical section of ISO 6336-3:2019, 6.2. Where the whole fillet is steeper than
+    asked (full undercut), the point nearest to it is returned.
+    """
+    phi = np.linspace(math.pi / 2, form_point(gear)[0], 2001)
+    x, y = cartesian(*fillet(gear, phi))
+    slope = np.arctan2(-np.diff(x), np.diff(y))
+    middle = (phi[1:] + phi[:-1]) / 2
+    return float(np.interp(-inclination, -slope, middle)) if slope[0] > inclination > slope[-1] else float(
+        middle[np.argmin(abs(slope - inclination))]
+    )
+
+
+def form_mismatch(gear):
+    """Distance [mm] between fillet and involute at the form point: zero up to rounding (a check for tests)."""
+    phi, roll = form_point(gear)
+    radius, angle = fillet(gear, phi)
+    return float(radius * (angle - (gear.base_half_angle - inv(math.atan(roll / gear.r_b)))))
