@@ -7,7 +7,9 @@ import sys
 
 def main(argv=None):
     """Run the command line; returns the exit code."""
-    parser = argparse.ArgumentParser(prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods.")
+    parser = argparse.ArgumentParser(
+        prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods."
+    )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
@@ -43,7 +45,9 @@ def _verb(verbs, name, run, text):
 def _scene_arguments(verb, *, phases=True):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
     verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
-    verb.add_argument("--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)")
+    verb.add_argument(
+        "--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)"
+    )
     if phases:
         verb.add_argument("--phases", type=int, default=64, metavar="N", help="phases per mesh cycle (default: 64)")
 

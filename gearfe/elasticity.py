@@ -61,7 +61,9 @@ class Body:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""
         if self._factor is None:
             free = self.stiffness()[self.free][:, self.free]
-            self._factor = splu(csc_matrix(free), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            self._factor = splu(
+                csc_matrix(free), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
         dense = load.toarray() if hasattr(load, "toarray") else np.asarray(load)
         out = np.zeros(dense.shape)
         out[self.free] = self._factor.solve(np.ascontiguousarray(dense[self.free]))

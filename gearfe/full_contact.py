@@ -8,6 +8,7 @@ verification: the contact half width, the corner contact and the neighbour coupl
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import hstack
 
 from geometry.mesher import section, stations
 
@@ -19,8 +20,23 @@ from .sharing import share
 
 @dataclass(frozen=True, slots=True)
 class ContactZone:
-    """Result of `full_contact`: `approach` [mm], line load per pair `force` (pairs,) [N/mm], its mean roll lengths
-    `roll_1`, `roll_2` (pairs,) [mm], hat forces `hat` [N/mm] at pinion arcs `arc` [mm], `order` (pairs,)."""
+    """What `full_contact` found.
+
+    Attributes
+    ----------
+    approach : float
+        [mm].
+    force : ndarray, shape (pairs,)
+        Line load of each pair [N/mm].
+    roll_1, roll_2 : ndarray, shape (pairs,)
+        Roll lengths of the centres of the contact pressures [mm].
+    hat : tuple of ndarray
+        Force of every hat, by pair [N/mm].
+    arc : tuple of ndarray
+        Arcs of their tops on the pinion from the base circle [mm].
+    order : ndarray, shape (pairs,)
+        As in `geometry.pair.Contacts`.
+    """
 
     approach: float
     force: np.ndarray
@@ -103,7 +119,9 @@ def _influence(gear, material, state, zones, refine):
         rising = np.sort(tops)
         step = np.diff(rising)
         fine = np.sort(np.concatenate([rising, rising[:-1] + step / 2]))
-        outside = stations(gear, EDGES["flank"] * m, tip=step[-1], low=EDGES["low"] * m, patches=[(fine[0], fine[-1], step.min() / 2)])
+        outside = stations(
+            gear, EDGES["flank"] * m, tip=step[-1], low=EDGES["low"] * m, patches=[(fine[0], fine[-1], step.min() / 2)]
+        )
         arc = outside**2 / (2 * gear.r_b)
         margin = step.min() / 3
         arc = arc[(arc < fine[0] - margin) | (arc > fine[-1] + margin)]
@@ -113,8 +131,6 @@ def _influence(gear, material, state, zones, refine):
     mesh = section(gear, rolls, fillet_size=EDGES["fillet"] * m, size=EDGES["near"] * m, far_size=EDGES["far"] * m)
     for tooth, tops in zones.items():
         loads[tooth] = _hats_at(mesh, tooth, tops)
-    from scipy.sparse import hstack
-
     load = hstack([loads[tooth] for tooth in zones]).tocsc()
     body = Body(mesh.mesh, material, state=state)
     return load.T @ body.solve(load)

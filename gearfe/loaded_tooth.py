@@ -17,7 +17,9 @@ STRESS_EDGES = {"flank": 0.1, "fillet": 0.02, "near": 0.4, "far": 0.9}  # in mod
 def _load_at(gear, radius):
     """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
     if not gear.r_form <= radius <= gear.r_a:
-        raise ValueError(f"radius = {radius} mm is not on the involute flank: give {gear.r_form:.6g} <= radius <= {gear.r_a:.6g} mm")
+        raise ValueError(
+            f"radius = {radius} mm is not on the involute flank: give {gear.r_form:.6g} <= radius <= {gear.r_a:.6g} mm"
+        )
     return (radius**2 - gear.r_b**2) / (2 * gear.r_b)
 
 
@@ -74,7 +76,7 @@ def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane s
     if at != "centreline":
         raise ValueError(f"at = {at!r}, but it must be 'centreline' or 'surface'")
     edges = EDGES | {"flank": 0.1}
-    mesh, body, moved = _solve(gear, material, state, arc, 0.02 * gear.m_n, edges, refine)
+    _, body, moved = _solve(gear, material, state, arc, 0.02 * gear.m_n, edges, refine)
     angle = roll / gear.r_b - gear.base_half_angle
     far, turn = flank(gear, roll)
     crossing = far * math.cos(turn) - far * math.sin(turn) * math.tan(angle)
@@ -119,7 +121,7 @@ def root_stress(gear, radius, line_load, material, *, half_width=None, state="pl
     half_width = 0.05 * gear.m_n if half_width is None else half_width
     if not half_width > 0:
         raise ValueError(f"half_width = {half_width} mm, but the load needs a width: give half_width > 0")
-    mesh, body, moved = _solve(gear, material, state, _load_at(gear, radius), half_width, STRESS_EDGES, refine)
+    mesh, _, moved = _solve(gear, material, state, _load_at(gear, radius), half_width, STRESS_EDGES, refine)
     nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
     _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
     along = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], slopes)

@@ -16,7 +16,10 @@ from .hertz import contact_modulus, half_width
 from .stiffness import mesh_stiffness
 
 STRESS = "von Mises stress [MPa]"
-RENDERER_HELP = "rendering needs pyvista and, without a screen, EGL or OSMesa: 'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
+RENDERER_HELP = (
+    "rendering needs pyvista and, without a screen, EGL or OSMesa: "
+    "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
+)
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 
 
@@ -161,13 +164,15 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0):
         mises = von_mises(stress, material.nu, "plane strain")
         grid.point_data[STRESS] = mises
         u = moved.reshape(-1, 2)
-        grid.point_data["displacement [mm]"] = np.array([cos * u[:, 0] + sin * u[:, 1], cos * u[:, 1] - sin * u[:, 0], 0 * u[:, 0]]).T
+        grid.point_data["displacement [mm]"] = np.array(
+            [cos * u[:, 0] + sin * u[:, 1], cos * u[:, 1] - sin * u[:, 0], 0 * u[:, 0]]
+        ).T
         edges = np.concatenate([mesh.mesh.boundaries["rim"], mesh.mesh.boundaries["bore"]])
         start, stop = mesh.mesh.facets[:, edges]
         middle = mesh.mesh.nvertices + edges
         pieces = np.vstack([np.array([start, middle]).T, np.array([middle, stop]).T])
         lines = np.hstack([np.full((pieces.shape[0], 1), 2), pieces]).ravel()
-        outlines.append(pyvista.PolyData(points + [0, 0, 0.01], lines=lines))
+        outlines.append(pyvista.PolyData(points + np.array([0, 0, 0.01]), lines=lines))
         root = max(root, *(float(mises[chain].max()) for chain in mesh.fillet.values()))
         grids.append(grid)
     return grids, outlines, root

@@ -104,8 +104,13 @@ def _scene(file, data):
             raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
     if not isinstance(tables["assumption"], list):
         raise ValueError(f"{file}: assumptions are written as [[assumption]] tables")
-    rows = {kind: {name: _table(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()} for kind in TABLES}
-    materials = {n: _made(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()}
+    rows = {
+        kind: {name: _table(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
+        for kind in TABLES
+    }
+    materials = {
+        n: _made(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
+    }
     gears = {n: _made(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
     pairs = {}
     for name, row in rows["pair"].items():

@@ -18,9 +18,7 @@ METHODS = ("fe", "textbook", "published")
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
-def mesh_stiffness(
-    pair, force, material, *, method="fe", phases=64, extended=True, state="plane strain", refine=1.0, teeth=None
-):
+def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=True, state="plane strain", refine=1.0, teeth=None):
     """Mesh stiffness of a gear pair over one mesh cycle.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
@@ -111,7 +109,10 @@ def _fe(pair, materials, phase, extended, state, refine, teeth):
     neighbours = math.ceil(pair.eps_alpha)
     found = pair.contacts(phase, extended=extended)
     gears = (pair.gear_1, pair.gear_2)
-    flexible = [fe.flexibility(g, m, neighbours=neighbours, state=state, refine=refine, teeth=teeth) for g, m in zip(gears, materials, strict=True)]
+    flexible = [
+        fe.flexibility(g, m, neighbours=neighbours, state=state, refine=refine, teeth=teeth)
+        for g, m in zip(gears, materials, strict=True)
+    ]
     # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
     matrix = flexible[0].matrix(found.roll_1, found.order) + flexible[1].matrix(found.roll_2, -found.order)
     coefficient = sum(half_plane(m, state) for m in materials)

@@ -105,9 +105,13 @@ class Gear:
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive")
         if not math.radians(5) <= self.alpha_n <= math.radians(45):
-            raise ValueError(f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python")
+            raise ValueError(
+                f"alpha_n = {self.alpha_n} rad, but it must lie between 5 and 45 degrees; angles are radians in Python"
+            )
         if not abs(self.beta) < math.radians(60):
-            raise ValueError(f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python")
+            raise ValueError(
+                f"beta = {self.beta} rad, but helix angles of 60 degrees and more are not supported; angles are radians in Python"
+            )
         if self.tip_radius < 0:
             raise ValueError(f"tip_radius = {self.tip_radius}, but it cannot be negative")
 

@@ -10,7 +10,7 @@ import numpy as np
 def inv(alpha):
     """Involute function ``tan(alpha) - alpha`` (ISO 21771:2007, eq. 21).
 
-    >>> round(inv(np.radians(20.0)), 6)
+    >>> round(float(inv(np.radians(20.0))), 6)
     0.014904
     """
     return np.tan(alpha) - alpha

@@ -14,7 +14,6 @@ from skfem import MeshTri, MeshTri2
 from .gear import Gear
 from .tooth import fillet_length, flank, root_curve, root_half_angle
 
-
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
 GROWTH = 0.25  # of the edge length per length, away from fine places of a flank
 
@@ -228,7 +227,10 @@ def _curve(linear, loops):
     """Second-order mesh with every boundary edge bent onto its curve, boundaries named."""
     mesh = MeshTri2.from_mesh(linear)
     nodes = mesh.doflocs.copy()
-    facets = {tuple(pair): i for i, pair in zip(linear.boundary_facets(), np.sort(linear.facets[:, linear.boundary_facets()].T), strict=True)}
+    facets = {
+        tuple(pair): i
+        for i, pair in zip(linear.boundary_facets(), np.sort(linear.facets[:, linear.boundary_facets()].T), strict=True)
+    }
     names, first = {}, 0
     for name, points in zip(("rim", "bore"), loops, strict=True):
         count = points.shape[1] // 2

@@ -78,7 +78,8 @@ def form_point(gear):
     roll = math.sqrt(max(radius**2 - gear.r_b**2, 0.0))
     if radius >= gear.r_a:
         raise ValueError(
-            f"z = {gear.z}, x = {gear.x}: undercut removes the whole involute (form radius {radius:.5g} mm, tip {gear.r_a:.5g} mm); raise x"
+            f"z = {gear.z}, x = {gear.x}: undercut removes the whole involute "
+            f"(form radius {radius:.5g} mm, tip {gear.r_a:.5g} mm); raise x"
         )
     waist = fillet(gear, np.linspace(phi, math.pi / 2, 200))[1].min()
     if waist <= 0:
@@ -128,7 +129,7 @@ def root_curve(gear, arc):
     return np.where(arc < 0, gear.r_f, radius), np.where(arc < 0, root_half_angle(gear) - arc / gear.r_f, angle)
 
 
-def tangent_point(gear, inclination=math.radians(30)):
+def tangent_point(gear, inclination=math.pi / 6):
     """Rack tip angle [rad] where the fillet tangent makes `inclination` [rad] with the tooth centre-line.
 
     The 30-degree point is the critical section of ISO 6336-3:2019, 6.2. Where the whole fillet is steeper than
@@ -138,8 +139,10 @@ def tangent_point(gear, inclination=math.radians(30)):
     x, y = cartesian(*fillet(gear, phi))
     slope = np.arctan2(-np.diff(x), np.diff(y))
     middle = (phi[1:] + phi[:-1]) / 2
-    return float(np.interp(-inclination, -slope, middle)) if slope[0] > inclination > slope[-1] else float(
-        middle[np.argmin(abs(slope - inclination))]
+    return (
+        float(np.interp(-inclination, -slope, middle))
+        if slope[0] > inclination > slope[-1]
+        else float(middle[np.argmin(abs(slope - inclination))])
     )
 
 

@@ -46,7 +46,11 @@ def components(gear, material, roll):
     bending = (step * 3 * arm**2 / (2 * depth**3)).sum(axis=1) / material.E
     shear = (step * 1.2 * (1 + material.nu) / depth).sum(axis=1) * cos**2 / material.E
     axial = (step / (2 * depth)).sum(axis=1) * sin**2 / material.E
-    theta = math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f)) if gear.r_f < gear.r_b else float(gear.half_thickness(gear.r_f))
+    theta = (
+        math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
+        if gear.r_f < gear.r_b
+        else float(gear.half_thickness(gear.r_f))
+    )
     if gear.r_f < gear.r_b:
         depth = (gear.r_b * math.cos(alpha_2) - gear.r_f * math.cos(theta)) / gear.r_b
         far = 1 - (gear.r_f / gear.r_b) * cos * math.cos(theta)

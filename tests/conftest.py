@@ -1,0 +1,18 @@
+import math
+
+import pytest
+
+import gearfe as gf
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+
+
+@pytest.fixture(scope="session")
+def steel():
+    return gf.Material(E=207e3, nu=0.3)
+
+
+@pytest.fixture(scope="session")
+def pair():
+    """The pair of the planetary_pitting scene."""
+    return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))

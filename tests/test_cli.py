@@ -1,0 +1,66 @@
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.cli import main
+
+
+def test_stiffness_writes_curve_and_plot(tmp_path, capsys):
+    out, plot = tmp_path / "k.csv", tmp_path / "k.png"
+    assert main(["stiffness", "planetary_pitting", "--phases", "8", "-o", str(out), "--plot", str(plot)]) == 0
+    assert gf.StiffnessCurve.from_csv(out).phase.size == 8
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    assert "assumed: face width" in capsys.readouterr().out
+
+
+def test_compare_prints_errors_by_zone(capsys):
+    assert main(["compare", "planetary_pitting", "--phases", "16"]) == 0
+    text = capsys.readouterr().out
+    rows = {line.split("|")[1].strip(): line.split("|")[2:-1] for line in text.splitlines() if line.startswith("| ")}
+    assert {"single", "double", "mean", "max", "seconds"} <= rows.keys()
+    fe, textbook = float(rows["double"][0]), float(rows["double"][1])
+    assert f"{100 * (textbook / fe - 1):+.0f}" == f"{float(rows['double'][2].replace('%', '')):+.0f}"
+
+
+def test_render_makes_a_picture_of_stress(tmp_path, capsys):
+    path = tmp_path / "stress.png"
+    assert main(["render", "planetary_pitting", "--refine", "0.5", "-o", str(path)]) == 0
+    from matplotlib.image import imread
+
+    picture = imread(path)
+    assert picture.shape[:2] == (1050, 1400)
+    assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
+
+
+def test_scenes_and_info(capsys):
+    assert main(["scenes"]) == 0
+    assert main(["info"]) == 0
+    text = capsys.readouterr().out
+    assert "planetary_pitting: pairs sun_planet" in text
+    assert "gmsh starts" in text
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["stiffness", "nowhere"], "built in are"),
+        (["stiffness", "planetary_pitting", "--method", "magic"], "fe, textbook, published"),
+        (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
+        (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
+        (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet"),
+    ],
+)
+def test_errors_go_to_stderr(arguments, message, capsys):
+    assert main(arguments) == 1
+    captured = capsys.readouterr()
+    assert message in captured.err
+    assert "Traceback" not in captured.err
+
+
+def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    assert main(["render", "planetary_pitting", "-o", str(tmp_path / "s.png")]) == 1
+    assert "pip install pyvista" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

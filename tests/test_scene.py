@@ -1,0 +1,52 @@
+from importlib import resources
+
+import pytest
+
+import gearfe as gf
+from gearfe.scene import scene_names
+
+TEXT = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text()
+
+
+def test_built_in_scene():
+    assert "planetary_pitting" in scene_names()
+    scene = gf.load_scene("planetary_pitting")
+    assert (scene.gears["sun"].z, scene.gears["planet"].z) == (21, 31)
+    assert scene.pair().pair.eps_alpha == pytest.approx(1.6149, rel=1e-4)
+    assert len(scene.assumptions) >= 4
+    assert any("ring" in item for item in scene.later)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("z = 21", "z = 21\nteeth = 3", r"s.toml \[gear.sun\]: unknown key 'teeth'; expected z, m_n_mm"),
+        ("z = 21", 'z = "21"', r"\[gear.sun\] z = '21': expected a whole number"),
+        ("z = 21", "z = 21.0", "expected a whole number"),
+        ("r_bore_mm = 7.4\n", "", r"\[gear.sun\]: missing key 'r_bore_mm'; expected a number in mm"),
+        ("alpha_n_deg = 20.0", "alpha_n_deg = nan", "alpha_n_deg = nan: expected a number in degrees"),
+        ("force_N = 2000.0", "force_N = -1.0", "force_N = -1.0"),
+        ("force_N = 2000.0", "force_N = true", "expected a number in N"),
+        ('gear_2 = "planet"', 'gear_2 = "moon"', "no such gear; there is sun, planet"),
+        ('material = "20CrMnTi"', 'material = "tin"', "no such material; there is 20CrMnTi"),
+        ("z = 21", "z = 3", r"\[gear.sun\]: z = 3, but a gear needs at least 5 teeth"),
+        ("a_mm = 52.0", "a_mm = 50.0", r"\[pair.sun_planet\]: a = 50 mm"),
+        ("[pair.sun_planet]", "[gearing.x]", "unknown key 'gearing'"),
+        ("title =", "titel =", "unknown key 'titel'"),
+        ("E_MPa = 207000.0", "E_MPa = 0.0", "E = 0.0 MPa"),
+        ("z = 21", "z = = 21", "not readable as TOML"),
+    ],
+)
+def test_errors_name_file_table_and_key(tmp_path, old, new, message):
+    path = tmp_path / "s.toml"
+    assert old in TEXT
+    path.write_text(TEXT.replace(old, new, 1))
+    with pytest.raises(ValueError, match=message):
+        gf.load_scene(path)
+
+
+def test_unknown_scene_and_pair():
+    with pytest.raises(ValueError, match="built in are planetary_pitting"):
+        gf.load_scene("nonsense")
+    with pytest.raises(ValueError, match="it has sun_planet"):
+        gf.load_scene("planetary_pitting").pair("sun_moon")

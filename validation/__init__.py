@@ -1,0 +1,1 @@
+"""What the literature and independent solvers report, and how close gearfe is."""
