@@ -23,9 +23,8 @@ from .hertz import half_plane, hat_logarithm
 SPAN = 2  # edges on either side of a hat's top
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
 # three next teeth, all other teeth
-EDGES = {"flank": 0.05, "tip": 0.0125, "low": 0.02, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
-# a contact is never placed closer to the tip corner than this arc [m_n]; the first hat sits there at default resolution
-TIP_CLAMP = 0.035
+EDGES = {"flank": 0.05, "tip": 0.0005, "low": 0.02, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
+TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,18 +36,23 @@ class Hats:
     load: object
 
 
-def hats(section_, tooth):
-    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex."""
+def hats(section_, tooth, *, corner=False):
+    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
+
+    With `corner`, a last, one-sided hat has its top at the tip corner.
+    """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = roll**2 / (2 * gear.r_b)
     knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
+    if corner:
+        knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
 
     def height(s):
         start, top, stop = knots[:, :, None, None]
-        rise = np.minimum((s - start) / (top - start), (stop - s) / (stop - top))
-        return np.maximum(rise, 0.0) * 2 / (stop - start)
+        fall = np.where(stop > top, (stop - s) / np.where(stop > top, stop - top, 1.0), 1.0)
+        return np.maximum(np.minimum((s - start) / (top - start), fall), 0.0) * 2 / (stop - start)
 
-    first = SPAN * np.arange(knots.shape[1])
+    first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
     return Hats(knots, np.sqrt(2 * gear.r_b * knots.mean(axis=0)), flank_load(section_, tooth, height, first, 2 * SPAN))
 
 
@@ -94,29 +98,74 @@ def turned(vectors, angle):
 class Flexibility:
     """Flexibility of one gear between simultaneous contacts, local contact excluded.
 
-    `near` is the smooth part S(s, s) along the flank as a spline in roll length [mm per N/mm], `far[k]` the influence of
-    a load on tooth 0 at tooth k on the loaded side, a spline in both roll lengths; `limits` the rolls between which they
-    hold. Positions outside are clamped to them.
+    Attributes
+    ----------
+    near : dict of int to spline
+        Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over roll squared.
+    far : dict of (int, int) to spline
+        Influence of a load on one tooth at another, over both rolls squared; the second tooth is further to the loaded
+        side.
+    tip : dict of int to TipHats
+        The flank next to the tip corner of each solved tooth, hat by hat.
+    limits : tuple of float
+        Rolls between which the splines hold [mm]; contacts outside are clamped to them.
+    dofs : int
+        Unknowns of the solve.
+    healthy : Flexibility or None
+        Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     """
 
-    near: object
+    near: dict
     far: dict
+    tip: dict
     limits: tuple
     dofs: int = 0
+    healthy: object = None
 
-    def matrix(self, roll, order):
-        """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on teeth `order` ``(n,)``."""
+    def near_of(self, tooth):
+        """Spline S(s, s) of a tooth."""
+        return self.near[tooth] if tooth in self.near else self._whole().near[0]
+
+    def far_of(self, first, second):
+        """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
+        return self.far[first, second] if (first, second) in self.far else self._whole().far.get((0, second - first))
+
+    def tip_of(self, tooth):
+        """Tip hats of a tooth."""
+        return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
+
+    def _whole(self):
+        return self if self.healthy is None else self.healthy
+
+    def matrix(self, roll, teeth):
+        """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
+
+        Contacts on one tooth get no influence on each other here: see `TipHats`.
+        """
         arc = np.clip(roll, *self.limits) ** 2
-        n = len(order)
-        out = np.zeros((*roll.shape, n))
+        n = len(teeth)
+        out = np.zeros((*np.shape(roll), n))
         for i in range(n):
-            out[..., i, i] = self.near(arc[..., i])
+            out[..., i, i] = self.near_of(teeth[i])(arc[..., i])
             for j in range(i):
-                spline = self.far.get(abs(order[i] - order[j]))
+                low, high = (j, i) if teeth[i] > teeth[j] else (i, j)
+                spline = self.far_of(teeth[low], teeth[high]) if teeth[low] != teeth[high] else None
                 if spline is not None:
-                    low, high = (j, i) if order[i] > order[j] else (i, j)
                     out[..., i, j] = out[..., j, i] = spline.ev(arc[..., low], arc[..., high])
         return out
+
+
+@dataclass(frozen=True, slots=True)
+class TipHats:
+    """Hats of one flank next to its tip corner, the corner's last.
+
+    `arc` (n,) are their centroids from the base circle [mm], `knots` (3, n), `influence` (n, n) the full displacement
+    between them, half-plane logarithm and all [mm per N/mm].
+    """
+
+    arc: np.ndarray
+    knots: np.ndarray
+    influence: np.ndarray
 
 
 def mesh_gear(gear, *, neighbours, refine=1.0, teeth=None, patches=()):
@@ -157,12 +206,20 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     """
     mesh = mesh_gear(gear, neighbours=neighbours, refine=refine, teeth=teeth)
     body = Body(mesh.mesh, material, state=state)
-    own = hats(mesh, 0)
+    own = hats(mesh, 0, corner=True)
     moved = body.solve(own.load)
-    smooth = np.diag(own.load.T @ moved - half_plane(material, state) * hat_logarithm(own.knots, own.knots))
+    near, tip = own_tooth(gear, own, own.load.T @ moved, half_plane(material, state))
     far = {}
     for tooth in range(1, neighbours + 1):
         read = hats(mesh, tooth)
-        far[tooth] = RectBivariateSpline(own.roll**2, read.roll**2, (read.load.T @ moved).T)
-    highest = np.sqrt(gear.roll_a**2 - 2 * gear.r_b * TIP_CLAMP * gear.m_n)
-    return Flexibility(CubicSpline(own.roll**2, smooth), far, (own.roll[0], highest), moved.shape[0])
+        far[0, tooth] = RectBivariateSpline(own.roll**2, read.roll**2, (read.load.T @ moved).T)
+    return Flexibility({0: near}, far, {0: tip}, (own.roll[0], own.roll[-2]), moved.shape[0])
+
+
+def own_tooth(gear, own, influence, coefficient):
+    """Spline S(s, s) of one tooth, and its `TipHats`, from the influence matrix of its hats."""
+    smooth = np.diag(influence - coefficient * hat_logarithm(own.knots, own.knots))
+    zone = own.knots[1] > gear.roll_a**2 / (2 * gear.r_b) - TIP_ZONE * gear.m_n
+    block = influence[np.ix_(zone, zone)]
+    tip = TipHats(own.knots.mean(axis=0)[zone], own.knots[:, zone], (block + block.T) / 2)
+    return CubicSpline(own.roll[:-1] ** 2, smooth[:-1]), tip

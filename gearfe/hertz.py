@@ -39,7 +39,7 @@ def hat_logarithm(knots_1, knots_2):
     """Mean of ``-ln |x - y|`` over hats of unit area: the flat-surface kernel between hat pressures.
 
     A hat of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is nine
-    values of `log_kernel`; exact for uneven hats.
+    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2) is given a fall over a thousandth of its rise.
 
     Parameters
     ----------
@@ -51,16 +51,18 @@ def hat_logarithm(knots_1, knots_2):
     ndarray, shape (n, m)
     """
     out = 0.0
-    for p, mass_p in zip(knots_1, _hat_masses(knots_1), strict=True):
-        for q, mass_q in zip(knots_2, _hat_masses(knots_2), strict=True):
+    for p, mass_p in _masses(knots_1):
+        for q, mass_q in _masses(knots_2):
             out = out - mass_p[:, None] * mass_q[None, :] * log_kernel(p[:, None] - q[None, :])
     return out
 
 
-def _hat_masses(knots):
-    left, right = knots[1] - knots[0], knots[2] - knots[1]
-    top = 2 / (left + right)
-    return top / left, -top / left - top / right, top / right
+def _masses(knots):
+    start, top, stop = knots
+    stop = np.maximum(stop, top + 1e-3 * (top - start))
+    left, right = top - start, stop - top
+    height = 2 / (left + right)
+    return (start, height / left), (top, -height / left - height / right), (stop, height / right)
 
 
 def linear_hertz(materials, state="plane strain"):

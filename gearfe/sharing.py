@@ -85,8 +85,8 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus):
         [mm].
     load : float
         Line load of all contacts together [N/mm].
-    coefficient : float
-        Sum of both half-plane coefficients [mm per N/mm].
+    coefficient : ndarray, shape (n,)
+        Sum of both half-plane coefficients [mm per N/mm]; 0 for contacts whose `flexibility` is complete.
     radius : ndarray, shape (n,)
         Relative radius of curvature [mm].
     modulus : float

@@ -2,17 +2,17 @@
 
 import math
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
 from . import fe
+from .contact import Mesh, Solved
 from .curve import StiffnessCurve
 from .energy import published, textbook
-from .hertz import contact_modulus, half_plane, linear_hertz, peak_pressure
+from .hertz import linear_hertz
 from .material import Material, check_state
-from .sharing import line_contact
 
 METHODS = ("fe", "textbook", "published")
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
@@ -66,11 +66,13 @@ def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=Tr
     check_state(state)
     phase = _phases(phases)
     if method == "fe":
-        solve = _fe(pair, materials, phase, extended, state, refine, teeth)
+        solve, details = _fe(pair, materials, phase, extended, state, refine, teeth)
     else:
-        solve = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
+        solve, details = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
     options = {"extended": bool(extended), "state": state, "refine": float(refine), "teeth": teeth} if method == "fe" else {}
-    curves = [_curve(pair, phase, value, solve, _meta(pair, value, materials, method, options)) for value in forces.tolist()]
+    curves = [
+        _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
+    ]
     return curves if np.ndim(force) else curves[0]
 
 
@@ -92,47 +94,15 @@ def _phases(phases):
     return phases
 
 
-@dataclass(frozen=True, slots=True)
-class _Solved:
-    """Per phase and pair, still per unit width in mm, N: approach, tangent, line loads, pressures [MPa]."""
-
-    order: np.ndarray
-    approach: np.ndarray
-    tangent: np.ndarray
-    line_load: np.ndarray
-    pressure: np.ndarray
-    details: dict
-
-
 def _fe(pair, materials, phase, extended, state, refine, teeth):
     started = time.perf_counter()
     neighbours = math.ceil(pair.eps_alpha)
-    found = pair.contacts(phase, extended=extended)
-    gears = (pair.gear_1, pair.gear_2)
     flexible = [
-        fe.flexibility(g, m, neighbours=neighbours, state=state, refine=refine, teeth=teeth)
-        for g, m in zip(gears, materials, strict=True)
+        fe.flexibility(gear, material, neighbours=neighbours, state=state, refine=refine, teeth=teeth)
+        for gear, material in zip((pair.gear_1, pair.gear_2), materials, strict=True)
     ]
-    # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
-    matrix = flexible[0].matrix(found.roll_1, found.order) + flexible[1].matrix(found.roll_2, -found.order)
-    coefficient = sum(half_plane(m, state) for m in materials)
-    modulus = contact_modulus(materials, state)
-    radius = found.roll_1 * found.roll_2 / (found.roll_1 + found.roll_2)
-    details = {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
-
-    def solve(line_load):
-        line = np.zeros(found.gap.shape)
-        approach, tangent = np.empty(phase.size), np.empty(phase.size)
-        for i, gap in enumerate(found.gap):
-            alone = line_contact(matrix[i, :1, :1], np.zeros(1), line_load, coefficient, radius[i, 1:2], modulus)[1]
-            near = np.flatnonzero(gap < 2 * alone)
-            line[i, near], approach[i], tangent[i] = line_contact(
-                matrix[i][np.ix_(near, near)], gap[near], line_load, coefficient, radius[i, near], modulus
-            )
-        pressure = np.where(line > 0, peak_pressure(line, np.where(line > 0, radius, 1.0), modulus), 0.0)
-        return _Solved(found.order, approach, tangent, line, pressure, details)
-
-    return solve
+    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=state)
+    return mesh.solve, {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
 
 
 def _plain_sum(pair, materials, phase, formulas):
@@ -148,9 +118,9 @@ def _plain_sum(pair, materials, phase, formulas):
 
     def solve(line_load):
         line = line_load / flexibility / stiffness[:, None]
-        return _Solved(found.order, line_load / stiffness, stiffness, line, np.full(line.shape, np.nan), {})
+        return Solved(found.order, line_load / stiffness, stiffness, line, np.full(line.shape, np.nan))
 
-    return solve
+    return solve, {}
 
 
 def _curve(pair, phase, force, solve, meta):
@@ -158,7 +128,7 @@ def _curve(pair, phase, force, solve, meta):
     started = time.perf_counter()
     width = min(pair.gear_1.b, pair.gear_2.b)
     solved = solve(force / width)
-    meta = meta | solved.details | {"seconds_contact": time.perf_counter() - started}
+    meta = meta | {"seconds_contact": time.perf_counter() - started}
     used = solved.line_load.max(axis=0) > 0
     return StiffnessCurve(
         phase=phase,

@@ -15,8 +15,9 @@ class Contacts:
     """The tooth pairs that touch, or nearly do, at some phases (arrays of shape (phases, pairs)).
 
     `roll_1`, `roll_2` are the roll lengths [mm] of the touching points, `gap` the unloaded distance along the line of
-    action [mm] (inf: the flanks cannot meet), `order` (pairs,) the place of each pair: pair k is k base pitches ahead of
-    the one that entered contact last, `nominal` the abscissa of the pair on the line of action [mm].
+    action [mm] (inf: the flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters at phase 0 and pair k
+    is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm]. Pair k is formed by the
+    pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th on the other.
     """
 
     order: np.ndarray
@@ -178,11 +179,13 @@ class GearPair:
 
         On the path of contact the gap is zero. Beyond it one tip corner slides on the other flank, and the gap is exact
         kinematics: the rotation that closes it, times the base radius. With ``extended=False`` such pairs never touch.
+        Phases may be any numbers: at phase 1.3 pair 0 is 1.3 base pitches into its engagement.
         """
         phase = np.atleast_1d(np.asarray(phase, dtype=float))
         start, end = self.path
-        order = np.arange(-1, math.ceil((end - start) / self.p_bt) + 1)
-        nominal = start + (phase[:, None] % 1.0 + order) * self.p_bt
+        first, last = -1 - math.floor(phase.max()), math.ceil((end - start) / self.p_bt) - math.floor(phase.min())
+        order = np.arange(first, last + 1)
+        nominal = start + (phase[:, None] + order) * self.p_bt
         slack = 1e-9 * self.p_bt
         inside = (nominal >= start - slack) & (nominal < end + slack)
         roll_1, roll_2 = nominal.copy(), self.length - nominal

@@ -96,12 +96,12 @@ def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_
     assert_allclose(fast.share[0], [share[k] for k in fast.order], atol=2e-3)
 
 
-@pytest.mark.parametrize("phase", [0.635, 0.97])
-def test_corner_contact_is_within_four_percent_of_full_contact(pair, steel, phase):
-    """The tip-corner clamp is a modelling choice; the corner is really softer, by up to 3.4 %."""
-    fast = gf.mesh_stiffness(pair, 2000.0, steel, phases=[phase])
-    full = full_contact(pair, 100.0, phase, (steel, steel))
-    assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.04)
+@pytest.mark.parametrize("phase", [0.62, 0.635, 0.665, 0.97, 0.99])
+@pytest.mark.parametrize("line_load", [100.0, 300.0])
+def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel, phase, line_load):
+    fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
+    full = full_contact(pair, line_load, phase, (steel, steel), per_width=12)
+    assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 
 def test_load_stiffens_the_single_pair_by_about_three_percent_per_doubling(pair, steel):

@@ -1,19 +1,17 @@
-"""``python -m validation speed``: rebuild the validation pages."""
+"""``python -m validation PAGE``: rebuild a validation page."""
 
 import argparse
+import importlib
 
-PAGES = ("speed",)
+PAGES = {"speed": "seconds against error of every method", "readme": "the table and the program output in the README"}
 
 
 def main():
     """Run the page asked for."""
+    about = "; ".join(f"{page}: {text}" for page, text in PAGES.items())
     parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild the validation pages.")
-    parser.add_argument("page", choices=PAGES, help="speed: seconds against error of every method")
-    page = parser.parse_args().page
-    if page == "speed":
-        from .speed import run
-
-        run()
+    parser.add_argument("page", choices=list(PAGES), help=about)
+    importlib.import_module(f"validation.{parser.parse_args().page}").run()
 
 
 if __name__ == "__main__":

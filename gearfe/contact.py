@@ -1,0 +1,138 @@
+"""All tooth pairs at one phase: who carries what, and how far the gears approach.
+
+A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a tip corner there is no such
+formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
+from .sharing import line_contact
+
+# A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
+# the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
+CORNER = 0.7
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """Contact at some phases, per unit width.
+
+    `order` (pairs,) as in `geometry.pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
+    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded).
+    """
+
+    order: np.ndarray
+    approach: np.ndarray
+    tangent: np.ndarray
+    line_load: np.ndarray
+    pressure: np.ndarray
+
+
+class Mesh:
+    """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
+
+    Parameters
+    ----------
+    pair : GearPair
+    materials : (Material, Material)
+    flexibility : (Flexibility, Flexibility)
+        Of pinion and wheel.
+    phase : ndarray
+    extended : bool
+    state : str
+    """
+
+    def __init__(self, pair, materials, flexibility, phase, *, extended, state):
+        self.pair, self.flexibility = pair, flexibility
+        self.coefficients = [half_plane(m, state) for m in materials]
+        self.modulus = contact_modulus(materials, state)
+        self.found = found = pair.contacts(phase, extended=extended)
+        self.extended = extended
+        # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
+        self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
+        self.radius = found.roll_1 * found.roll_2 / (found.roll_1 + found.roll_2)
+
+    def solve(self, line_load):
+        """Contact under `line_load` [N/mm] at all phases."""
+        found = self.found
+        shape = found.gap.shape
+        line, pressure = np.zeros(shape), np.zeros(shape)
+        approach, tangent = np.empty(shape[0]), np.empty(shape[0])
+        for i in range(shape[0]):
+            near = self._near(i, line_load)
+            contacts = self._contacts(i, near, self._corners(i, near, line_load))
+            force, approach[i], tangent[i] = line_contact(
+                contacts["flexibility"], contacts["gap"], line_load, contacts["coefficient"], contacts["radius"], self.modulus
+            )
+            np.add.at(line[i], contacts["column"], force)
+            single = contacts["coefficient"] > 0
+            peak = peak_pressure(force[single], contacts["radius"][single], self.modulus)
+            pressure[i, contacts["column"][~single]] = np.nan
+            pressure[i, contacts["column"][single]] = peak
+        pressure[(line == 0) & np.isnan(pressure)] = 0.0
+        return Solved(found.order, approach, tangent, line, pressure)
+
+    def _near(self, i, line_load):
+        """Columns of the pairs whose gap the load could close: at most twice the approach of the best single pair."""
+        gap = self.found.gap[i]
+        best = int(np.argmin(gap))
+        local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[i, best], self.modulus)) + 0.5)
+        alone = gap[best] + max(self.matrix[i, best, best] + local, 0.0) * line_load
+        return np.flatnonzero(gap < 2 * alone)
+
+    def _corners(self, i, near, line_load):
+        """For each pair of `near`: 0, or the gear (1, 2) whose tip corner it touches."""
+        corner = np.zeros(near.size, dtype=int)
+        if not self.extended:
+            return corner
+        reach = CORNER * half_width(line_load, self.radius[i, near], self.modulus)
+        for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
+            corner[(gear.roll_a**2 - roll[i, near] ** 2) / (2 * gear.r_b) < reach] = number
+        return corner
+
+    def _contacts(self, i, near, corner):
+        """Flexibility, gap, logarithm coefficient, radius and pair column of every unknown at phase i."""
+        if not corner.any():
+            c = np.full(near.size, sum(self.coefficients))
+            return {
+                "flexibility": self.matrix[i][np.ix_(near, near)],
+                "gap": self.found.gap[i, near],
+                "coefficient": c,
+                "radius": self.radius[i, near],
+                "column": near,
+            }
+        parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
+        roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
+        column = np.repeat(near, [part[0].size for part in parts])
+        order = self.found.order[column]
+        total = self.flexibility[0].matrix(roll_1, order) + self.flexibility[1].matrix(roll_2, -order)
+        for part, k in zip(parts, near, strict=True):
+            if part[5] is not None:
+                total[np.ix_(column == k, column == k)] = part[5]
+        return {"flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column}
+
+    def _row(self, i, column, corner):
+        """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
+        found = self.found
+        if corner == 0:
+            single = (found.roll_1, found.roll_2, found.gap, self.radius)
+            roll_1, roll_2, gap, radius = (np.array([values[i, column]]) for values in single)
+            return roll_1, roll_2, gap, np.array([sum(self.coefficients)]), radius, None
+        tip, flank = (0, 1) if corner == 1 else (1, 0)
+        gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
+        hats = self.flexibility[tip].tip_of(tooth[tip])
+        roll = np.sqrt(2 * gears[tip].r_b * hats.arc)
+        gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
+        there = np.isfinite(met) & (met < gears[flank].roll_a)
+        keep = np.ix_(there, there)
+        arc = met[there] ** 2
+        limits = self.flexibility[flank].limits
+        middle = np.clip((arc[:, None] + arc[None, :]) / 2, limits[0] ** 2, limits[1] ** 2)
+        mate = self.flexibility[flank].near_of(tooth[flank])(middle)
+        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots[:, there], hats.knots[:, there])
+        rolls = (roll[there], met[there]) if corner == 1 else (met[there], roll[there])
+        zero = np.zeros(there.sum())
+        return *rolls, gap[there], zero, zero + 1.0, hats.influence[keep] + mate
