@@ -5,6 +5,7 @@ import importlib
 _HOME = {
     "Gear": "geometry.gear",
     "GearPair": "geometry.pair",
+    "PlanetarySet": "geometry.planetary",
     "Material": "gearfe.material",
     "StiffnessCurve": "gearfe.curve",
     "compare": "gearfe.compare",

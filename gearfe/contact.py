@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.tooth import arc_at, roll_at_arc
+
 from .hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
 from .sharing import line_contact
 
@@ -53,7 +55,7 @@ class Mesh:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        self.radius = found.roll_1 * found.roll_2 / (found.roll_1 + found.roll_2)
+        self.radius = pair.relative_radius(found.roll_1, found.roll_2)
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -90,7 +92,7 @@ class Mesh:
             return corner
         reach = CORNER * half_width(line_load, self.radius[i, near], self.modulus)
         for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
-            corner[(gear.roll_a**2 - roll[i, near] ** 2) / (2 * gear.r_b) < reach] = number
+            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll[i, near]) < reach] = number
         return corner
 
     def _contacts(self, i, near, corner):
@@ -124,13 +126,13 @@ class Mesh:
         tip, flank = (0, 1) if corner == 1 else (1, 0)
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self.flexibility[tip].tip_of(tooth[tip])
-        roll = np.sqrt(2 * gears[tip].r_b * hats.arc)
+        roll = roll_at_arc(gears[tip], hats.arc)
         gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
-        there = np.isfinite(met) & (met < gears[flank].roll_a)
+        there = np.isfinite(met)
+        there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)
-        arc = met[there] ** 2
-        limits = self.flexibility[flank].limits
-        middle = np.clip((arc[:, None] + arc[None, :]) / 2, limits[0] ** 2, limits[1] ** 2)
+        arc = arc_at(gears[flank], met[there])
+        middle = np.clip((arc[:, None] + arc[None, :]) / 2, *self.flexibility[flank].limits)
         mate = self.flexibility[flank].near_of(tooth[flank])(middle)
         mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots[:, there], hats.knots[:, there])
         rolls = (roll[there], met[there]) if corner == 1 else (met[there], roll[there])

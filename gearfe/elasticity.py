@@ -23,7 +23,7 @@ class Body:
         Name of the clamped boundary.
     """
 
-    def __init__(self, mesh, material, *, state="plane strain", held="bore"):
+    def __init__(self, mesh, material, *, state="plane strain", held="held"):
         if held not in (mesh.boundaries or {}):
             raise ValueError(f"no boundary {held!r}; this mesh has {', '.join(mesh.boundaries or {})}")
         self.mesh, self.material, self.state = mesh, material, state

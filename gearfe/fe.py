@@ -14,8 +14,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix
 
+from geometry.gear import Gear
 from geometry.mesher import section, stations
-from geometry.tooth import flank_normal
+from geometry.tooth import arc_at, flank_normal
 
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 from .hertz import half_plane, hat_logarithm
@@ -29,11 +30,15 @@ TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be reso
 
 @dataclass(frozen=True, slots=True)
 class Hats:
-    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm], roll at their centroids [mm], load columns."""
+    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm] and load columns."""
 
     knots: np.ndarray
-    roll: np.ndarray
     load: object
+
+    @property
+    def arc(self):
+        """Centroids [mm]."""
+        return self.knots.mean(axis=0)
 
 
 def hats(section_, tooth, *, corner=False):
@@ -42,7 +47,7 @@ def hats(section_, tooth, *, corner=False):
     With `corner`, a last, one-sided hat has its top at the tip corner.
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
-    arc = roll**2 / (2 * gear.r_b)
+    arc = arc_at(gear, roll)
     knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
     if corner:
         knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
@@ -53,7 +58,7 @@ def hats(section_, tooth, *, corner=False):
         return np.maximum(np.minimum((s - start) / (top - start), fall), 0.0) * 2 / (stop - start)
 
     first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
-    return Hats(knots, np.sqrt(2 * gear.r_b * knots.mean(axis=0)), flank_load(section_, tooth, height, first, 2 * SPAN))
+    return Hats(knots, flank_load(section_, tooth, height, first, 2 * SPAN))
 
 
 def flank_load(section_, tooth, pressure, first, count):
@@ -80,7 +85,7 @@ def flank_load(section_, tooth, pressure, first, count):
     rolls = (roll[:-1, None] + roll[1:, None]) / 2 + (roll[1:, None] - roll[:-1, None]) / 2 * points
     normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z)
     edge = np.asarray(first)[:, None] + np.arange(count)
-    height = pressure(rolls[edge] ** 2 / (2 * gear.r_b))
+    height = pressure(arc_at(gear, rolls[edge]))
     force = -np.einsum("np,hep,hep,dhep->nhed", shapes, height, length[edge], normal[:, edge])
     rows = 2 * nodes[:, edge][..., None] + np.arange(2)
     columns = np.broadcast_to(np.arange(edge.shape[0])[:, None, None], force.shape)
@@ -101,20 +106,21 @@ class Flexibility:
     Attributes
     ----------
     near : dict of int to spline
-        Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over roll squared.
+        Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over the arc of `geometry.tooth.arc_at`.
     far : dict of (int, int) to spline
-        Influence of a load on one tooth at another, over both rolls squared; the second tooth is further to the loaded
+        Influence of a load on one tooth at another, over both arcs; the second tooth is further to the loaded
         side.
     tip : dict of int to TipHats
         The flank next to the tip corner of each solved tooth, hat by hat.
     limits : tuple of float
-        Rolls between which the splines hold [mm]; contacts outside are clamped to them.
+        Arcs between which the splines hold [mm]; contacts outside are clamped to them.
     dofs : int
         Unknowns of the solve.
     healthy : Flexibility or None
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     """
 
+    gear: Gear
     near: dict
     far: dict
     tip: dict
@@ -142,7 +148,7 @@ class Flexibility:
 
         Contacts on one tooth get no influence on each other here: see `TipHats`.
         """
-        arc = np.clip(roll, *self.limits) ** 2
+        arc = np.clip(arc_at(self.gear, roll), *self.limits)
         n = len(teeth)
         out = np.zeros((*np.shape(roll), n))
         for i in range(n):
@@ -212,14 +218,14 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     far = {}
     for tooth in range(1, neighbours + 1):
         read = hats(mesh, tooth)
-        far[0, tooth] = RectBivariateSpline(own.roll**2, read.roll**2, (read.load.T @ moved).T)
-    return Flexibility({0: near}, far, {0: tip}, (own.roll[0], own.roll[-2]), moved.shape[0])
+        far[0, tooth] = RectBivariateSpline(own.arc, read.arc, (read.load.T @ moved).T)
+    return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), moved.shape[0])
 
 
 def own_tooth(gear, own, influence, coefficient):
     """Spline S(s, s) of one tooth, and its `TipHats`, from the influence matrix of its hats."""
     smooth = np.diag(influence - coefficient * hat_logarithm(own.knots, own.knots))
-    zone = own.knots[1] > gear.roll_a**2 / (2 * gear.r_b) - TIP_ZONE * gear.m_n
+    zone = own.knots[1] > arc_at(gear, gear.roll_a) - TIP_ZONE * gear.m_n
     block = influence[np.ix_(zone, zone)]
-    tip = TipHats(own.knots.mean(axis=0)[zone], own.knots[:, zone], (block + block.T) / 2)
-    return CubicSpline(own.roll[:-1] ** 2, smooth[:-1]), tip
+    tip = TipHats(own.arc[zone], own.knots[:, zone], (block + block.T) / 2)
+    return CubicSpline(own.arc[:-1], smooth[:-1]), tip

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.sparse import hstack
 
 from geometry.mesher import section, stations
+from geometry.tooth import arc_at, roll_at_arc
 
 from .elasticity import Body
 from .fe import EDGES, flank_load
@@ -86,34 +87,35 @@ def full_contact(pair, line_load, phase, materials, *, state="plane strain", per
     hat, approach = share((total + total.T) / 2, np.concatenate(gaps), line_load)
     hat = np.split(hat, np.cumsum([g.size for g in gaps])[:-1])
     means = [[h @ z / h.sum() if h.sum() > 0 else np.nan for h, z in zip(hat, zones, strict=True)] for zones in (first, second)]
-    rolls = [np.sqrt(2 * g.r_b * np.array(mean)) for g, mean in zip((pair.gear_1, pair.gear_2), means, strict=True)]
+    rolls = [roll_at_arc(g, mean) for g, mean in zip((pair.gear_1, pair.gear_2), means, strict=True)]
     return ContactZone(approach, np.array([h.sum() for h in hat]), *rolls, tuple(hat), tuple(first), order)
 
 
 def _zone(pair, found, k, line_load, modulus, per_width, reach, nominal):
     """Arcs of the hat tops on both flanks [mm] and their gaps [mm], pinion arc rising."""
     roll_1, roll_2 = found.roll_1[0, k], found.roll_2[0, k]
-    a = float(half_width(line_load, roll_1 * roll_2 / (roll_1 + roll_2), modulus))
-    driver = roll_2 < pair.gear_2.roll_a - 1e-9
+    a = float(half_width(line_load, pair.relative_radius(roll_1, roll_2), modulus))
+    driver = abs(roll_2 - pair.gear_2.roll_a) > 1e-9
     gear, roll = (pair.gear_1, roll_1) if driver else (pair.gear_2, roll_2)
-    middle, top = roll**2 / (2 * gear.r_b), gear.roll_a**2 / (2 * gear.r_b)
+    middle, top = arc_at(gear, roll), arc_at(gear, gear.roll_a)
     arc = middle + a / per_width * np.arange(-round(2 * reach * per_width), round(reach * per_width) + 1)
     if top - middle > reach * a:
         arc = arc[arc >= middle - (reach + 1e-9) * a]
     else:
         arc = arc + max(top - middle - a / per_width * np.floor((top - middle) * per_width / a), 0.0)
-    arc = arc[(arc <= top + 1e-9 * a) & (arc > gear.roll_f**2 / (2 * gear.r_b))]
-    gap, met = pair.opposite(np.sqrt(2 * gear.r_b * arc), np.full(arc.shape, nominal), driver=driver)
+    arc = arc[(arc <= top + 1e-9 * a) & (arc > arc_at(gear, gear.roll_f))]
+    gap, met = pair.opposite(roll_at_arc(gear, arc), np.full(arc.shape, nominal), driver=driver)
     other = pair.gear_2 if driver else pair.gear_1
-    there = np.isfinite(met) & (met <= other.roll_a) & (met > other.roll_f)
-    arc, opposite, gap = arc[there], met[there] ** 2 / (2 * other.r_b), gap[there]
+    opposite = arc_at(other, np.nan_to_num(met, nan=-1.0))
+    there = np.isfinite(met) & (opposite <= arc_at(other, other.roll_a)) & (opposite > arc_at(other, other.roll_f))
+    arc, opposite, gap = arc[there], opposite[there], gap[there]
     return (arc, opposite, gap) if driver else (opposite[::-1], arc[::-1], gap[::-1])
 
 
 def _influence(gear, material, state, zones, refine):
     """Influence matrix [mm per N/mm] between hats at arcs ``zones[tooth]`` on the loaded flanks."""
     m = gear.m_n / refine
-    low, high = gear.roll_f**2 / (2 * gear.r_b), gear.roll_a**2 / (2 * gear.r_b)
+    low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     rolls, loads = {}, {}
     for tooth, tops in zones.items():
         rising = np.sort(tops)
@@ -122,12 +124,12 @@ def _influence(gear, material, state, zones, refine):
         outside = stations(
             gear, EDGES["flank"] * m, tip=step[-1], low=EDGES["low"] * m, patches=[(fine[0], fine[-1], step.min() / 2)]
         )
-        arc = outside**2 / (2 * gear.r_b)
+        arc = arc_at(gear, outside)
         margin = step.min() / 3
         arc = arc[(arc < fine[0] - margin) | (arc > fine[-1] + margin)]
         arc = np.sort(np.concatenate([arc, fine]))
         arc[0], arc[-1] = low, high
-        rolls[tooth] = np.sqrt(2 * gear.r_b * arc)
+        rolls[tooth] = roll_at_arc(gear, arc)
     mesh = section(gear, rolls, fillet_size=EDGES["fillet"] * m, size=EDGES["near"] * m, far_size=EDGES["far"] * m)
     for tooth, tops in zones.items():
         loads[tooth] = _hats_at(mesh, tooth, tops)
@@ -142,7 +144,7 @@ def _hats_at(mesh, tooth, tops):
     sort = np.argsort(tops)
     rising = tops[sort]
     step = np.diff(rising)
-    top_arc = gear.roll_a**2 / (2 * gear.r_b)
+    top_arc = arc_at(gear, gear.roll_a)
     start = rising - np.concatenate([step[:1], step])
     stop = np.minimum(rising + np.concatenate([step, step[-1:]]), top_arc)
     area = (stop - start) / 2

@@ -6,7 +6,7 @@ import numpy as np
 from skfem import MeshTri
 
 from geometry.mesher import section, stations
-from geometry.tooth import flank
+from geometry.tooth import arc_at, flank, roll_at_arc
 
 from .elasticity import Body, edge_nodes, edge_shapes
 from .fe import EDGES, flank_load
@@ -16,11 +16,10 @@ STRESS_EDGES = {"flank": 0.1, "fillet": 0.02, "near": 0.4, "far": 0.9}  # in mod
 
 def _load_at(gear, radius):
     """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
-    if not gear.r_form <= radius <= gear.r_a:
-        raise ValueError(
-            f"radius = {radius} mm is not on the involute flank: give {gear.r_form:.6g} <= radius <= {gear.r_a:.6g} mm"
-        )
-    return (radius**2 - gear.r_b**2) / (2 * gear.r_b)
+    low, high = sorted((gear.r_form, gear.r_a))
+    if not low <= radius <= high:
+        raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
+    return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
@@ -68,7 +67,7 @@ def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane s
     C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern (1953).
     """
     arc = _load_at(gear, radius)
-    roll = math.sqrt(2 * gear.r_b * arc)
+    roll = float(roll_at_arc(gear, arc))
     if at == "surface":
         from .fe import flexibility
 
@@ -77,7 +76,7 @@ def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane s
         raise ValueError(f"at = {at!r}, but it must be 'centreline' or 'surface'")
     edges = EDGES | {"flank": 0.1}
     _, body, moved = _solve(gear, material, state, arc, 0.02 * gear.m_n, edges, refine)
-    angle = roll / gear.r_b - gear.base_half_angle
+    angle = gear.outward * roll / gear.r_b - gear.base_half_angle
     far, turn = flank(gear, roll)
     crossing = far * math.cos(turn) - far * math.sin(turn) * math.tan(angle)
     return float(_displacement(body, moved, 0.0, crossing) @ [-math.cos(angle), -math.sin(angle)])

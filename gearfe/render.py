@@ -8,6 +8,7 @@ import sys
 import numpy as np
 
 from geometry.mesher import section, stations
+from geometry.tooth import arc_at
 
 from .elasticity import Body, von_mises
 from .export import written
@@ -148,26 +149,28 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0):
     modulus = contact_modulus(materials)
     grids, outlines, root = [], [], 0.0
     rolls = found.roll_1[0], found.roll_2[0]
-    for gear, material, roll, turn, centre, ahead in zip(
-        (pair.gear_1, pair.gear_2), materials, rolls, pair.turn(nominal), (0.0, pair.a), (1, -1), strict=True
+    mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
+    for gear, material, roll, turn, centre, mirror, ahead in zip(
+        (pair.gear_1, pair.gear_2), materials, rolls, pair.turn(nominal), centres, mirrors, (1, -1), strict=True
     ):
         loads = {}
         for i, k in carrying:
-            radius = found.roll_1[0, i] * found.roll_2[0, i] / (found.roll_1[0, i] + found.roll_2[0, i])
+            radius = pair.relative_radius(found.roll_1[0, i], found.roll_2[0, i])
             loads[ahead * k] = (roll[i], forces[k], float(half_width(forces[k], radius, modulus)))
         mesh, moved, stress = _loaded_gear(gear, material, loads, refine)
         shape = mesh.mesh.doflocs
         cos, sin = math.cos(turn), math.sin(turn)
-        points = np.array([cos * shape[0] + sin * shape[1], cos * shape[1] - sin * shape[0] + centre, 0 * shape[0]]).T
+        x, y = mirror * shape[0], shape[1]
+        points = np.array([cos * x + sin * y, cos * y - sin * x + centre, 0 * x]).T
         cells = np.vstack([mesh.mesh.t[:3], mesh.mesh.nvertices + mesh.mesh.t2f]).T
         grid = pyvista.UnstructuredGrid({pyvista.CellType.QUADRATIC_TRIANGLE: cells}, points)
         mises = von_mises(stress, material.nu, "plane strain")
         grid.point_data[STRESS] = mises
-        u = moved.reshape(-1, 2)
+        u = moved.reshape(-1, 2) * [mirror, 1]
         grid.point_data["displacement [mm]"] = np.array(
             [cos * u[:, 0] + sin * u[:, 1], cos * u[:, 1] - sin * u[:, 0], 0 * u[:, 0]]
         ).T
-        edges = np.concatenate([mesh.mesh.boundaries["rim"], mesh.mesh.boundaries["bore"]])
+        edges = np.concatenate([mesh.mesh.boundaries["rim"], mesh.mesh.boundaries["held"]])
         start, stop = mesh.mesh.facets[:, edges]
         middle = mesh.mesh.nvertices + edges
         pieces = np.vstack([np.array([start, middle]).T, np.array([middle, stop]).T])
@@ -183,8 +186,8 @@ def _loaded_gear(gear, material, loads, refine):
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
     rolls, arcs = {}, {}
     for tooth, (roll, _, a) in loads.items():
-        top = gear.roll_a**2 / (2 * gear.r_b)
-        arcs[tooth] = min(roll**2 / (2 * gear.r_b), top - a)
+        top = arc_at(gear, gear.roll_a)
+        arcs[tooth] = min(arc_at(gear, roll), top - a)
         rolls[tooth] = stations(gear, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
     mesh = section(gear, rolls, fillet_size=edge["fillet"] / 2, size=edge["near"] / 2, far_size=edge["far"])
     body = Body(mesh.mesh, material)

@@ -12,7 +12,7 @@ import numpy as np
 from skfem import MeshTri, MeshTri2
 
 from .gear import Gear
-from .tooth import fillet_length, flank, root_curve, root_half_angle
+from .tooth import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
 GROWTH = 0.25  # of the edge length per length, away from fine places of a flank
@@ -22,7 +22,8 @@ GROWTH = 0.25  # of the edge length per length, away from fine places of a flank
 class Section:
     """A meshed gear section.
 
-    `mesh` is a `skfem.MeshTri2` [mm] with boundaries ``bore`` and ``rim`` (the whole toothed outline). `flank[k]` holds
+    `mesh` is a `skfem.MeshTri2` [mm] with boundaries ``held`` (bore, or outside of
+    a ring) and ``rim`` (the whole toothed outline). `flank[k]` holds
     the vertices of the loaded flank of tooth k from root to tip and `roll[k]` their roll lengths [mm]; `fillet[k]`
     those of the fillet below it, from the flank to the root.
     """
@@ -66,7 +67,7 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
     flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle].
     The number of intervals is a multiple of `span`.
     """
-    start, stop = gear.roll_f**2 / (2 * gear.r_b), gear.roll_a**2 / (2 * gear.r_b)
+    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [(first, last, size) for first, last, size in patches]
     fine += [(stop, stop, tip or spacing), (start, start, low or spacing)]
     smallest = min(size for _, _, size in fine)
@@ -79,7 +80,7 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
     intervals = span * max(1, math.ceil(count[-1] / span - 1e-6))
     placed = np.interp(np.linspace(0, count[-1], intervals + 1), count, arc)
     placed[0], placed[-1] = start, stop
-    return np.sqrt(np.maximum(2 * gear.r_b * placed, 0.0))
+    return roll_at_arc(gear, placed)
 
 
 def section(gear, rolls, *, fillet_size, size, far_size, teeth=None):
@@ -110,16 +111,18 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None):
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
     radius, angle, where = _outline(gear, rolls, fillet_size, size, far_size, teeth)
     rim = np.array([radius * np.sin(angle), radius * np.cos(angle)])
-    bore = _bore(gear, min(0.35 * (gear.r_f - gear.r_bore), 2 * math.pi * gear.r_bore / 16))
-    linear = _fill(rim[:, ::2], bore[:, ::2])
-    mesh = _curve(linear, (rim, bore))
+    held = _held(gear)
+    linear = _fill(rim[:, ::2], held[:, ::2], ring=gear.internal)
+    mesh = _curve(linear, (rim, held))
     return Section(gear, mesh, {k: v[0] for k, v in where.items()}, rolls, {k: v[1] for k, v in where.items()})
 
 
-def _bore(gear, size):
-    count = max(12, math.ceil(2 * math.pi * gear.r_bore / size))
+def _held(gear):
+    """The held circle, bore or outside of a ring: vertices at even places, edge middles at odd."""
+    size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
+    count = max(12, math.ceil(2 * math.pi * gear.held / size))
     angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)
-    return gear.r_bore * np.array([np.sin(angle), np.cos(angle)])
+    return gear.held * np.array([np.sin(angle), np.cos(angle)])
 
 
 def _doubled(values):
@@ -138,7 +141,7 @@ def _even(length, size, least):
 def _half(gear, roll, fillet_size, size):
     """Half tooth from tip middle to root middle: radius, angle, vertex ranges of flank and fillet."""
     width = gear.half_thickness(gear.r_a) * gear.r_a
-    corner = (roll[-1] ** 2 - roll[-2] ** 2) / (2 * gear.r_b)
+    corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
     tip = _doubled(1 - _graded(corner, size, width)[::-1] / width)
     # by roll angle, and by arc near the base circle, where roll ~ sqrt(arc)
     middle = _doubled(roll[::-1])
@@ -195,17 +198,17 @@ def _no_tooth(gear, size):
     return np.full(arc.size, gear.r_f), arc, None, None
 
 
-def _fill(rim, bore):
-    """Triangulate between the two closed vertex loops; vertices keep their order: rim, bore, inside."""
+def _fill(rim, held, *, ring):
+    """Triangulate between the two closed vertex loops; vertices keep their order: rim, held, inside."""
     with gmsh_session() as gmsh:
         geo = gmsh.model.geo
         loops, tag = [], 0
-        for points in (rim, bore):
+        for points in (rim, held):
             tags = [geo.addPoint(x, y, 0.0) for x, y in points.T]
             lines = [geo.addLine(a, b) for a, b in zip(tags, tags[1:] + tags[:1], strict=True)]
             loops.append(geo.addCurveLoop(lines))
             tag = lines[-1]
-        surface = geo.addPlaneSurface(loops)
+        surface = geo.addPlaneSurface(loops[::-1] if ring else loops)  # the outer loop first
         geo.synchronize()
         for line in range(1, tag + 1):
             gmsh.model.mesh.setTransfiniteCurve(line, 2)
@@ -232,7 +235,7 @@ def _curve(linear, loops):
         for i, pair in zip(linear.boundary_facets(), np.sort(linear.facets[:, linear.boundary_facets()].T), strict=True)
     }
     names, first = {}, 0
-    for name, points in zip(("rim", "bore"), loops, strict=True):
+    for name, points in zip(("rim", "held"), loops, strict=True):
         count = points.shape[1] // 2
         ring = first + np.arange(count)
         edges = np.array([facets[min(a, b), max(a, b)] for a, b in zip(ring, np.roll(ring, -1), strict=True)])

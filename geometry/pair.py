@@ -1,13 +1,17 @@
 """`GearPair`: where two gears touch, and how far apart their flanks are where they do not."""
 
 import math
-from dataclasses import dataclass
+import warnings
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .gear import Gear
+from .interference import overlap
 from .involute import inv, inverse_inv
-from .tooth import cartesian, fillet, flank, form_point
+from .tooth import cartesian, flank
+
+OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,23 +33,26 @@ class Contacts:
 
 @dataclass(frozen=True, slots=True)
 class GearPair:
-    """Two meshing external gears; gear 1 (the pinion) drives.
+    """Two meshing gears; gear 1 (the pinion, external) drives gear 2, an external gear or a ring.
 
     The line of action is measured from its tangent point on the pinion's base circle, so that the abscissa of a contact
     is the pinion's roll length. Phase 0 is a tooth pair entering at the start of the path of contact (lower end of the
     pinion's active flank); phase 1 is one transverse base pitch later.
 
+    A ring whose tip would reach below the pinion's form point is trimmed to it, with a warning; `notes` says how the contact
+    ratio changed.
+
     Parameters
     ----------
     gear_1, gear_2 : Gear
-        Pinion and wheel, of the same basic rack and helix angle.
+        Pinion and wheel or ring, of the same basic rack and helix angle.
     a : float, optional
         Centre distance [mm]; default: the one without backlash.
 
     Raises
     ------
     ValueError
-        If the gears do not match, or cannot mesh continuously (contact ratio < 1) at this centre distance.
+        If the gears do not match, interfere, or cannot mesh continuously (contact ratio < 1) at this centre distance.
 
     Examples
     --------
@@ -58,69 +65,120 @@ class GearPair:
     gear_1: Gear
     gear_2: Gear
     a: float | None = None
+    notes: tuple = field(default=(), init=False)
 
     def __post_init__(self):
-        """Refuse gears that cannot mesh."""
+        """Refuse gears that cannot mesh; trim a ring's tip."""
         one, two = self.gear_1, self.gear_2
+        if one.internal:
+            raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
         for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
             first, second = getattr(one, name), getattr(two, name)
             if not math.isclose(first, second, rel_tol=1e-9):
                 raise ValueError(f"{name} = {first} and {second} {unit}: gears in mesh need the same one")
         if not math.isclose(abs(one.beta), abs(two.beta), rel_tol=1e-9, abs_tol=1e-12):
             raise ValueError(f"beta = {one.beta} and {two.beta} rad: gears in mesh need the same helix angle")
+        if two.internal and two.z <= one.z:
+            raise ValueError(f"z = {one.z} does not fit into a ring of z = {two.z}: the ring needs more teeth")
         if self.a is None:
-            shift = (one.x + two.x) * math.tan(one.alpha_n)
-            alpha_w = inverse_inv(inv(one.alpha_t) + 2 * shift / (one.z + two.z))
-            object.__setattr__(self, "a", (one.r_b + two.r_b) / math.cos(alpha_w))
+            object.__setattr__(self, "a", free_centre_distance(one, two))
         elif not math.isfinite(self.a):
             raise ValueError(f"a = {self.a}, but a centre distance is a finite length [mm]")
+        self._check_distance()
+        if two.internal:
+            self._trim_ring()
         self._check_mesh()
 
-    def _check_mesh(self):
+    def _check_distance(self):
         one, two = self.gear_1, self.gear_2
-        if self.a <= one.r_b + two.r_b:
-            raise ValueError(f"a = {self.a} mm is too small: the base circles touch at {one.r_b + two.r_b:.6g} mm")
+        least = self.outward * one.r_b + two.r_b
+        wrong = "large" if two.internal else "small"
+        if self.a <= least:
+            raise ValueError(f"a = {self.a} mm is too small: the line of action needs more than {least:.6g} mm")
         for tip, root in ((one, two), (two, one)):
-            if tip.r_a + root.r_f >= self.a:
+            clearance = self._clearance(tip, root)
+            if clearance <= 0:
                 raise ValueError(
-                    f"a = {self.a:.6g} mm is too small: the tip circle of z = {tip.z} reaches the root circle of "
-                    f"z = {root.z} at a = {tip.r_a + root.r_f:.6g} mm; increase a or lower the addendum"
+                    f"a = {self.a:.6g} mm is too {wrong}: the tip circle of z = {tip.z} reaches the root circle of z = {root.z} "
+                    f"({-clearance:.4g} mm deep); change a or lower the addendum"
                 )
-        if self.backlash < -1e-9 * self.a:
+        if self.backlash < -1e-4 * one.m_n:
             raise ValueError(
-                f"a = {self.a:.6g} mm is too small: the teeth overlap by {-self.backlash:.4g} mm along the line of action; "
-                "give a=None for the centre distance without backlash"
+                f"a = {self.a:.6g} mm is too {wrong}: the teeth overlap by {-self.backlash:.4g} mm along the line "
+                "of action; give a=None for the centre distance without backlash"
             )
+
+    def _clearance(self, tip, root):
+        """Radial distance [mm] between a tip circle and the mate's root circle."""
+        if not self.gear_2.internal:
+            return self.a - tip.r_a - root.r_f
+        return root.r_f - self.a - tip.r_a if root.internal else tip.r_a - self.a - root.r_f
+
+    def _trim_ring(self):
+        one, two = self.gear_1, self.gear_2
+        lowest = one.roll_f + self.length
+        if two.roll_a >= lowest:
+            return
+        before = self.eps_alpha_of(one.roll_a, two.roll_a)
+        cut = math.hypot(two.r_b, lowest) - two.r_a
+        object.__setattr__(self, "gear_2", replace(two, addendum=two.addendum - cut / two.m_n))
+        note = (
+            f"the ring's tip (z = {two.z}) was trimmed by {cut:.4g} mm, its addendum from {two.addendum:g} to "
+            f"{self.gear_2.addendum:.4g} m_n: it would reach into the fillet of z = {one.z}; contact ratio {before:.4g} -> "
+            f"{self.eps_alpha:.4g}"
+        )
+        object.__setattr__(self, "notes", (*self.notes, note))
+        warnings.warn(note, stacklevel=4)
+
+    def _check_mesh(self):
         if not self.eps_alpha >= 1:
             raise ValueError(
                 f"contact ratio {self.eps_alpha:.4g} < 1 at a = {self.a:.6g} mm: the teeth lose contact; "
-                "reduce a, or change addendum and profile shift"
+                "change a, addendum or profile shift"
             )
-        for tip, root, tip_name in ((two, one, "gear 2"), (one, two, "gear 1")):
-            overlap = _tip_overlap(tip, root, self.a)
-            if overlap > 1e-3 * root.m_n:
-                raise ValueError(
-                    f"interference: the tip of {tip_name} (z = {tip.z}) cuts {overlap:.4g} mm into the fillet of z = {root.z}; "
-                    "increase a, or reduce the addendum"
-                )
+        start, _ = self.path
+        depth = overlap(self, [start + k * self.p_bt / 8 for k in range(8)])
+        if depth > OVERLAP * self.gear_1.m_n:
+            raise ValueError(
+                f"interference: the outlines of z = {self.gear_1.z} and {self.gear_2.z} cut {depth:.4g} mm into each other "
+                "outside the path of contact; reduce an addendum, change a, or (rings) the difference of the tooth numbers"
+            )
+
+    @property
+    def outward(self):
+        """+1 for two external gears, -1 with a ring."""
+        return self.gear_2.outward
+
+    @property
+    def centre_2(self):
+        """Height of gear 2's centre over gear 1's [mm]: the pitch point is above gear 1."""
+        return self.outward * self.a
 
     @property
     def alpha_w(self):
         """Working transverse pressure angle [rad]."""
-        return math.acos((self.gear_1.r_b + self.gear_2.r_b) / self.a)
+        return math.acos((self.gear_1.r_b * self.outward + self.gear_2.r_b) / self.a)
 
     @property
     def length(self):
         """Distance between the tangent points of the line of action on the two base circles [mm]."""
         return self.a * math.sin(self.alpha_w)
 
+    def mate_roll(self, roll_1):
+        """Roll length on gear 2 [mm] where the pinion touches at `roll_1`, on the line of action."""
+        return self.length - self.outward * np.asarray(roll_1)
+
+    def relative_radius(self, roll_1, roll_2):
+        """Relative radius of curvature [mm]."""
+        return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
+
     @property
     def backlash(self):
         """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
         one, two = self.gear_1, self.gear_2
-        free = 2 * math.pi / one.z - 2 * (one.base_half_angle - inv(self.alpha_w))
-        used = 2 * (two.base_half_angle - inv(self.alpha_w))
-        return one.r_b * free - two.r_b * used
+        tooth_1 = 2 * (one.base_half_angle - inv(self.alpha_w))
+        tooth_2 = 2 * (two.base_half_angle - two.outward * inv(self.alpha_w))
+        return one.r_b * (2 * math.pi / one.z - tooth_1) - two.r_b * tooth_2
 
     @property
     def p_bt(self):
@@ -130,10 +188,16 @@ class GearPair:
     @property
     def path(self):
         """Start and end of the path of contact as roll lengths of the pinion [mm]."""
-        one, two = self.gear_1, self.gear_2
-        start = max(self.length - two.roll_a, one.roll_f)
-        end = min(one.roll_a, self.length - two.roll_f)
-        return start, end
+        return self._path(self.gear_1.roll_a, self.gear_2.roll_a)
+
+    def _path(self, tip_1, tip_2):
+        first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
+        return max(first, self.gear_1.roll_f), min(last, tip_1)
+
+    def eps_alpha_of(self, tip_1, tip_2):
+        """Contact ratio if the flanks ended at these roll lengths [mm]."""
+        first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
+        return (min(last, tip_1) - first) / self.p_bt
 
     @property
     def eps_alpha(self):
@@ -159,20 +223,19 @@ class GearPair:
     def curvature_radii(self, phase):
         """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
         roll = self.path[0] + np.asarray(phase) * self.p_bt
-        return roll, self.length - roll
+        return roll, self.mate_roll(roll)
 
     def turn(self, nominal):
-        """Clockwise angles [rad] of tooth 0 of both gears (centres at 0 and +y a) for a contact at `nominal` [mm]."""
-        point = self._point(nominal)
-        turns = []
-        for gear, centre, roll in ((self.gear_1, 0.0, nominal), (self.gear_2, self.a, self.length - nominal)):
-            seen = np.arctan2(point[0], point[1] - centre)
-            turns.append(seen - flank(gear, roll)[1])
-        return tuple(turns)
+        """Clockwise angles [rad] of tooth 0 of both gears for a contact at `nominal` [mm] on the line of action.
 
-    def _point(self, nominal):
+        Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own
+        frame (`geometry.tooth`) is mirrored in place.
+        """
         along = np.asarray(nominal) - self.gear_1.r_b * math.tan(self.alpha_w)
-        return np.array([along * math.cos(self.alpha_w), self.pitch_radius_1 + along * math.sin(self.alpha_w)])
+        x, y = along * math.cos(self.alpha_w), self.pitch_radius_1 + along * math.sin(self.alpha_w)
+        turn_1 = np.arctan2(x, y) - flank(self.gear_1, nominal)[1]
+        turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
+        return turn_1, turn_2
 
     def contacts(self, phase, *, extended=True):
         """Contacts of all tooth pairs at `phase` (array), see `Contacts`.
@@ -188,7 +251,7 @@ class GearPair:
         nominal = start + (phase[:, None] + order) * self.p_bt
         slack = 1e-9 * self.p_bt
         inside = (nominal >= start - slack) & (nominal < end + slack)
-        roll_1, roll_2 = nominal.copy(), self.length - nominal
+        roll_1, roll_2 = nominal.copy(), self.mate_roll(nominal)
         gap = np.where(inside, 0.0, np.inf)
         if extended:
             self._corner(nominal, nominal > end + slack, roll_1, roll_2, gap, driver=True)
@@ -199,7 +262,8 @@ class GearPair:
         """Fill in the pairs `where` a tip corner touches: the pinion's after the end, the wheel's before the start."""
         tip, other = (self.gear_1, self.gear_2) if driver else (self.gear_2, self.gear_1)
         distance, roll = self.opposite(np.full(nominal.shape, tip.roll_a), nominal, driver=driver)
-        meets = where & (roll <= other.roll_a) & (roll >= other.roll_f)
+        low, high = sorted((other.roll_f, other.roll_a))
+        meets = where & (roll >= low) & (roll <= high)
         roll_tip[meets] = tip.roll_a
         roll_flank[meets] = roll[meets]
         gap[meets] = np.maximum(distance[meets], 0.0)
@@ -220,38 +284,22 @@ class GearPair:
             Distance to the other flank along the line of action, i.e. the rotation that closes it times the base radius
             [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
         """
-        tip, other = (self.gear_1, self.gear_2) if driver else (self.gear_2, self.gear_1)
-        shift = -self.a if driver else self.a
-        own, turned = self.turn(nominal) if driver else self.turn(nominal)[::-1]
-        radius, angle = flank(tip, roll)
-        x, y = cartesian(radius, own + angle)
-        away, seen = np.hypot(x, y + shift), np.arctan2(x, y + shift)
-        met = np.sqrt(np.where(away >= other.r_b, away**2 - other.r_b**2, np.nan))
-        behind = seen - turned - flank(other, met)[1]
-        return other.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met
+        gears, centres, mirror = (self.gear_1, self.gear_2), (0.0, self.centre_2), (1, self.outward)
+        own, other = (0, 1) if driver else (1, 0)
+        turns = self.turn(nominal)
+        radius, angle = flank(gears[own], roll)
+        x, y = cartesian(radius, turns[own] + mirror[own] * angle)
+        y = y + centres[own] - centres[other]
+        away, seen = np.hypot(x, y), np.arctan2(x, y)
+        mate = gears[other]
+        met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
+        behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
+        return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met
 
 
-def _tip_overlap(tip, root, a):
-    """How deep [mm] the tip corner of one gear cuts into the fillet of the other, at worst.
-
-    The tip corner's path in the root gear's frame is compared with the fillet at equal radii.
-    """
-    pair_turn = tip.r_b / root.r_b
-    alpha_w = math.acos((tip.r_b + root.r_b) / a)
-    turn = np.linspace(-0.9, 0.9, 721) * 2 * math.pi / tip.z
-    # both gears meshing at the pitch point at turn = 0; flanks in touch there
-    tip_angle = flank(tip, tip.roll_a)[1] - flank(tip, tip.r_b * math.tan(alpha_w))[1]
-    x, y = cartesian(tip.r_a, tip_angle + turn)
-    seen = np.arctan2(x, a - y)
-    radius = np.hypot(x, a - y)
-    # the contact flanks face each other: mirror the root gear's frame, which turns the other way
-    place = -seen + pair_turn * turn
-    phi = np.linspace(form_point(root)[0], math.pi / 2, 300)
-    depth_r, depth_angle = fillet(root, phi)
-    keep = (radius > depth_r.min()) & (radius < depth_r.max())
-    if not keep.any():
-        return 0.0
-    order = np.argsort(depth_r)
-    solid = np.interp(radius[keep], depth_r[order], depth_angle[order])
-    free = place[keep] + flank(root, root.r_b * math.tan(alpha_w))[1]
-    return float(np.max((solid - free) * radius[keep], initial=0.0))
+def free_centre_distance(one, two):
+    """Centre distance without backlash [mm] (ISO 21771:2007, 7.3)."""
+    teeth = one.z + two.outward * two.z
+    shift = one.x + two.outward * two.x
+    alpha_w = inverse_inv(inv(one.alpha_t) + 2 * shift * math.tan(one.alpha_n) / teeth)
+    return abs(one.r_b + two.outward * two.r_b) / math.cos(alpha_w)

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.optimize import brentq
 
-from .involute import inv
+from .involute import inv, inverse_inv
 
 
 def cartesian(radius, angle):
@@ -21,12 +21,22 @@ def cartesian(radius, angle):
 def flank(gear, roll):
     """Radius [mm] and angle [rad] of the loaded involute flank at roll length `roll` [mm]."""
     tangent = np.asarray(roll) / gear.r_b
-    return np.hypot(roll, gear.r_b), gear.base_half_angle - (tangent - np.arctan(tangent))
+    return np.hypot(roll, gear.r_b), gear.base_half_angle - gear.outward * (tangent - np.arctan(tangent))
+
+
+def arc_at(gear, roll):
+    """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings)."""
+    return gear.outward * np.square(roll) / (2 * gear.r_b)
+
+
+def roll_at_arc(gear, arc):
+    """Roll length [mm] at an arc of `arc_at`."""
+    return np.sqrt(np.maximum(2 * gear.r_b * gear.outward * np.asarray(arc), 0.0))
 
 
 def flank_normal(gear, roll):
     """Unit vector ``(2, n)`` pointing out of the loaded flank, tangent to the base circle."""
-    turn = gear.base_half_angle - np.asarray(roll) / gear.r_b
+    turn = gear.base_half_angle - gear.outward * np.asarray(roll) / gear.r_b
     return np.array([np.cos(turn), -np.sin(turn)])
 
 
@@ -45,6 +55,8 @@ def fillet(gear, phi):
     (law of gearing); in the transverse section of a helical gear the rounding is an ellipse.
     """
     phi = np.asarray(phi, dtype=float)
+    if gear.internal:
+        return _shaped_fillet(gear, phi)
     xi_c, eta_c = _rack_tip(gear)
     rho = gear.tip_radius * gear.m_n
     slope = math.cos(gear.beta)
@@ -54,6 +66,50 @@ def fillet(gear, phi):
     rolled = (across - xi) / gear.r
     space = np.arctan2(across, gear.r + eta) - rolled
     return np.hypot(across, gear.r + eta), math.pi / gear.z - space
+
+
+@lru_cache(maxsize=256)
+def _cutter(gear):
+    """Pinion cutter of a ring: working pressure angle, pitch radii (cutter, ring), place of its tip rounding, radius.
+
+    The cutter has no profile shift and cuts the ring without backlash; its tip reaches the root circle. The radius is at most
+    the full rounding of its tip.
+    """
+    base = gear.r_b * gear.z_cutter / gear.z
+    tooth = 2 * gear.x * math.tan(gear.alpha_n) / (gear.z - gear.z_cutter) + inv(gear.alpha_t)
+    alpha_0 = inverse_inv(tooth)
+    pitch, ring = base / math.cos(alpha_0), gear.r_b / math.cos(alpha_0)
+    tip = gear.r_f - (ring - pitch)
+    if tip <= base:
+        raise ValueError(f"z_cutter = {gear.z_cutter}: the cutter's tip lies inside its base circle; use a larger cutter")
+    half = math.pi / (2 * gear.z_cutter) + inv(gear.alpha_t)
+
+    def corner(rho):
+        """Angle of the rounding's centre: it lies on the involute offset inwards by rho."""
+        return half - inv(math.acos(min(1.0, base / (tip - rho)))) - rho / base
+
+    rho = gear.tip_radius * gear.m_n
+    if corner(rho) < 0:
+        if corner(0.0) < 0:
+            raise ValueError(f"z_cutter = {gear.z_cutter}: the cutter's teeth are pointed below its tip; lower the dedendum")
+        rho = brentq(corner, 0.0, rho)
+    return alpha_0, pitch, ring, tip - rho, max(corner(rho), 0.0), rho
+
+
+def cutter_tip_radius(gear):
+    """Tip radius [m_n] that a ring's cutter really has."""
+    return _cutter(gear)[5] / gear.m_n
+
+
+def _shaped_fillet(gear, phi):
+    """Fillet of a ring: envelope of the cutter's tip rounding, its normal (cos phi, sin phi) through the pitch point."""
+    _, pitch, ring, centre, offset, rho = _cutter(gear)
+    sin, cos = np.sin(phi), np.cos(phi)
+    along = -pitch * sin + np.sqrt(pitch**2 * sin**2 + centre**2 - pitch**2)
+    turned = np.arctan2(along * cos, pitch + along * sin) - offset
+    x, y = (along + rho) * cos, ring + (along + rho) * sin
+    space = np.arctan2(x, y) - turned * pitch / ring
+    return np.hypot(x, y), math.pi / gear.z - space
 
 
 @lru_cache(maxsize=256)
@@ -69,6 +125,12 @@ def form_point(gear):
     ValueError
         If nothing is left of the involute, or the undercut severs the tooth.
     """
+    if gear.internal:
+        phi = _cutter(gear)[0]
+        radius = fillet(gear, phi)[0]
+        if radius <= gear.r_a or fillet(gear, math.pi / 2)[1] > math.pi / gear.z:
+            raise ValueError(f"z = {gear.z}, x = {gear.x}: the fillets overlap and leave no ring flank; lower the tip_radius")
+        return phi, float(np.sqrt(radius**2 - gear.r_b**2))
     _, eta_c = _rack_tip(gear)
     depth = -(eta_c - gear.tip_radius * gear.m_n * math.sin(gear.alpha_n))
     phi = gear.alpha_n
@@ -104,7 +166,7 @@ def _undercut(gear):
 
 def root_half_angle(gear):
     """Half angle [rad] of the tooth where its fillet touches the root circle."""
-    return math.pi / gear.z - _rack_tip(gear)[0] / gear.r
+    return float(fillet(gear, math.pi / 2)[1])
 
 
 @lru_cache(maxsize=256)
@@ -150,4 +212,4 @@ def form_mismatch(gear):
     """Distance [mm] between fillet and involute at the form point: zero up to rounding (a check for tests)."""
     phi, roll = form_point(gear)
     radius, angle = fillet(gear, phi)
-    return float(radius * (angle - (gear.base_half_angle - inv(math.atan(roll / gear.r_b)))))
+    return float(radius * (angle - flank(gear, roll)[1]))

@@ -23,7 +23,7 @@ def test_boundary_lies_on_the_profile(section):
     assert_allclose(points[:, section.flank[0]], cartesian(*flank(gear, section.roll[0])), atol=1e-12)
     radius, angle = flank(gear, section.roll[1])
     assert_allclose(points[:, section.flank[1]], cartesian(radius, angle + 2 * math.pi / 21), atol=1e-12)
-    bore = section.mesh.boundaries["bore"]
+    bore = section.mesh.boundaries["held"]
     assert_allclose(np.hypot(*points[:, section.mesh.nvertices + bore]), gear.r_bore, rtol=1e-12)
 
 

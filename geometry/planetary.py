@@ -1,0 +1,71 @@
+"""`PlanetarySet`: a sun, its planets and a ring, and whether they go together."""
+
+import math
+from dataclasses import dataclass
+
+from .gear import Gear
+from .involute import inv
+from .pair import GearPair, free_centre_distance
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetarySet:
+    """Sun, planets and ring on a common centre distance.
+
+    Parameters
+    ----------
+    sun, planet, ring : Gear
+    n_planets : int
+    a : float, optional
+        Centre distance [mm]; default: that of sun and planet without backlash.
+
+    Raises
+    ------
+    ValueError
+        If the two meshes need different centre distances (the message gives the ring shift that closes the set), or equally
+        spaced planets cannot be assembled (``(z_s + z_r) / n_planets`` must be whole), or neighbouring planets touch.
+    """
+
+    sun: Gear
+    planet: Gear
+    ring: Gear
+    n_planets: int
+    a: float | None = None
+
+    def __post_init__(self):
+        """Check closure, spacing and neighbours."""
+        if not self.ring.internal:
+            raise ValueError("ring has r_bore, but a ring is given by r_rim")
+        if self.a is None:
+            object.__setattr__(self, "a", free_centre_distance(self.sun, self.planet))
+        closing = self.closing_shift()
+        if abs(closing - self.ring.x) > 2e-3:
+            raise ValueError(
+                f"z = {self.sun.z}/{self.planet.z}/{self.ring.z} with x_ring = {self.ring.x:g} does not close at a = {self.a:.6g} mm: "
+                f"planet and ring mesh there without backlash for x_ring = {closing:.4f} "
+                f"(without shifts z_r = z_s + 2 z_p = {self.sun.z + 2 * self.planet.z})"
+            )
+        if (self.sun.z + self.ring.z) % self.n_planets:
+            raise ValueError(
+                f"{self.n_planets} planets cannot be spaced equally: (z_s + z_r) / N = ({self.sun.z} + {self.ring.z}) / "
+                f"{self.n_planets} is not whole; change N or a tooth number"
+            )
+        room = 2 * self.a * math.sin(math.pi / self.n_planets) - 2 * self.planet.r_a
+        if self.n_planets > 1 and room <= 0:
+            raise ValueError(f"{self.n_planets} planets touch each other: their tips overlap by {-room:.4g} mm; use fewer")
+
+    def closing_shift(self):
+        """Profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
+        one, two = self.planet, self.ring
+        alpha_w = math.acos((two.r_b - one.r_b) / self.a)
+        return one.x + (inv(alpha_w) - inv(one.alpha_t)) * (two.z - one.z) / (2 * math.tan(one.alpha_n))
+
+    @property
+    def sun_planet(self):
+        """The outer mesh."""
+        return GearPair(self.sun, self.planet, self.a)
+
+    @property
+    def planet_ring(self):
+        """The inner mesh."""
+        return GearPair(self.planet, self.ring, self.a)
