@@ -3,6 +3,7 @@
 import importlib
 
 _HOME = {
+    "Crack": "geometry.damage",
     "Gear": "geometry.gear",
     "GearPair": "geometry.pair",
     "PlanetarySet": "geometry.planetary",

@@ -7,6 +7,7 @@ formula: that pair becomes a row of hat pressures up to the corner, with the exa
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from geometry.tooth import arc_at, roll_at_arc
 
@@ -16,6 +17,7 @@ from .sharing import line_contact
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
 CORNER = 0.7
+CLOSED = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +25,8 @@ class Solved:
     """Contact at some phases, per unit width.
 
     `order` (pairs,) as in `geometry.pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
-    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded).
+    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
+    `closed` the phases at which crack faces touch and were kept from passing through each other.
     """
 
     order: np.ndarray
@@ -31,6 +34,7 @@ class Solved:
     tangent: np.ndarray
     line_load: np.ndarray
     pressure: np.ndarray
+    closed: tuple = ()
 
 
 class Mesh:
@@ -62,20 +66,56 @@ class Mesh:
         found = self.found
         shape = found.gap.shape
         line, pressure = np.zeros(shape), np.zeros(shape)
-        approach, tangent = np.empty(shape[0]), np.empty(shape[0])
+        approach, tangent, closed = np.empty(shape[0]), np.empty(shape[0]), []
         for i in range(shape[0]):
             near = self._near(i, line_load)
             contacts = self._contacts(i, near, self._corners(i, near, line_load))
-            force, approach[i], tangent[i] = line_contact(
-                contacts["flexibility"], contacts["gap"], line_load, contacts["coefficient"], contacts["radius"], self.modulus
-            )
+            force, approach[i], tangent[i] = self._share(contacts, line_load)
+            opening = self._openings(contacts)
+            if opening is not None and (opening @ force).min() < -CLOSED * np.abs(opening @ force).max():
+                closed.append(i)
+                force, approach[i], tangent[i] = self._share_closing(contacts, opening, line_load)
             np.add.at(line[i], contacts["column"], force)
             single = contacts["coefficient"] > 0
             peak = peak_pressure(force[single], contacts["radius"][single], self.modulus)
             pressure[i, contacts["column"][~single]] = np.nan
             pressure[i, contacts["column"][single]] = peak
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
-        return Solved(found.order, approach, tangent, line, pressure)
+        return Solved(found.order, approach, tangent, line, pressure, tuple(closed))
+
+    def _share(self, contacts, line_load, weight=None):
+        names = ("coefficient", "radius")
+        return line_contact(
+            contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus, weight
+        )
+
+    def _openings(self, contacts):
+        """Opening of all crack face pairs per unit load at each contact ``(pairs, n)``; None without cracks."""
+        rows = []
+        for flexible, roll, teeth in (
+            (self.flexibility[0], contacts["roll_1"], contacts["order"]),
+            (self.flexibility[1], contacts["roll_2"], -contacts["order"]),
+        ):
+            arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
+            for seam in flexible.seams:
+                none = np.zeros(seam.influence.shape[0])
+                rows.append(
+                    np.array([seam.opening[t](s) if t in seam.opening else none for t, s in zip(teeth, arc, strict=True)]).T
+                )
+        return np.vstack(rows) if rows else None
+
+    def _share_closing(self, contacts, opening, line_load):
+        """The same contacts with crack faces that can push each other apart but not pass through."""
+        faces = block_diag(*(seam.influence for flexible in self.flexibility for seam in flexible.seams))
+        n, m = opening.shape[1], opening.shape[0]
+        extended = {
+            "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
+            "gap": np.append(contacts["gap"], np.zeros(m)),
+            "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
+            "radius": np.append(contacts["radius"], np.ones(m)),
+        }
+        force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
+        return force[:n], approach, tangent
 
     def _near(self, i, line_load):
         """Columns of the pairs whose gap the load could close: at most twice the approach of the best single pair."""
@@ -105,6 +145,9 @@ class Mesh:
                 "coefficient": c,
                 "radius": self.radius[i, near],
                 "column": near,
+                "roll_1": self.found.roll_1[i, near],
+                "roll_2": self.found.roll_2[i, near],
+                "order": self.found.order[near],
             }
         parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
         roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
@@ -114,7 +157,10 @@ class Mesh:
         for part, k in zip(parts, near, strict=True):
             if part[5] is not None:
                 total[np.ix_(column == k, column == k)] = part[5]
-        return {"flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column}
+        return {
+            "flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column,
+            "roll_1": roll_1, "roll_2": roll_2, "order": order,
+        }  # fmt: skip
 
     def _row(self, i, column, corner):
         """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""

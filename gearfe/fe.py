@@ -12,10 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, lil_matrix
 
 from geometry.gear import Gear
-from geometry.mesher import section, stations
+from geometry.mesher import section
+from geometry.outline import stations
 from geometry.tooth import arc_at, flank_normal
 
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
@@ -118,6 +119,8 @@ class Flexibility:
         Unknowns of the solve.
     healthy : Flexibility or None
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
+    seams : tuple of SeamFaces
+        The cracks.
     """
 
     gear: Gear
@@ -127,6 +130,7 @@ class Flexibility:
     limits: tuple
     dofs: int = 0
     healthy: object = None
+    seams: tuple = ()
 
     def near_of(self, tooth):
         """Spline S(s, s) of a tooth."""
@@ -162,6 +166,18 @@ class Flexibility:
 
 
 @dataclass(frozen=True, slots=True)
+class SeamFaces:
+    """The faces of one crack, pair of facing nodes by pair.
+
+    `opening[tooth]` is a spline over the arc of that tooth's flank: opening of the n face pairs under a unit load there [mm
+    per N/mm]; `influence` (n, n) their opening under unit forces that push them apart.
+    """
+
+    opening: dict
+    influence: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
 class TipHats:
     """Hats of one flank next to its tip corner, the corner's last.
 
@@ -174,18 +190,18 @@ class TipHats:
     influence: np.ndarray
 
 
-def mesh_gear(gear, *, neighbours, refine=1.0, teeth=None, patches=()):
-    """Section of `gear` with tooth 0 loaded and the next `neighbours` teeth on the loaded side read.
+def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
+    """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
-    `refine` divides every edge length of `EDGES`; `teeth` and `patches` as in `geometry.mesher`.
+    `refine` divides every edge length of `EDGES`; `teeth` and `cracks` as in `geometry.mesher.section`.
     """
     if not refine > 0:
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    rolls = {0: stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], patches=patches, span=SPAN)}
-    for tooth in range(1, neighbours + 1):
-        rolls[tooth] = stations(gear, edge["read"], tip=2 * edge["tip"], span=SPAN)
-    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth)
+    fine = stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], span=SPAN)
+    coarse = stations(gear, edge["read"], tip=0.025 * gear.m_n / refine, span=SPAN)
+    rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
+    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks)
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
@@ -210,7 +226,7 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     -------
     Flexibility
     """
-    mesh = mesh_gear(gear, neighbours=neighbours, refine=refine, teeth=teeth)
+    mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
     body = Body(mesh.mesh, material, state=state)
     own = hats(mesh, 0, corner=True)
     moved = body.solve(own.load)
@@ -220,6 +236,61 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
         read = hats(mesh, tooth)
         far[0, tooth] = RectBivariateSpline(own.arc, read.arc, (read.load.T @ moved).T)
     return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), moved.shape[0])
+
+
+def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """Flexibility of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
+
+    Parameters
+    ----------
+    gear, material, neighbours, state, refine, teeth
+        As in `flexibility`.
+    cracks : tuple of Crack
+        Their `tooth` counts to the loaded side of this gear.
+    healthy : Flexibility
+        Of the same gear without cracks, for the teeth further away.
+
+    Returns
+    -------
+    Flexibility
+    """
+    reach = max(1, neighbours - 1)
+    solved = sorted({crack.tooth + k for crack in cracks for k in range(-reach, reach + 1)})
+    if len(solved) > gear.z:
+        raise ValueError(f"z = {gear.z} is too small for cracks on so many teeth")
+    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
+    body = Body(mesh.mesh, material, state=state)
+    own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
+    moved = {tooth: body.solve(own[tooth].load) for tooth in solved}
+    near, tip, far = {}, {}, {}
+    for tooth in solved:
+        influence = own[tooth].load.T @ moved[tooth]
+        near[tooth], tip[tooth] = own_tooth(gear, own[tooth], influence, half_plane(material, state))
+        for other in solved:
+            if tooth < other:
+                # both are the same number, by reciprocity; their mean is symmetric to rounding
+                there, back = own[other].load.T @ moved[tooth], (own[tooth].load.T @ moved[other]).T
+                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, (there + back).T / 2)
+    seams = tuple(_seam_faces(body, seam, own, moved) for seam in mesh.seams)
+    limits = own[solved[0]].arc[0], own[solved[0]].arc[-2]
+    return Flexibility(gear, near, far, tip, limits, next(iter(moved.values())).shape[0], healthy, seams)
+
+
+def _seam_faces(body, seam, own, moved):
+    """Openings of a crack's facing nodes under flank loads and under their own unit forces."""
+    left, right = seam.faces[:, :-2]  # without the tip and the quarter points beside it
+    points = body.mesh.doflocs[:, seam.faces[0]]
+    ahead = np.gradient(points, axis=1)[:, :-2]
+    normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+    apart = lil_matrix((2 * body.mesh.doflocs.shape[1], left.size))
+    for j in range(left.size):
+        for d in range(2):
+            apart[2 * left[j] + d, j] = normal[d, j]
+            apart[2 * right[j] + d, j] = -normal[d, j]
+    apart = apart.tocsc()
+    influence = apart.T @ body.solve(apart)
+    opening = {tooth: CubicSpline(own[tooth].arc, (apart.T @ moved[tooth]).T) for tooth in own}
+    return SeamFaces(opening, (influence + influence.T) / 2)
 
 
 def own_tooth(gear, own, influence, coefficient):

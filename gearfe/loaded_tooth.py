@@ -5,7 +5,8 @@ import math
 import numpy as np
 from skfem import MeshTri
 
-from geometry.mesher import section, stations
+from geometry.mesher import section
+from geometry.outline import stations
 from geometry.tooth import arc_at, flank, roll_at_arc
 
 from .elasticity import Body, edge_nodes, edge_shapes

@@ -7,7 +7,8 @@ import sys
 
 import numpy as np
 
-from geometry.mesher import section, stations
+from geometry.mesher import section
+from geometry.outline import stations
 from geometry.tooth import arc_at
 
 from .elasticity import Body, von_mises

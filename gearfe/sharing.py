@@ -7,7 +7,7 @@ from scipy.optimize import nnls
 from .hertz import half_width
 
 
-def share(flexibility, gap, load):
+def share(flexibility, gap, load, weight=None):
     """Split a load over elastic contacts that can push but not pull.
 
     Contacts in touch close by the same approach; the others stay open::
@@ -26,6 +26,8 @@ def share(flexibility, gap, load):
         Unloaded distance of each contact along the line of action [mm].
     load : float
         Sum of the contact forces [N].
+    weight : ndarray, shape (n,), optional
+        1 for contacts that carry the load, 0 for others (crack faces): those close by no approach, only by `gap`.
 
     Returns
     -------
@@ -55,22 +57,23 @@ def share(flexibility, gap, load):
     if not load > 0:
         raise ValueError(f"load = {load} N, but contacts can only push: give load > 0")
     gap = np.asarray(gap, dtype=float)
+    weight = np.ones(gap.size) if weight is None else weight
     if gap.size == 1:
         return np.array([load]), float(flexibility[0, 0] * load + gap[0])
     try:
         upper = cholesky(flexibility)
     except np.linalg.LinAlgError as error:
         raise RuntimeError("the flexibility between the contacts is not positive definite; refine the mesh") from error
-    least = gap.min()
-    corners = load * upper + solve_triangular(upper, gap - least, trans="T")[:, None]
+    least = gap[weight > 0].min()
+    corners = load * upper + np.outer(solve_triangular(upper, gap - least * weight, trans="T"), weight)
     corners /= np.linalg.norm(corners, axis=0).max()
-    weights, _ = nnls(np.vstack([corners, np.ones(gap.size)]), np.append(np.zeros(gap.size), 1.0))
-    force = load * weights / weights.sum()
+    weights, _ = nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
+    force = load * weights / (weights @ weight)
     closing = flexibility @ force + gap
-    return force, float(force @ closing / load)
+    return force, float(force * weight @ closing / load)
 
 
-def line_contact(flexibility, gap, load, coefficient, radius, modulus):
+def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None):
     """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
@@ -91,19 +94,22 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus):
         Relative radius of curvature [mm].
     modulus : float
         Contact modulus E* [MPa].
+    weight : ndarray, shape (n,), optional
+        As in `share`.
 
     Returns
     -------
     force, approach, tangent : ndarray (n,), float, float
         Line loads [N/mm], approach [mm], and stiffness d load / d approach of the contacts in touch [N/mm per mm].
     """
+    weight = np.ones(gap.size) if weight is None else weight
     force = np.full(gap.size, load / gap.size)
     floor = 1e-9 * load
     for _ in range(60):
         width = half_width(np.maximum(force, floor), radius, modulus)
         slope = coefficient * np.log(2 / width)
         total = flexibility + np.diag(slope)
-        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load)
+        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight)
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
         if settled:
@@ -111,5 +117,5 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus):
     else:
         raise RuntimeError(f"load sharing did not settle at line load {load} N/mm; reduce the load or refine the mesh")
     touch = force > floor
-    tangent = np.linalg.solve(total[np.ix_(touch, touch)], np.ones(touch.sum())).sum()
+    tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
     return force, approach, float(tangent)

@@ -2,23 +2,42 @@
 
 import math
 import time
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
-from . import fe
+from geometry.damage import Crack, crack_path
+
+from .cache import solved_gear
 from .contact import Mesh, Solved
 from .curve import StiffnessCurve
 from .energy import published, textbook
 from .hertz import linear_hertz
 from .material import Material, check_state
 
+COARSER = 0.6
 METHODS = ("fe", "textbook", "published")
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
-def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=True, state="plane strain", refine=1.0, teeth=None):
+def mesh_stiffness(
+    pair,
+    force,
+    material,
+    *,
+    method="fe",
+    phases=64,
+    span="cycle",
+    damage=None,
+    extended=True,
+    state="plane strain",
+    refine=1.0,
+    teeth=None,
+    error=False,
+    cache=True,
+):
     """Mesh stiffness of a gear pair over one mesh cycle.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
@@ -36,7 +55,13 @@ def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=Tr
         ``fe``: finite elements with line contact, neighbour coupling and load sharing (`gearfe.fe`). ``textbook``,
         ``published``: beam energies, linear contact, plain sum of the pairs (`gearfe.energy`).
     phases : int or array
-        Number of equidistant phases from 0 (1 excluded), or the phases themselves.
+        Number of equidistant phases per mesh cycle, or the phases themselves.
+    span : {"cycle", "tooth"}
+        Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
+        after it (where the damaged tooth is).
+    damage : dict, optional
+        Cracks by gear: ``{"pinion": [Crack(...)], "wheel": [...]}``; ``fe`` only. Crack faces that the load presses together
+        are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (``fe`` only; the energy methods
         know no contact there).
@@ -46,6 +71,10 @@ def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=Tr
         Resolution of ``fe``: divides its edge lengths.
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
+    error : bool
+        For ``fe``: estimate the discretisation error of every k from a second, coarser solve (see `estimate`).
+    cache : bool
+        For ``fe``: reuse a gear solved before, in this process or an earlier one (see `gearfe.cache`).
 
     Returns
     -------
@@ -64,16 +93,35 @@ def mesh_stiffness(pair, force, material, *, method="fe", phases=64, extended=Tr
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
     materials = _materials(material)
     check_state(state)
-    phase = _phases(phases)
+    phase = _phases(phases, span, pair)
+    cracks = _cracks(pair, damage)
+    if any(cracks) and method != "fe":
+        raise ValueError(f"damage with method = {method!r}: only 'fe' models cracks so far")
+    numeric = {"state": state, "refine": float(refine), "teeth": teeth}
     if method == "fe":
-        solve, details = _fe(pair, materials, phase, extended, state, refine, teeth)
+        solve, details = _fe(pair, materials, phase, extended, cracks, cache=cache, **numeric)
     else:
         solve, details = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
-    options = {"extended": bool(extended), "state": state, "refine": float(refine), "teeth": teeth} if method == "fe" else {}
+    options = {"extended": bool(extended), **numeric} if method == "fe" else {}
+    if any(cracks):
+        options["damage"] = {name: [asdict(c) for c in damage.get(name, ())] for name in ("pinion", "wheel")}
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
+    if error and method == "fe":
+        coarse, _ = _fe(pair, materials, phase, extended, cracks, cache=cache, **(numeric | {"refine": COARSER * refine}))
+        curves = [replace(c, error=estimate(c.k, _curve(pair, phase, c.meta["force_N"], coarse, c.meta).k)) for c in curves]
     return curves if np.ndim(force) else curves[0]
+
+
+def estimate(k, coarse):
+    """Estimated discretisation error of `k` [N/m] from a solve with edges 1 / `COARSER` times as long.
+
+    The difference of the two bounds the error of the finer one for any rate of convergence above 1; because it can vanish
+    by chance at single phases, its largest value over an eighth of the curve and its mean over all of it are added.
+    """
+    away = np.abs(k - coarse)
+    return maximum_filter1d(away, max(3, away.size // 8), mode="nearest") + away.mean()
 
 
 def _materials(material):
@@ -83,10 +131,14 @@ def _materials(material):
     return materials
 
 
-def _phases(phases):
+def _phases(phases, span, pair):
+    if span not in ("cycle", "tooth"):
+        raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
     if np.ndim(phases) == 0:
         if phases != int(phases) or phases < 1:
             raise ValueError(f"phases = {phases}, but give a number of phases >= 1, or an array of phases")
+        if span == "tooth":
+            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + 0.25) * phases) + 1) / int(phases)
         return np.arange(int(phases)) / int(phases)
     phases = np.asarray(phases, dtype=float)
     if phases.size == 0 or not np.isfinite(phases).all():
@@ -94,15 +146,32 @@ def _phases(phases):
     return phases
 
 
-def _fe(pair, materials, phase, extended, state, refine, teeth):
+def _fe(pair, materials, phase, extended, damage, **options):
     started = time.perf_counter()
     neighbours = math.ceil(pair.eps_alpha)
     flexible = [
-        fe.flexibility(gear, material, neighbours=neighbours, state=state, refine=refine, teeth=teeth)
-        for gear, material in zip((pair.gear_1, pair.gear_2), materials, strict=True)
+        solved_gear(gear, material, cracks, neighbours=neighbours, **options)
+        for gear, material, cracks in zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
     ]
-    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=state)
+    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=options["state"])
     return mesh.solve, {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
+
+
+def _cracks(pair, damage):
+    """Cracks of pinion and wheel, numbered in each gear's own frame."""
+    damage = {} if damage is None else damage
+    unknown = set(damage) - {"pinion", "wheel"}
+    if unknown:
+        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
+    out = []
+    for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
+        cracks = tuple(damage.get(name, ()))
+        for crack in cracks:
+            if not isinstance(crack, Crack):
+                raise ValueError(f"damage of the {name}: {crack!r} is not a Crack")
+            crack_path(gear, crack)
+        out.append(tuple(replace(crack, tooth=sense * crack.tooth) for crack in cracks))
+    return tuple(out)
 
 
 def _plain_sum(pair, materials, phase, formulas):
@@ -130,6 +199,8 @@ def _curve(pair, phase, force, solve, meta):
     solved = solve(force / width)
     meta = meta | {"seconds_contact": time.perf_counter() - started}
     used = solved.line_load.max(axis=0) > 0
+    if "damage" in meta:
+        meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     return StiffnessCurve(
         phase=phase,
         k=force / (solved.approach * 1e-3),

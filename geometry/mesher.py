@@ -1,7 +1,7 @@
 """gmsh in, scikit-fem out: the transverse section of a whole gear as curved second-order triangles.
 
-gmsh only fills the inside. Every vertex of the outline is placed here, on the exact profile, and so is the middle of
-every boundary edge, by its own parameter (not by projection).
+gmsh only fills the inside. Every vertex of the outline is placed on the exact profile, and so is the middle of every
+boundary edge, by its own parameter (not by projection).
 """
 
 import contextlib
@@ -11,21 +11,31 @@ from dataclasses import dataclass, replace
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
+from .damage import crack_path, start_arc
 from .gear import Gear
-from .tooth import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from .outline import along, held_circle, outline
+from .seam import open_seam
 
-NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
-GROWTH = 0.25  # of the edge length per length, away from fine places of a flank
+CRACK_EDGE = 0.02  # edge length at a crack tip [m_n], and at most a fifth of the crack
+
+
+@dataclass(frozen=True, slots=True)
+class Seam:
+    """The two faces of a crack: node numbers ``(2, n)`` (left, right) of vertices and edge middles from mouth to tip.
+
+    The last column is the tip, twice the same node; the one before is the middle of the tip's edges, at a quarter.
+    """
+
+    faces: np.ndarray
 
 
 @dataclass(frozen=True, slots=True)
 class Section:
     """A meshed gear section.
 
-    `mesh` is a `skfem.MeshTri2` [mm] with boundaries ``held`` (bore, or outside of
-    a ring) and ``rim`` (the whole toothed outline). `flank[k]` holds
-    the vertices of the loaded flank of tooth k from root to tip and `roll[k]` their roll lengths [mm]; `fillet[k]`
-    those of the fillet below it, from the flank to the root.
+    `mesh` is a `skfem.MeshTri2` [mm] with boundaries ``held`` (bore, or outside of a ring) and ``rim`` (the whole toothed
+    outline). `flank[k]` holds the vertices of the loaded flank of tooth k from root to tip and `roll[k]` their roll lengths
+    [mm]; `fillet[k]` those of the fillet below it, from the flank to the root; `seams` the cracks.
     """
 
     gear: Gear
@@ -33,6 +43,7 @@ class Section:
     flank: dict
     roll: dict
     fillet: dict
+    seams: tuple = ()
 
 
 @contextlib.contextmanager
@@ -60,30 +71,7 @@ def gmsh_session():
         gmsh.finalize()
 
 
-def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
-    """Roll lengths [mm] of flank vertices, from the form point to the tip.
-
-    The arc between them is about `spacing` [mm], graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle].
-    The number of intervals is a multiple of `span`.
-    """
-    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    fine = [(first, last, size) for first, last, size in patches]
-    fine += [(stop, stop, tip or spacing), (start, start, low or spacing)]
-    smallest = min(size for _, _, size in fine)
-    arc = np.linspace(start, stop, 2 + int(4 * (stop - start) / min(smallest, spacing)))
-    step = np.full(arc.size, float(spacing))
-    for first, last, size in fine:
-        away = np.maximum(np.maximum(first - arc, arc - last), 0.0)
-        step = np.minimum(step, size + GROWTH * away)
-    count = np.concatenate([[0.0], np.cumsum(np.diff(arc) * (1 / step[1:] + 1 / step[:-1]) / 2)])
-    intervals = span * max(1, math.ceil(count[-1] / span - 1e-6))
-    placed = np.interp(np.linspace(0, count[-1], intervals + 1), count, arc)
-    placed[0], placed[-1] = start, stop
-    return roll_at_arc(gear, placed)
-
-
-def section(gear, rolls, *, fillet_size, size, far_size, teeth=None):
+def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
     """Mesh the whole section of `gear`, all teeth and the true rim.
 
     Parameters
@@ -101,6 +89,8 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None):
     teeth : int, optional
         Keep only this many teeth around each loaded one and replace the others by a plain root circle: cheaper, softer
         (0.3 % in double contact with 5 teeth). Default: all teeth.
+    cracks : sequence of Crack
+        Their `tooth` is the number used in `rolls`.
 
     Returns
     -------
@@ -109,108 +99,109 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None):
     if len({tooth % gear.z for tooth in rolls}) != len(rolls):
         raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
-    radius, angle, where = _outline(gear, rolls, fillet_size, size, far_size, teeth)
-    rim = np.array([radius * np.sin(angle), radius * np.cos(angle)])
-    held = _held(gear)
-    linear = _fill(rim[:, ::2], held[:, ::2], ring=gear.internal)
-    mesh = _curve(linear, (rim, held))
-    return Section(gear, mesh, {k: v[0] for k, v in where.items()}, rolls, {k: v[1] for k, v in where.items()})
+    paths, marks = {}, {}
+    for crack in cracks:
+        place = crack.tooth % gear.z, crack.side
+        if place in paths:
+            raise ValueError(f"two cracks on the {crack.side} side of tooth {crack.tooth}; one is enough")
+        paths[place] = corners = _turned(crack_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
+        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
+    rim, flanks, fillets, starts = outline(
+        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks
+    )
+    chains = []
+    for place, corners in paths.items():
+        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        tip = min(CRACK_EDGE * gear.m_n * fillet_size / (0.1 * gear.m_n), length / 5)
+        chains.append((starts[place], along(corners, marks[place][1], tip, max(fillet_size, tip))[:, 1:]))
+    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
+    return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
 
 
-def _held(gear):
-    """The held circle, bore or outside of a ring: vertices at even places, edge middles at odd."""
-    size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
-    count = max(12, math.ceil(2 * math.pi * gear.held / size))
-    angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)
-    return gear.held * np.array([np.sin(angle), np.cos(angle)])
+def _turned(points, angle):
+    """Points turned clockwise by `angle`."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([cos * points[0] + sin * points[1], cos * points[1] - sin * points[0]])
 
 
-def _doubled(values):
-    """Insert the middles: parameters of vertices and, at odd places, of edge middles."""
-    values = np.asarray(values, dtype=float)
-    out = np.empty(2 * values.size - 1)
-    out[::2] = values
-    out[1::2] = (values[1:] + values[:-1]) / 2
-    return out
+def fill(rim, held, chains=(), *, ring=False):
+    """Curved second-order mesh between two closed loops, opened along cracks.
+
+    Parameters
+    ----------
+    rim, held : ndarray, shape (2, 2 n)
+        Loops: vertices at even places, edge middles at odd [mm]; nodes are numbered rim, held, cracks, inside. `held` may
+        be empty.
+    chains : sequence of (int, ndarray)
+        Cracks: the rim vertex each starts at, and its further vertices ``(2, n)`` up to the tip.
+    ring : bool
+        Whether `held` is the outer loop.
+
+    Returns
+    -------
+    mesh : skfem.MeshTri2
+        With boundaries ``rim`` and ``held``.
+    faces : list of ndarray, shape (2, 2 n + 1)
+        Nodes of both faces of each crack, see `Seam`.
+    """
+    loops = [loop for loop in (rim, held) if loop.size]
+    points, triangles = _triangulate([loop[:, ::2] for loop in loops], chains, ring)
+    first = sum(loop.shape[1] // 2 for loop in loops)
+    lines, doubles = [], {}
+    for start, inner in chains:
+        chain = np.append(start, first + np.arange(inner.shape[1]))
+        first += inner.shape[1]
+        points, triangles, double = open_seam(points, triangles, chain)
+        lines.append((chain, double))
+        doubles[start] = int(double[0])
+    linear = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    mesh = _curve(linear, loops, doubles)
+    faces = [_faces(mesh, chain, double) for chain, double in lines]
+    if not faces:
+        return mesh, faces
+    nodes = mesh.doflocs.copy()
+    for chain, face in zip((c for c, _ in lines), faces, strict=True):
+        _quarter(mesh, nodes, int(chain[-1]))
+        nodes[:, face[:, -2]] = 0.25 * nodes[:, face[:, -3]] + 0.75 * nodes[:, face[:, -1]]
+    return replace(mesh, doflocs=nodes), faces
 
 
-def _even(length, size, least):
-    return _doubled(np.linspace(0, 1, max(least, round(length / size)) + 1))
+def _quarter(mesh, nodes, tip):
+    """Move the middles of all edges at `tip` to a quarter: displacements there go with the root of the distance."""
+    edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
+    far = mesh.facets[:, edges].sum(axis=0) - tip
+    nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]
 
 
-def _half(gear, roll, fillet_size, size):
-    """Half tooth from tip middle to root middle: radius, angle, vertex ranges of flank and fillet."""
-    width = gear.half_thickness(gear.r_a) * gear.r_a
-    corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
-    tip = _doubled(1 - _graded(corner, size, width)[::-1] / width)
-    # by roll angle, and by arc near the base circle, where roll ~ sqrt(arc)
-    middle = _doubled(roll[::-1])
-    below = gear.r_f * (math.pi / gear.z - root_half_angle(gear))
-    root = (fillet_length(gear) + below) * _even(fillet_length(gear) + below, fillet_size, 2)[::-1]
-    pieces = [
-        (np.full(tip.size, gear.r_a), tip * gear.half_thickness(gear.r_a)),
-        flank(gear, middle),
-        root_curve(gear, root - below),
-    ]
-    radius = np.concatenate([p[0][:-1] for p in pieces])
-    angle = np.concatenate([p[1][:-1] for p in pieces])
-    ends = np.cumsum([p[0].size - 1 for p in pieces]) // 2
-    return radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1)
+def _faces(mesh, chain, double):
+    lookup = {(a, b): i for i, (a, b) in enumerate(mesh.facets.T.tolist())}
+    out = []
+    for side in (chain.tolist(), double.tolist()):
+        middle = [mesh.nvertices + lookup[min(a, b), max(a, b)] for a, b in zip(side[:-1], side[1:], strict=True)]
+        out.append(np.append(np.array([side[:-1], middle]).T.ravel(), side[-1]))
+    return np.array(out)
 
 
-def _graded(first, last, length):
-    """Distances growing from 0 to `length` [mm], in steps from `first` up to `last`."""
-    steps = [min(first, length)]
-    while sum(steps) < length:
-        steps.append(min(steps[-1] * (1 + GROWTH * 2), last))
-    return np.concatenate([[0.0], np.cumsum(steps)]) * (length / sum(steps))
-
-
-def _outline(gear, rolls, fillet_size, size, far_size, teeth):
-    """All teeth clockwise, starting at the middle of tooth 0's tip; vertices at even places, edge middles at odd."""
-    plain = _half(gear, stations(gear, size), fillet_size, size)
-    coarse = _half(gear, stations(gear, size), size, size)
-    far = _half(gear, stations(gear, far_size), far_size, far_size)
-    gone = _no_tooth(gear, far_size)
-
-    def half(tooth, *, loaded_side):
-        distance = min(abs((tooth - k + gear.z // 2) % gear.z - gear.z // 2) for k in rolls)
-        if teeth is not None and distance > teeth // 2:
-            return gone
-        if distance == 0:
-            return _half(gear, rolls[tooth], fillet_size, size) if loaded_side else plain
-        return coarse if distance <= NEAR else far
-
-    radii, angles, where, count = [], [], {}, 0
-    for tooth in range(gear.z):
-        right, left = half(tooth, loaded_side=True), half((tooth + 1) % gear.z, loaded_side=False)
-        turn = 2 * math.pi * tooth / gear.z
-        radii += [right[0], [gear.r_f], left[0][:0:-1]]
-        angles += [turn + right[1], [turn + math.pi / gear.z], turn + 2 * math.pi / gear.z - left[1][:0:-1]]
-        if tooth in rolls:
-            where[tooth] = ((count + right[2])[::-1], count + right[3])
-        count += (right[0].size + left[0].size) // 2
-    return np.concatenate(radii), np.concatenate(angles), where
-
-
-def _no_tooth(gear, size):
-    arc = math.pi / gear.z * _even(math.pi / gear.z * gear.r_f, size, 1)[:-1]
-    return np.full(arc.size, gear.r_f), arc, None, None
-
-
-def _fill(rim, held, *, ring):
-    """Triangulate between the two closed vertex loops; vertices keep their order: rim, held, inside."""
+def _triangulate(loops, chains, ring):
+    """Vertices and triangles between closed vertex loops, with the chains as edges; nodes keep their order."""
     with gmsh_session() as gmsh:
         geo = gmsh.model.geo
-        loops, tag = [], 0
-        for points in (rim, held):
+        closed, last = [], 0
+        for points in loops:
             tags = [geo.addPoint(x, y, 0.0) for x, y in points.T]
             lines = [geo.addLine(a, b) for a, b in zip(tags, tags[1:] + tags[:1], strict=True)]
-            loops.append(geo.addCurveLoop(lines))
-            tag = lines[-1]
-        surface = geo.addPlaneSurface(loops[::-1] if ring else loops)  # the outer loop first
+            closed.append(geo.addCurveLoop(lines))
+            last = lines[-1]
+        inner = []
+        for start, points in chains:
+            tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
+            inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
+        surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # the outer loop first
         geo.synchronize()
-        for line in range(1, tag + 1):
+        if inner:
+            gmsh.model.mesh.embed(1, inner, 2, surface)
+        for line in [*range(1, last + 1), *inner]:
             gmsh.model.mesh.setTransfiniteCurve(line, 2)
         gmsh.option.setNumber("Mesh.Algorithm", 6)
         gmsh.option.setNumber("Mesh.MeshSizeExtendFromBoundary", 1)
@@ -218,28 +209,32 @@ def _fill(rim, held, *, ring):
         gmsh.model.mesh.generate(2)
         tags, coords, _ = gmsh.model.mesh.getNodes()
         triangles = gmsh.model.mesh.getElementsByType(2, surface)[1].reshape(-1, 3)
-    place = np.empty(int(tags.max()) + 1, dtype=np.int64)
-    place[tags] = np.arange(tags.size)
     order = np.argsort(tags)
+    place = np.empty(int(tags.max()) + 1, dtype=np.int64)
     place[tags[order]] = np.arange(tags.size)
-    points = coords.reshape(-1, 3)[order, :2].T
-    return MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(place[triangles].T))
+    return coords.reshape(-1, 3)[order, :2].T, place[triangles].T
 
 
-def _curve(linear, loops):
+def _curve(linear, loops, doubles):
     """Second-order mesh with every boundary edge bent onto its curve, boundaries named."""
     mesh = MeshTri2.from_mesh(linear)
     nodes = mesh.doflocs.copy()
-    facets = {
-        tuple(pair): i
-        for i, pair in zip(linear.boundary_facets(), np.sort(linear.facets[:, linear.boundary_facets()].T), strict=True)
-    }
+    boundary = linear.boundary_facets()
+    facets = {tuple(pair): i for i, pair in zip(boundary, np.sort(linear.facets[:, boundary].T).tolist(), strict=True)}
     names, first = {}, 0
-    for name, points in zip(("rim", "held"), loops, strict=True):
-        count = points.shape[1] // 2
-        ring = first + np.arange(count)
-        edges = np.array([facets[min(a, b), max(a, b)] for a, b in zip(ring, np.roll(ring, -1), strict=True)])
-        nodes[:, linear.nvertices + edges] = points[:, 1::2]
-        names[name] = edges
-        first += count
+    for name, points in zip(("rim", "held"), loops, strict=False):
+        ring = (first + np.arange(points.shape[1] // 2)).tolist()
+        edges = [_boundary_edge(facets, doubles, a, b) for a, b in zip(ring, ring[1:] + ring[:1], strict=True)]
+        nodes[:, linear.nvertices + np.array(edges)] = points[:, 1::2]
+        names[name] = np.array(edges)
+        first += points.shape[1] // 2
     return replace(mesh, doflocs=nodes).with_boundaries(names)
+
+
+def _boundary_edge(facets, doubles, a, b):
+    """Boundary facet between two loop vertices, either of which may have been doubled by a crack's mouth."""
+    for p in (a, doubles.get(a, a)):
+        for q in (b, doubles.get(b, b)):
+            if (min(p, q), max(p, q)) in facets:
+                return facets[min(p, q), max(p, q)]
+    raise RuntimeError("gmsh changed the outline: an edge of it is missing from the mesh; change the resolution")

@@ -41,8 +41,8 @@ class PlanetarySet:
         closing = self.closing_shift()
         if abs(closing - self.ring.x) > 2e-3:
             raise ValueError(
-                f"z = {self.sun.z}/{self.planet.z}/{self.ring.z} with x_ring = {self.ring.x:g} does not close at a = {self.a:.6g} mm: "
-                f"planet and ring mesh there without backlash for x_ring = {closing:.4f} "
+                f"z = {self.sun.z}/{self.planet.z}/{self.ring.z} with x_ring = {self.ring.x:g} does not close at "
+                f"a = {self.a:.6g} mm: planet and ring mesh there without backlash for x_ring = {closing:.4f} "
                 f"(without shifts z_r = z_s + 2 z_p = {self.sun.z + 2 * self.planet.z})"
             )
         if (self.sun.z + self.ring.z) % self.n_planets:

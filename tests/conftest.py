@@ -16,3 +16,11 @@ def steel():
 def pair():
     """The pair of the planetary_pitting scene."""
     return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _own_cache(tmp_path_factory):
+    """Tests neither read nor fill the user's cache."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("GEARFE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield

@@ -7,7 +7,7 @@ from skfem import Basis, ElementTriP2
 
 import gearfe as gf
 from gearfe.fe import mesh_gear
-from geometry import mesher
+from geometry import mesher, outline
 from geometry.tooth import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 GEAR = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -15,7 +15,7 @@ GEAR = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
 @pytest.fixture(scope="module")
 def section():
-    return mesh_gear(gf.Gear(z=21, r_bore=7.4, **GEAR), neighbours=2)
+    return mesh_gear(gf.Gear(z=21, r_bore=7.4, **GEAR), read=range(1, 3))
 
 
 def test_boundary_lies_on_the_profile(section):
@@ -38,7 +38,7 @@ def test_area_converges_to_that_of_the_exact_outline(section):
     exact = gear.z * twice - math.pi * gear.r_bore**2
     errors = []
     for refine in (1, 2):
-        basis = Basis(mesh_gear(gear, neighbours=2, refine=refine).mesh, ElementTriP2(), intorder=6)
+        basis = Basis(mesh_gear(gear, read=range(1, 3), refine=refine).mesh, ElementTriP2(), intorder=6)
         assert basis.dx.min() > 0, "no inverted triangle"
         errors.append(abs(basis.dx.sum() / exact - 1))
     print("area errors", errors)
@@ -49,7 +49,7 @@ def test_area_converges_to_that_of_the_exact_outline(section):
 @pytest.mark.parametrize(("z", "bore"), [(5, 0.3), (12, 0.95), (17, 0.5), (60, 0.9), (200, 0.5)])
 def test_hard_gears_mesh(z, bore):
     r_f = gf.Gear(z=z, r_bore=0.1, **GEAR).r_f
-    mesh = mesh_gear(gf.Gear(z=z, r_bore=bore * r_f, **GEAR), neighbours=1)
+    mesh = mesh_gear(gf.Gear(z=z, r_bore=bore * r_f, **GEAR), read=range(1, 2))
     assert Basis(mesh.mesh, ElementTriP2(), intorder=4).dx.min() > 0
 
 
@@ -71,6 +71,6 @@ def test_missing_gmsh_names_the_packages(monkeypatch):
 
 def test_same_tooth_twice_is_refused():
     gear = gf.Gear(z=5, r_bore=1.0, **GEAR)
-    roll = mesher.stations(gear, 0.5)
+    roll = outline.stations(gear, 0.5)
     with pytest.raises(ValueError, match="not distinct"):
         mesher.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)

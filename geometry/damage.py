@@ -1,0 +1,123 @@
+"""`Crack`: a root crack of one tooth, where it starts and how it runs."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .tooth import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
+
+STARTS = ("30deg", "root", "middle")
+
+
+@dataclass(frozen=True, slots=True)
+class Crack:
+    """A crack through the root of one tooth, in the transverse section over the whole width.
+
+    It starts on the fillet and runs at `angle` to the tooth centre-line down towards it. Its size is `length` [mm], or
+    `level`: at 0.5 the straight crack reaches the centre-line, so a straight crack of level p is p / 0.5 times as long as
+    that. With ``turning=True`` it turns there towards the mirror image of its starting point: level 0.5 is the centre-line,
+    level 1 the opposite fillet, where the tooth is off.
+
+    Parameters
+    ----------
+    level, length : float
+        One of them. ``0 < level < 1``.
+    angle : float
+        To the tooth centre-line [rad], default 45 degrees.
+    start : {"30deg", "root", "middle"}
+        Where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3), where the fillet meets the root
+        circle, or the middle of the fillet's arc.
+    turning : bool
+    tooth : int
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (see `GearPair.contacts`).
+    side : {"loaded", "unloaded"}
+        Flank side on which it starts.
+
+    Raises
+    ------
+    ValueError
+        If the description is contradictory; a crack that leaves the body is refused when it meets its gear.
+    """
+
+    level: float | None = None
+    length: float | None = None
+    angle: float = math.pi / 4
+    start: str = "30deg"
+    turning: bool = False
+    tooth: int = 0
+    side: str = "loaded"
+
+    def __post_init__(self):
+        """Refuse contradictory descriptions."""
+        if (self.level is None) == (self.length is None):
+            raise ValueError(f"level = {self.level}, length = {self.length}: give one of them")
+        if self.level is not None and not 0 < self.level < 1:
+            raise ValueError(
+                f"level = {self.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
+            )
+        if self.length is not None and not (math.isfinite(self.length) and self.length > 0):
+            raise ValueError(f"length = {self.length} mm, but a crack has a positive length")
+        if not math.radians(5) <= self.angle <= math.radians(90):
+            raise ValueError(f"angle = {self.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
+        if self.start not in STARTS:
+            raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
+        if self.side not in ("loaded", "unloaded"):
+            raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
+        if self.turning and self.length is not None:
+            raise ValueError("a turning crack is given by its level, not its length")
+
+
+def start_arc(gear, crack):
+    """Where the crack starts, as arc of `geometry.tooth.root_curve` [mm]."""
+    if crack.start == "root":
+        return 0.0
+    if crack.start == "middle":
+        return fillet_length(gear) / 2
+    phi = np.linspace(math.pi / 2, form_point(gear)[0], 200)
+    wanted = float(fillet(gear, tangent_point(gear))[0])
+    radii = fillet(gear, phi)[0]
+    if not min(radii) < wanted < max(radii):
+        return fillet_length(gear) / 2
+    return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear))
+
+
+def crack_path(gear, crack):
+    """Corners ``(2, 2 or 3)`` [mm] of the crack in the frame of its tooth (centre-line +y), from the fillet to its tip.
+
+    Raises
+    ------
+    ValueError
+        If the crack leaves the body: reaches the held edge, the opposite fillet or the next tooth's sector.
+    """
+    first = cartesian(*root_curve(gear, start_arc(gear, crack)))
+    heading = np.array([-math.sin(crack.angle), -gear.outward * math.cos(crack.angle)])
+    half = first[0] / math.sin(crack.angle)
+    length = crack.length if crack.length is not None else 2 * half * min(crack.level, 0.5 if crack.turning else 1.0)
+    corners = [first, first + heading * length]
+    if crack.turning and crack.level > 0.5:
+        goal = first * [-1, 1]
+        corners.append(corners[1] + (goal - corners[1]) * (2 * crack.level - 1))
+    path = np.array(corners).T
+    _check_inside(gear, crack, path)
+    return path if crack.side == "loaded" else path * [[-1], [1]]
+
+
+def _check_inside(gear, crack, path):
+    tip = path[:, -1]
+    radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
+    size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
+    margin = 0.02 * gear.m_n
+    if gear.outward * (radius - gear.held) < margin:
+        raise ValueError(
+            f"crack of {size}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
+        )
+    if abs(angle) > math.pi / gear.z:
+        raise ValueError(f"crack of {size}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")
+    arcs = np.linspace(-gear.r_f * math.pi / gear.z / 4, fillet_length(gear), 400)
+    fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
+    if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
+        raise ValueError(
+            f"crack of {size}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+        )

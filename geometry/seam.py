@@ -1,0 +1,64 @@
+"""Opening a mesh along a chain of edges: a crack of zero width with two faces."""
+
+import numpy as np
+
+
+def open_seam(points, triangles, chain):
+    """Double the nodes of `chain` (start on the boundary, tip last, tip not doubled).
+
+    Parameters
+    ----------
+    points : ndarray, shape (2, n)
+    triangles : ndarray, shape (3, m)
+    chain : ndarray
+        Nodes of consecutive edges.
+
+    Returns
+    -------
+    points, triangles : ndarray
+        With the new nodes appended; triangles right of the chain (looking to the tip) use them.
+    double : ndarray
+        The chain on its right side, the tip shared.
+
+    Raises
+    ------
+    RuntimeError
+        If the chain is not made of edges of the mesh.
+    """
+    triangles = triangles.copy()
+    sides = {tuple(sorted(edge)) for edge in zip(chain[:-1].tolist(), chain[1:].tolist(), strict=True)}
+    double = chain.copy()
+    double[:-1] = points.shape[1] + np.arange(chain.size - 1)
+    change = []
+    for i, node in enumerate(chain[:-1].tolist()):
+        fan = np.flatnonzero((triangles == node).any(axis=0)).tolist()
+        left = _left_part(points, triangles, node, int(chain[i + 1]), fan, sides)
+        change += [(tri, node, int(double[i])) for tri in fan if tri not in left]
+    for tri, old, new in change:
+        column = triangles[:, tri]
+        column[column == old] = new
+    return np.hstack([points, points[:, chain[:-1]]]), triangles, double
+
+
+def _left_part(points, triangles, node, following, fan, sides):
+    """Triangles of the fan around `node` that are left of the edge to `following`."""
+    ahead = points[:, following] - points[:, node]
+    corners = {tri: set(triangles[:, tri].tolist()) for tri in fan}
+    seeds = []
+    for tri in fan:
+        if following in corners[tri]:
+            (third,) = corners[tri] - {node, following}
+            arm = points[:, third] - points[:, node]
+            if ahead[0] * arm[1] - ahead[1] * arm[0] > 0:
+                seeds.append(tri)
+    if not seeds:
+        raise RuntimeError("the crack is not made of mesh edges: gmsh did not embed it; change the crack or the resolution")
+    found, waiting = set(seeds), list(seeds)
+    while waiting:
+        tri = waiting.pop()
+        for other in fan:
+            shared = corners[tri] & corners[other]
+            if other not in found and len(shared) == 2 and node in shared and tuple(sorted(shared)) not in sides:
+                found.add(other)
+                waiting.append(other)
+    return found
