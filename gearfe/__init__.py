@@ -14,7 +14,9 @@ _HOME = {
     "mesh_stiffness": "gearfe.stiffness",
     "render_stress": "gearfe.render",
     "root_stress": "gearfe.loaded_tooth",
+    "stress_intensity": "gearfe.fracture",
     "tooth_flexibility": "gearfe.loaded_tooth",
+    "write_inp": "gearfe.deck",
 }
 __all__ = sorted(_HOME)
 

@@ -21,13 +21,15 @@ class Body:
     state : {"plane strain", "plane stress"}
     held : str
         Name of the clamped boundary.
+    order : int
+        Polynomial degree the quadrature is exact for; 2 is enough for straight triangles.
     """
 
-    def __init__(self, mesh, material, *, state="plane strain", held="held"):
+    def __init__(self, mesh, material, *, state="plane strain", held="held", order=4):
         if held not in (mesh.boundaries or {}):
             raise ValueError(f"no boundary {held!r}; this mesh has {', '.join(mesh.boundaries or {})}")
         self.mesh, self.material, self.state = mesh, material, state
-        self.basis = Basis(mesh, ElementTriP2(), intorder=4)
+        self.basis = Basis(mesh, ElementTriP2(), intorder=order)
         self.nodes = _node_of_dof(self.basis)
         fixed = np.concatenate([mesh.facets[:, mesh.boundaries[held]].ravel(), mesh.nvertices + mesh.boundaries[held]])
         free = np.ones(2 * mesh.doflocs.shape[1], dtype=bool)

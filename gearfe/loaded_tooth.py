@@ -15,12 +15,22 @@ from .fe import EDGES, flank_load
 STRESS_EDGES = {"flank": 0.1, "fillet": 0.02, "near": 0.4, "far": 0.9}  # in modules; the fillet decides
 
 
-def _load_at(gear, radius):
+def load_at(gear, radius):
     """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
     low, high = sorted((gear.r_form, gear.r_a))
     if not low <= radius <= high:
         raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
     return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
+
+
+def narrow_pressure(arc, half_width):
+    """Pressure of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm]."""
+
+    def pressure(s):
+        away = np.minimum(np.abs(s - arc) / half_width, 1.0)
+        return np.cos(math.pi / 2 * away) ** 2 / half_width
+
+    return pressure
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
@@ -30,12 +40,7 @@ def _solve(gear, material, state, arc, half_width, edges, refine):
     roll = stations(gear, edges["flank"] * m, patches=[(*inner, half_width / (4 * refine))])
     mesh = section(gear, {0: roll}, fillet_size=edges["fillet"] * m, size=edges["near"] * m, far_size=edges["far"] * m)
     body = Body(mesh.mesh, material, state=state)
-
-    def pressure(s):
-        away = np.minimum(np.abs(s - arc) / half_width, 1.0)
-        return np.cos(math.pi / 2 * away) ** 2 / half_width
-
-    load = flank_load(mesh, 0, pressure, np.array([0]), roll.size - 1)
+    load = flank_load(mesh, 0, narrow_pressure(arc, half_width), np.array([0]), roll.size - 1)
     unit = -load[0::2].sum(), -load[1::2].sum()
     return mesh, body, body.solve(load / math.hypot(*unit))[:, 0]
 
@@ -67,7 +72,7 @@ def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane s
     ----------
     C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern (1953).
     """
-    arc = _load_at(gear, radius)
+    arc = load_at(gear, radius)
     roll = float(roll_at_arc(gear, arc))
     if at == "surface":
         from .fe import flexibility
@@ -121,7 +126,7 @@ def root_stress(gear, radius, line_load, material, *, half_width=None, state="pl
     half_width = 0.05 * gear.m_n if half_width is None else half_width
     if not half_width > 0:
         raise ValueError(f"half_width = {half_width} mm, but the load needs a width: give half_width > 0")
-    mesh, _, moved = _solve(gear, material, state, _load_at(gear, radius), half_width, STRESS_EDGES, refine)
+    mesh, _, moved = _solve(gear, material, state, load_at(gear, radius), half_width, STRESS_EDGES, refine)
     nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
     _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
     along = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], slopes)
