@@ -68,13 +68,14 @@ class Mesh:
         line, pressure = np.zeros(shape), np.zeros(shape)
         approach, tangent, closed = np.empty(shape[0]), np.empty(shape[0]), []
         for i in range(shape[0]):
-            near = self._near(i, line_load)
-            contacts = self._contacts(i, near, self._corners(i, near, line_load))
+            reach = self._reach(i, line_load)
+            near = np.flatnonzero(found.gap[i] < reach)
+            contacts = self._with_cracks(self._contacts(i, near, self._corners(i, near, line_load), reach))
             force, approach[i], tangent[i] = self._share(contacts, line_load)
-            opening = self._openings(contacts)
+            opening = contacts["opening"]
             if opening is not None and (opening @ force).min() < -CLOSED * np.abs(opening @ force).max():
                 closed.append(i)
-                force, approach[i], tangent[i] = self._share_closing(contacts, opening, line_load)
+                force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
             np.add.at(line[i], contacts["column"], force)
             single = contacts["coefficient"] > 0
             peak = peak_pressure(force[single], contacts["radius"][single], self.modulus)
@@ -89,25 +90,11 @@ class Mesh:
             contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus, weight
         )
 
-    def _openings(self, contacts):
-        """Opening of all crack face pairs per unit load at each contact ``(pairs, n)``; None without cracks."""
-        rows = []
-        for flexible, roll, teeth in (
-            (self.flexibility[0], contacts["roll_1"], contacts["order"]),
-            (self.flexibility[1], contacts["roll_2"], -contacts["order"]),
-        ):
-            arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
-            for seam in flexible.seams:
-                none = np.zeros(seam.influence.shape[0])
-                rows.append(
-                    np.array([seam.opening[t](s) if t in seam.opening else none for t, s in zip(teeth, arc, strict=True)]).T
-                )
-        return np.vstack(rows) if rows else None
-
-    def _share_closing(self, contacts, opening, line_load):
+    def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
-        faces = block_diag(*(seam.influence for flexible in self.flexibility for seam in flexible.seams))
-        n, m = opening.shape[1], opening.shape[0]
+        faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
+        opening = contacts["opening"]
+        m, n = opening.shape
         extended = {
             "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
             "gap": np.append(contacts["gap"], np.zeros(m)),
@@ -117,13 +104,25 @@ class Mesh:
         force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
         return force[:n], approach, tangent
 
-    def _near(self, i, line_load):
-        """Columns of the pairs whose gap the load could close: at most twice the approach of the best single pair."""
+    def _with_cracks(self, contacts):
+        """Add what cracks open: to the flexibility, and as ``opening`` (face pairs, contacts), None without cracks."""
+        rows = []
+        for flexible, roll, teeth in (
+            (self.flexibility[0], contacts["roll_1"], contacts["order"]),
+            (self.flexibility[1], contacts["roll_2"], -contacts["order"]),
+        ):
+            if flexible.seam is not None:
+                opening = flexible.seam.at(np.clip(arc_at(flexible.gear, roll), *flexible.limits), teeth)
+                contacts["flexibility"] = contacts["flexibility"] + opening @ flexible.seam.stiffness @ opening.T
+                rows.append(opening.T)
+        return contacts | {"opening": np.vstack(rows) if rows else None}
+
+    def _reach(self, i, line_load):
+        """Gap [mm] no contact can close at phase i: twice the approach of the best pair alone."""
         gap = self.found.gap[i]
         best = int(np.argmin(gap))
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[i, best], self.modulus)) + 0.5)
-        alone = gap[best] + max(self.matrix[i, best, best] + local, 0.0) * line_load
-        return np.flatnonzero(gap < 2 * alone)
+        return 2 * (gap[best] + max(self.matrix[i, best, best] + local, 0.0) * line_load)
 
     def _corners(self, i, near, line_load):
         """For each pair of `near`: 0, or the gear (1, 2) whose tip corner it touches."""
@@ -135,7 +134,7 @@ class Mesh:
             corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll[i, near]) < reach] = number
         return corner
 
-    def _contacts(self, i, near, corner):
+    def _contacts(self, i, near, corner, reach):
         """Flexibility, gap, logarithm coefficient, radius and pair column of every unknown at phase i."""
         if not corner.any():
             c = np.full(near.size, sum(self.coefficients))
@@ -149,7 +148,7 @@ class Mesh:
                 "roll_2": self.found.roll_2[i, near],
                 "order": self.found.order[near],
             }
-        parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
+        parts = [self._row(i, column, number, reach) for column, number in zip(near, corner, strict=True)]
         roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
         column = np.repeat(near, [part[0].size for part in parts])
         order = self.found.order[column]
@@ -162,7 +161,7 @@ class Mesh:
             "roll_1": roll_1, "roll_2": roll_2, "order": order,
         }  # fmt: skip
 
-    def _row(self, i, column, corner):
+    def _row(self, i, column, corner, reach):
         """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
         found = self.found
         if corner == 0:
@@ -175,6 +174,7 @@ class Mesh:
         roll = roll_at_arc(gears[tip], hats.arc)
         gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
         there = np.isfinite(met)
+        there &= gap <= max(reach, gap[there].min())
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)
         arc = arc_at(gears[flank], met[there])

@@ -101,6 +101,34 @@ def turned(vectors, angle):
 
 
 @dataclass(frozen=True, slots=True)
+class SeamFaces:
+    """The faces of all cracks of a gear, pair of facing nodes by pair.
+
+    The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
+    hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
+    from passing through each other.
+
+    Attributes
+    ----------
+    opening : dict of int to spline
+        Over the arc of that tooth's flank: opening of the n face pairs under a unit load there [mm per N/mm].
+    influence : ndarray, shape (n, n)
+        Opening of the pairs under unit forces that push them apart [mm per N/mm].
+    stiffness : ndarray, shape (n, n)
+        Its inverse.
+    """
+
+    opening: dict
+    influence: np.ndarray
+    stiffness: np.ndarray
+
+    def at(self, arc, teeth):
+        """Opening ``(contacts, n)`` under unit loads at `arc` [mm] on `teeth`; zero for teeth that were not solved."""
+        none = np.zeros(self.influence.shape[0])
+        return np.array([self.opening[t](s) if t in self.opening else none for t, s in zip(teeth, arc, strict=True)])
+
+
+@dataclass(frozen=True, slots=True)
 class Flexibility:
     """Flexibility of one gear between simultaneous contacts, local contact excluded.
 
@@ -119,8 +147,8 @@ class Flexibility:
         Unknowns of the solve.
     healthy : Flexibility or None
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
-    seams : tuple of SeamFaces
-        The cracks.
+    seam : SeamFaces or None
+        The cracks; the splines above then are those with the cracks glued shut.
     """
 
     gear: Gear
@@ -130,7 +158,7 @@ class Flexibility:
     limits: tuple
     dofs: int = 0
     healthy: object = None
-    seams: tuple = ()
+    seam: SeamFaces | None = None
 
     def near_of(self, tooth):
         """Spline S(s, s) of a tooth."""
@@ -150,7 +178,7 @@ class Flexibility:
     def matrix(self, roll, teeth):
         """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
 
-        Contacts on one tooth get no influence on each other here: see `TipHats`.
+        Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
         """
         arc = np.clip(arc_at(self.gear, roll), *self.limits)
         n = len(teeth)
@@ -163,18 +191,6 @@ class Flexibility:
                 if spline is not None:
                     out[..., i, j] = out[..., j, i] = spline.ev(arc[..., low], arc[..., high])
         return out
-
-
-@dataclass(frozen=True, slots=True)
-class SeamFaces:
-    """The faces of one crack, pair of facing nodes by pair.
-
-    `opening[tooth]` is a spline over the arc of that tooth's flank: opening of the n face pairs under a unit load there [mm
-    per N/mm]; `influence` (n, n) their opening under unit forces that push them apart.
-    """
-
-    opening: dict
-    influence: np.ndarray
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,35 +278,39 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     body = Body(mesh.mesh, material, state=state)
     own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     moved = {tooth: body.solve(own[tooth].load) for tooth in solved}
+    faces = _face_columns(mesh)
+    openings = {tooth: faces.T @ moved[tooth] for tooth in solved}
+    influence = faces.T @ body.solve(faces)
+    influence = (influence + influence.T) / 2
+    stiffness = np.linalg.inv(influence)
     near, tip, far = {}, {}, {}
     for tooth in solved:
-        influence = own[tooth].load.T @ moved[tooth]
-        near[tooth], tip[tooth] = own_tooth(gear, own[tooth], influence, half_plane(material, state))
+        glued = own[tooth].load.T @ moved[tooth] - openings[tooth].T @ stiffness @ openings[tooth]
+        near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
         for other in solved:
             if tooth < other:
                 # both are the same number, by reciprocity; their mean is symmetric to rounding
                 there, back = own[other].load.T @ moved[tooth], (own[tooth].load.T @ moved[other]).T
-                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, (there + back).T / 2)
-    seams = tuple(_seam_faces(body, seam, own, moved) for seam in mesh.seams)
+                glued = (there + back) / 2 - openings[other].T @ stiffness @ openings[tooth]
+                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, glued.T)
+    seam = SeamFaces({t: CubicSpline(own[t].arc, openings[t].T) for t in solved}, influence, stiffness)
     limits = own[solved[0]].arc[0], own[solved[0]].arc[-2]
-    return Flexibility(gear, near, far, tip, limits, next(iter(moved.values())).shape[0], healthy, seams)
+    return Flexibility(gear, near, far, tip, limits, faces.shape[0], healthy, seam)
 
 
-def _seam_faces(body, seam, own, moved):
-    """Openings of a crack's facing nodes under flank loads and under their own unit forces."""
-    left, right = seam.faces[:, :-2]  # without the tip and the quarter points beside it
-    points = body.mesh.doflocs[:, seam.faces[0]]
-    ahead = np.gradient(points, axis=1)[:, :-2]
-    normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
-    apart = lil_matrix((2 * body.mesh.doflocs.shape[1], left.size))
-    for j in range(left.size):
+def _face_columns(mesh):
+    """Columns of unit forces that push the facing nodes of all cracks apart, tips and the quarter points beside them left out."""
+    columns = []
+    for seam in mesh.seams:
+        ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
+        normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
+    apart = lil_matrix((2 * mesh.mesh.doflocs.shape[1], len(columns)))
+    for j, (left, right, normal) in enumerate(columns):
         for d in range(2):
-            apart[2 * left[j] + d, j] = normal[d, j]
-            apart[2 * right[j] + d, j] = -normal[d, j]
-    apart = apart.tocsc()
-    influence = apart.T @ body.solve(apart)
-    opening = {tooth: CubicSpline(own[tooth].arc, (apart.T @ moved[tooth]).T) for tooth in own}
-    return SeamFaces(opening, (influence + influence.T) / 2)
+            apart[2 * left + d, j] = normal[d]
+            apart[2 * right + d, j] = -normal[d]
+    return apart.tocsc()
 
 
 def own_tooth(gear, own, influence, coefficient):

@@ -104,6 +104,12 @@ def crack_path(gear, crack):
     return path if crack.side == "loaded" else path * [[-1], [1]]
 
 
+def mirrored(gear, crack):
+    """Mirror image [mm] of the crack's starting point, in the frame of its tooth: where a turning crack breaks through."""
+    sign = -1 if crack.side == "loaded" else 1
+    return cartesian(*root_curve(gear, start_arc(gear, crack))) * [sign, 1]
+
+
 def _check_inside(gear, crack, path):
     tip = path[:, -1]
     radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])

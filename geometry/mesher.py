@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
-from .damage import crack_path, start_arc
+from .damage import crack_path, mirrored, start_arc
 from .gear import Gear
 from .outline import along, held_circle, outline
 from .seam import open_seam
 
-CRACK_EDGE = 0.02  # edge length at a crack tip [m_n], and at most a fifth of the crack
+CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of the crack
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
     if len({tooth % gear.z for tooth in rolls}) != len(rolls):
         raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
-    paths, marks = {}, {}
+    paths, marks, tips = {}, {}, {}
     for crack in cracks:
         place = crack.tooth % gear.z, crack.side
         if place in paths:
@@ -107,14 +107,18 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
         paths[place] = corners = _turned(crack_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
         length = np.hypot(*np.diff(corners, axis=1)).sum()
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
+        tips[place] = min(CRACK_EDGE * fillet_size, length / 5)
+        if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
+            left = math.dist(corners[:, -1], _turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
+            opposite = "unloaded" if crack.side == "loaded" else "loaded"
+            marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
+            tips[place] = min(tips[place], left / 8)
     rim, flanks, fillets, starts = outline(
         gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks
     )
     chains = []
     for place, corners in paths.items():
-        length = np.hypot(*np.diff(corners, axis=1)).sum()
-        tip = min(CRACK_EDGE * gear.m_n * fillet_size / (0.1 * gear.m_n), length / 5)
-        chains.append((starts[place], along(corners, marks[place][1], tip, max(fillet_size, tip))[:, 1:]))
+        chains.append((starts[place], along(corners, marks[place][1], tips[place], max(fillet_size, tips[place]))[:, 1:]))
     mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
     return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
 

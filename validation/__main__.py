@@ -3,7 +3,11 @@
 import argparse
 import importlib
 
-PAGES = {"speed": "seconds against error of every method", "readme": "the table and the program output in the README"}
+PAGES = {
+    "speed": "seconds against error of every method",
+    "hard": "hard cases, each with its outcome",
+    "readme": "the table and the program output in the README",
+}
 
 
 def main():

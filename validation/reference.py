@@ -2,6 +2,7 @@
 
 import math
 import tomllib
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -46,12 +47,17 @@ def root_stress(row):
     return gf.root_stress(gear, math.hypot(*row["point"]), 1 / math.cos(gear.alpha_n), STEEL, half_width=0.05)
 
 
-def healthy(row, *, phases=None, teeth=None):
-    """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
+def healthy_pair(row):
+    """Pair and material of a row of ``healthy``."""
     rack = {"m_n": row["m_n"], "alpha_n": math.radians(20), "beta": math.radians(row["beta_deg"]), "b": 1.0}
     pair = gf.GearPair(*(gf.Gear(z=z, r_bore=bore, **rack) for z, bore in zip(row["z"], row["bores"], strict=True)))
+    return pair, gf.Material(E=row["E"], nu=0.3)
+
+
+def healthy(row, *, phases=None, teeth=None):
+    """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
+    pair, steel = healthy_pair(row)
     phases = (np.arange(32) + 0.5) / 32 if phases is None else phases
-    steel = gf.Material(E=row["E"], nu=0.3)
     k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, teeth=teeth).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 
@@ -78,3 +84,35 @@ def iso():
     rack = {"m_n": 8.0, "alpha_n": math.radians(20), "beta": math.radians(15.8), "b": 100.0}
     pair = gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
     return {"c_th": theoretical_stiffness(pair), "z_n1": virtual_teeth(pair.gear_1), "z_n2": virtual_teeth(pair.gear_2)}
+
+
+def ring_root_stress(row):
+    """Root stress of a ring over Ft/(b m) [-], and its contact ratio with 17 teeth before trimming."""
+    ring = gf.Gear(z=row["z"], m_n=1.0, r_rim=row["z"] / 2 + 12.0, tip_radius=row["tip_radius"], **RACK)
+    stress = gf.root_stress(ring, math.hypot(*row["point"]), 1 / math.cos(ring.alpha_n), STEEL, half_width=0.05)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        pair = gf.GearPair(gf.Gear(z=17, m_n=1.0, r_bore=4.0, **RACK), ring)
+    return stress, pair.eps_alpha_of(pair.gear_1.roll_a, ring.roll_a)
+
+
+def healthy_ring():
+    """Mean, max, min stiffness [N/(mm um)] of the 27/72 ring pair."""
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        pair = gf.GearPair(gf.Gear(z=27, r_bore=12.0, **rack), gf.Gear(z=72, r_rim=90.0, **rack))
+    steel = gf.Material(E=207e3, nu=0.3)
+    k = gf.mesh_stiffness(pair, 150.0, steel, phases=(np.arange(32) + 0.5) / 32, extended=False).k / 1e6
+    return np.array([k.mean(), k.max(), k.min()])
+
+
+def crack_reduction(row, **crack):
+    """Largest reduction of k [-] by a pinion crack of the row's level."""
+    table = load()["healthy"]["rows"]
+    source = next(r for r in table if r["z"] == row["z"])
+    pair, steel = healthy_pair(source)
+    run = {"span": "tooth", "phases": 64, "extended": False}
+    whole = gf.mesh_stiffness(pair, source["line_load"], steel, **run).k
+    damage = {"pinion": [gf.Crack(level=row["level"], **crack)]}
+    return float((1 - gf.mesh_stiffness(pair, source["line_load"], steel, damage=damage, **run).k / whole).max())

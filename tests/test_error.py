@@ -1,0 +1,130 @@
+"""The error estimate covers the true error, and random gears and cracks behave."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+
+
+def random_case(seed):
+    """A random pair (external or ring), load, and damage."""
+    rng = np.random.default_rng(seed)
+    rack = {
+        "m_n": float(rng.choice([1.0, 2.0, 3.5])),
+        "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5])),
+        "beta": math.radians(rng.choice([0.0, 15.0])),
+        "b": 10.0,
+        "tip_radius": float(rng.choice([0.1, 0.25])),
+    }
+    z = int(rng.integers(9, 60))
+    r_f = (z / 2 / math.cos(rack["beta"]) - 1.25) * rack["m_n"]
+    x = float(rng.uniform(-0.2, 0.5))
+    one = gf.Gear(z=z, x=x, r_bore=float(rng.uniform(0.3, 0.9)) * (r_f + x * rack["m_n"]), **rack)
+    if rng.random() < 0.3:
+        z = int(rng.integers(z + 20, z + 80))
+        outside = (z / 2 / math.cos(rack["beta"]) + 1.25) * rack["m_n"]
+        two = gf.Gear(z=z, x=x, r_rim=outside + float(rng.uniform(2, 8)) * rack["m_n"], **rack)
+    else:
+        z = int(rng.integers(12, 90))
+        r_f = (z / 2 / math.cos(rack["beta"]) - 1.25) * rack["m_n"]
+        two = gf.Gear(z=z, r_bore=float(rng.uniform(0.3, 0.9)) * r_f, **rack)
+    crack = gf.Crack(
+        level=float(rng.uniform(0.02, 0.8)),
+        angle=math.radians(rng.uniform(30, 70)),
+        start=str(rng.choice(["30deg", "middle"])),
+        turning=bool(rng.random() < 0.3),
+        side=str(rng.choice(["loaded", "unloaded"], p=[0.8, 0.2])),
+    )
+    damage = {str(rng.choice(["pinion", "wheel"])): [crack]} if rng.random() < 0.5 else None
+    return gf.GearPair(one, two), float(10 ** rng.uniform(1, 3)) * 10, damage
+
+
+def admissible(seeds):
+    """Random cases that exist; the others end in ValueError."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        for seed in seeds:
+            try:
+                yield seed, *random_case(seed)
+            except ValueError:
+                continue
+
+
+def covered(seed, pair, force, damage):
+    """Whether the true errors at all phases lie within the estimate (against a mesh of 2.5 times the resolution)."""
+    run = {"phases": 12, "damage": damage, "cache": False}
+    try:
+        curve = gf.mesh_stiffness(pair, force, gf.Material(), error=True, **run)
+        fine = gf.mesh_stiffness(pair, force, gf.Material(), refine=2.5, **run)
+    except ValueError:
+        return None
+    inside = (np.abs(curve.k - fine.k) <= curve.error).all()
+    print(seed, f"error {np.abs(curve.k / fine.k - 1).max():.2e}, estimate {(curve.error / curve.k).max():.2e}, inside {inside}")
+    return inside
+
+
+def test_error_estimate_covers_the_true_error_in_a_few_cases():
+    results = [r for r in (covered(*case) for case in admissible(range(12))) if r is not None]
+    assert len(results) >= 5
+    assert sum(results) >= len(results) - 1
+
+
+@pytest.mark.slow
+def test_error_estimate_covers_the_true_error():
+    results = []
+    for case in admissible(range(100, 400)):
+        result = covered(*case)
+        results += [] if result is None else [result]
+        if len(results) == 48:
+            break
+    print(f"{sum(results)} of {len(results)} inside")
+    assert len(results) == 48
+    assert np.mean(results) >= 0.95
+
+
+def fuzz(seeds):
+    """Each seed gives a curve whose identities hold, or a ValueError; returns how many of each."""
+    import gmsh
+
+    curves = refused = 0
+    for seed in seeds:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            warnings.filterwarnings("ignore", "tip_radius|the ring's tip", UserWarning)
+            try:
+                pair, force, damage = random_case(seed)
+                run = {"phases": 8, "refine": 0.6, "cache": False, "span": "tooth"}
+                healthy = gf.mesh_stiffness(pair, force, gf.Material(), **run)
+                curves += 1
+                if damage:
+                    (name, (crack,)) = next(iter(damage.items()))
+                    from dataclasses import replace
+
+                    deeper = {name: [replace(crack, level=min(0.9, crack.level * 1.3))]}
+                    cracked, deep = (gf.mesh_stiffness(pair, force, gf.Material(), damage=d, **run) for d in (damage, deeper))
+                    slack = 5e-3 * healthy.k
+                    assert (cracked.k <= healthy.k + slack).all(), seed
+                    assert (deep.k <= cracked.k + slack).all(), seed
+            except ValueError as error:
+                assert len(str(error)) > 20
+                refused += 1
+        assert not gmsh.isInitialized()
+        assert np.isfinite(healthy.k).all()
+        assert (healthy.k > 0).all()
+        np.testing.assert_allclose(healthy.share.sum(axis=1), 1, rtol=1e-9)
+    return curves, refused
+
+
+def test_fuzz_a_few():
+    curves, refused = fuzz(range(1000, 1016))
+    assert curves >= 5
+
+
+@pytest.mark.slow
+def test_fuzz():
+    curves, refused = fuzz(range(2000, 2300))
+    print(f"{curves} curves, {refused} refused")
+    assert curves >= 150
