@@ -16,6 +16,7 @@ _HOME = {
     "root_stress": "gearfe.loaded_tooth",
     "stress_intensity": "gearfe.fracture",
     "tooth_flexibility": "gearfe.loaded_tooth",
+    "write_contact_inp": "gearfe.contact_deck",
     "write_inp": "gearfe.deck",
 }
 __all__ = sorted(_HOME)

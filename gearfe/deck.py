@@ -63,14 +63,10 @@ def _lines(body, load):
     yield "*NODE, NSET=ALL"
     yield from (f"{i}, {x:.12e}, {y:.12e}, 0." for i, (x, y) in enumerate(points.T.tolist(), 1))
     yield f"*ELEMENT, TYPE={'CPE6' if body.state == 'plane strain' else 'CPS6'}, ELSET=GEAR"
-    a, b, c = points[:, body.nodes[:3]].transpose(1, 0, 2)
-    clockwise = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0] < 0
-    nodes = np.where(clockwise, body.nodes[[0, 2, 1, 5, 4, 3]], body.nodes) + 1
+    nodes = element_nodes(mesh, points) + 1
     yield from (f"{i}, {', '.join(map(str, row))}" for i, row in enumerate(nodes.T.tolist(), 1))
-    edges = mesh.boundaries["held"]
-    held = np.unique(np.concatenate([mesh.facets[:, edges].ravel(), mesh.nvertices + edges])) + 1
     yield "*NSET, NSET=HELD"
-    yield from (f"{node}," for node in held.tolist())
+    yield from (f"{node}," for node in (held_nodes(mesh) + 1).tolist())
     yield "*MATERIAL, NAME=M"
     yield f"*ELASTIC\n{body.material.E!r}, {body.material.nu!r}"
     yield "*SOLID SECTION, ELSET=GEAR, MATERIAL=M\n1."
@@ -82,3 +78,17 @@ def _lines(body, load):
         for row, value in zip(entries.row.tolist(), entries.data.tolist(), strict=True)
     )
     yield "*NODE PRINT, NSET=ALL\nU\n*END STEP\n"
+
+
+def element_nodes(mesh, points):
+    """Nodes ``(6, triangles)`` counter-clockwise for `points` (2, nodes): corners, then middles of 1-2, 2-3, 3-1."""
+    nodes = np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])
+    a, b, c = points[:, nodes[:3]].transpose(1, 0, 2)
+    clockwise = (b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0] < 0
+    return np.where(clockwise, nodes[[0, 2, 1, 5, 4, 3]], nodes)
+
+
+def held_nodes(mesh):
+    """Nodes of the held edge."""
+    edges = mesh.boundaries["held"]
+    return np.unique(np.concatenate([mesh.facets[:, edges].ravel(), mesh.nvertices + edges]))

@@ -214,8 +214,9 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     if not refine > 0:
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    fine = stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], span=SPAN)
-    coarse = stations(gear, edge["read"], tip=0.025 * gear.m_n / refine, span=SPAN)
+    longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
+    fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], span=SPAN)
+    coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, span=SPAN)
     rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
     return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks)
 

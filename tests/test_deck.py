@@ -19,8 +19,14 @@ CASES = {
 }
 
 
+def run(folder, name):
+    """Run CalculiX on one thread."""
+    quiet = {"cwd": folder, "capture_output": True, "text": True, "timeout": 300, "check": False}
+    return subprocess.run(["ccx", "-i", name], **quiet)
+
+
 def displacements(folder, name, count):
-    done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, timeout=300, check=False)
+    done = run(folder, name)
     data = (folder / f"{name}.dat").read_text().splitlines() if (folder / f"{name}.dat").exists() else []
     rows = [line.split() for line in data]
     rows = [r for r in rows if len(r) == 4 and r[0].isdigit()]
@@ -31,7 +37,12 @@ def displacements(folder, name, count):
     return out
 
 
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx")
+needs_ccx = pytest.mark.skipif(
+    shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx"
+)
+
+
+@needs_ccx
 @pytest.mark.parametrize("name", CASES)
 def test_calculix_gives_the_same_displacements(name, tmp_path):
     gear, radius, cracks = CASES[name]
@@ -54,3 +65,38 @@ def test_deck_is_complete(tmp_path):
     assert abs(np.hypot(*total) - 100) < 0.1
     with pytest.raises(ValueError, match=r"ends in \.inp"):
         gf.write_inp(tmp_path / "gear.txt", gear, radius, 100.0, STEEL)
+
+
+def contact_difference(folder, phase, line_load):
+    """Relative difference of k, gearfe's over CalculiX's nonlinear contact at the same approach."""
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), gf.Gear(z=31, r_bore=13.0, **RACK))
+    curve = gf.mesh_stiffness(pair, 20 * line_load, STEEL, phases=[phase])
+    deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, line_load, (STEEL, STEEL))
+    done = run(folder, "pair")
+    assert (folder / "pair.dat").exists(), done.stdout[-500:]
+    return line_load / deck.force(folder / "pair.dat") - 1
+
+
+@needs_ccx
+def test_nonlinear_contact_at_a_tip_corner(tmp_path):
+    assert abs(contact_difference(tmp_path, 0.63, 100.0)) < 0.01
+
+
+@needs_ccx
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("phase", "line_load", "tolerance"),
+    [
+        (0.3, 100.0, 0.005),
+        (0.8, 100.0, 0.005),
+        (0.8, 300.0, 0.005),
+        (0.65, 100.0, 0.01),
+        (0.63, 300.0, 0.01),
+        (0.98, 100.0, 0.01),
+        (0.98, 300.0, 0.01),
+    ],
+)
+def test_nonlinear_contact(tmp_path, phase, line_load, tolerance):
+    difference = contact_difference(tmp_path, phase, line_load)
+    print(f"phase {phase}, {line_load} N/mm: {100 * difference:+.2f} %")
+    assert abs(difference) < tolerance

@@ -4,6 +4,7 @@ import argparse
 import importlib
 
 PAGES = {
+    "cracks": "crack reductions and their conventions",
     "speed": "seconds against error of every method",
     "hard": "hard cases, each with its outcome",
     "readme": "the table and the program output in the README",

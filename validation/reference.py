@@ -114,5 +114,5 @@ def crack_reduction(row, **crack):
     pair, steel = healthy_pair(source)
     run = {"span": "tooth", "phases": 64, "extended": False}
     whole = gf.mesh_stiffness(pair, source["line_load"], steel, **run).k
-    damage = {"pinion": [gf.Crack(level=row["level"], **crack)]}
+    damage = {"pinion": [gf.Crack(**({"level": row["level"]} | crack))]}
     return float((1 - gf.mesh_stiffness(pair, source["line_load"], steel, damage=damage, **run).k / whole).max())
