@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import sys
+import warnings
 
 
 def main(argv=None):
@@ -16,6 +17,7 @@ def main(argv=None):
     verb.add_argument("--method", default="fe", help="fe, textbook or published (default: fe)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
+    verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (fe)")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", compare, "table of every formulation's error against finite elements, by zone, with cost")
@@ -29,7 +31,10 @@ def main(argv=None):
     _verb(verbs, "info", info, "versions, and what this machine has")
     arguments = parser.parse_args(argv)
     try:
-        arguments.run(arguments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", UserWarning)
+            warnings.showwarning = lambda message, *_: print(f"gearfe: note: {message}", file=sys.stderr)
+            arguments.run(arguments)
     except (ValueError, RuntimeError) as error:
         print(f"gearfe: {error}", file=sys.stderr)
         return 1
@@ -88,11 +93,12 @@ def stiffness(arguments):
     with _working(f"stiffness by {arguments.method}"):
         curve = mesh_stiffness(
             chosen.pair, force, chosen.materials, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error,
         )  # fmt: skip
     print(f"{arguments.method}, {force:g} N along the line of action, width {curve.meta['width_mm']:g} mm:")
+    doubt = curve.zone_errors()
     for zone, value in curve.zones().items():
-        print(f"  {zone:7s} {value:.4e} N/m")
+        print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))
     if arguments.output:
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -112,7 +118,8 @@ def compare(arguments):
         result = run(scene, arguments.pair, phases=arguments.phases, refine=arguments.refine)
     meta = result.reference.meta
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
-    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases, error against fe\n")
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")
+    print("errors are against fe; the estimate is fe's own discretisation error\n")
     print(result.table())
     if arguments.plot:
         from .render import plot_curves

@@ -51,14 +51,23 @@ class StiffnessCurve:
 
         A zone none of the phases falls into is left out.
         """
+        out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
+        return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
+
+    def zone_errors(self):
+        """Largest relative error estimate by the same zones; empty if none was asked for."""
+        if self.error is None:
+            return {}
+        relative = self.error / self.k
+        out = {name: float(relative[rows].max()) for name, rows in self._rows().items()}
+        return out | {"mean": float(relative.max()), "max": float(relative[np.argmax(self.k)])}
+
+    def _rows(self):
         inside = self.phase % 1.0 <= self.meta["eps_alpha"] % 1.0 + 1e-9
         low = int(self.meta["eps_alpha"])
         names = {1: "single", 2: "double", 3: "triple"}
-        out = {}
-        for pairs, rows in ((low, ~inside), (low + 1, inside)):
-            if rows.any():
-                out[names.get(pairs, f"{pairs} pairs")] = float(self.k[rows].mean())
-        return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
+        zones = {names.get(pairs, f"{pairs} pairs"): rows for pairs, rows in ((low, ~inside), (low + 1, inside))}
+        return {name: rows for name, rows in zones.items() if rows.any()}
 
     def save(self, path):
         """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""

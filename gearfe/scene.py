@@ -21,8 +21,10 @@ TABLES = {
         "m_n_mm": (NUMBER, REQUIRED),
         "alpha_n_deg": (NUMBER, REQUIRED),
         "b_mm": (NUMBER, REQUIRED),
-        "r_bore_mm": (NUMBER, REQUIRED),
         "material": (TEXT, REQUIRED),
+        "r_bore_mm": (NUMBER, None),
+        "r_rim_mm": (NUMBER, None),
+        "z_cutter": (WHOLE, 20),
         "beta_deg": (NUMBER, 0.0),
         "x": (NUMBER, 0.0),
         "addendum": (NUMBER, 1.0),
@@ -128,8 +130,10 @@ def _scene(file, data):
 
 
 def _gear(row):
-    plain = {key: row[key] for key in ("z", "x", "addendum", "dedendum", "tip_radius")}
-    lengths = {key: row[f"{key}_mm"] for key in ("m_n", "b", "r_bore")}
+    if (row["r_bore_mm"] is None) == (row["r_rim_mm"] is None):
+        raise ValueError("give r_bore_mm (an external gear) or r_rim_mm (a ring), one of them, a number in mm")
+    plain = {key: row[key] for key in ("z", "x", "addendum", "dedendum", "tip_radius", "z_cutter")}
+    lengths = {key: row[f"{key}_mm"] for key in ("m_n", "b", "r_bore", "r_rim")}
     angles = {key: math.radians(row[f"{key}_deg"]) for key in ("alpha_n", "beta")}
     return Gear(**plain, **lengths, **angles)
 

@@ -17,7 +17,7 @@ from .energy import published, textbook
 from .hertz import linear_hertz
 from .material import Material, check_state
 
-COARSER = 0.6
+COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
 METHODS = ("fe", "textbook", "published")
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
@@ -72,7 +72,7 @@ def mesh_stiffness(
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
     error : bool
-        For ``fe``: estimate the discretisation error of every k from a second, coarser solve (see `estimate`).
+        For ``fe``: estimate the discretisation error of every k from two coarser solves (see `estimate`).
     cache : bool
         For ``fe``: reuse a gear solved before, in this process or an earlier one (see `gearfe.cache`).
 
@@ -95,6 +95,8 @@ def mesh_stiffness(
     check_state(state)
     phase = _phases(phases, span, pair)
     cracks = _cracks(pair, damage)
+    if pair.gear_2.internal and method != "fe":
+        raise ValueError(f"method = {method!r} has no ring (Sainsot's foundation does not hold for one): use method = 'fe'")
     if any(cracks) and method != "fe":
         raise ValueError(f"damage with method = {method!r}: only 'fe' models cracks so far")
     numeric = {"state": state, "refine": float(refine), "teeth": teeth}
@@ -109,19 +111,26 @@ def mesh_stiffness(
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
     if error and method == "fe":
-        coarse, _ = _fe(pair, materials, phase, extended, cracks, cache=cache, **(numeric | {"refine": COARSER * refine}))
-        curves = [replace(c, error=estimate(c.k, _curve(pair, phase, c.meta["force_N"], coarse, c.meta).k)) for c in curves]
+        coarser = [
+            _fe(pair, materials, phase, extended, cracks, cache=cache, **(numeric | {"refine": ratio * refine}))[0]
+            for ratio in COARSER
+        ]
+        for i, curve in enumerate(curves):
+            others = [_curve(pair, phase, curve.meta["force_N"], solve, curve.meta).k for solve in coarser]
+            curves[i] = replace(curve, error=estimate(curve.k, *others))
     return curves if np.ndim(force) else curves[0]
 
 
-def estimate(k, coarse):
-    """Estimated discretisation error of `k` [N/m] from a solve with edges 1 / `COARSER` times as long.
+def estimate(k, *coarse):
+    """Estimated discretisation error of `k` [N/m] from solves with edges 1 / `COARSER` times as long.
 
-    The difference of the two bounds the error of the finer one for any rate of convergence above 1; because it can vanish
-    by chance at single phases, its largest value over an eighth of the curve and its mean over all of it are added.
+    The differences of `k` from the coarser solves are added; because they can vanish by chance at single phases, their largest
+    value over an eighth of the curve is taken, and the mean difference from the coarsest is added. That two solves and a sum are
+    needed was found on the 31 random cases of seeds 0 to 39 in ``tests/test_error.py`` (all covered) and is judged on others
+    there.
     """
-    away = np.abs(k - coarse)
-    return maximum_filter1d(away, max(3, away.size // 8), mode="nearest") + away.mean()
+    away = np.abs(k - np.array(coarse))
+    return maximum_filter1d(away.sum(axis=0), max(3, k.size // 8), mode="nearest") + away[0].mean()
 
 
 def _materials(material):

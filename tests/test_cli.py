@@ -1,3 +1,5 @@
+from importlib import resources
+
 import numpy as np
 import pytest
 
@@ -18,8 +20,22 @@ def test_compare_prints_errors_by_zone(capsys):
     text = capsys.readouterr().out
     rows = {line.split("|")[1].strip(): line.split("|")[2:-1] for line in text.splitlines() if line.startswith("| ")}
     assert {"single", "double", "mean", "max", "seconds"} <= rows.keys()
-    fe, textbook = float(rows["double"][0]), float(rows["double"][1])
-    assert abs(100 * (textbook / fe - 1) - float(rows["double"][2].replace("%", ""))) < 0.1
+    fe, textbook = float(rows["double"][0]), float(rows["double"][2])
+    assert abs(100 * (textbook / fe - 1) - float(rows["double"][3].replace("%", ""))) < 0.1
+    assert 0 < float(rows["double"][1].strip("+- %\u00b1")) < 1
+
+
+def test_ring_pair_and_error_estimate(capsys):
+    assert main(["stiffness", "planetary_pitting", "--pair", "planet_ring", "--phases", "8", "--error"]) == 0
+    assert "error at most about" in capsys.readouterr().out
+
+
+def test_warnings_become_notes(tmp_path, capsys):
+    text = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text()
+    path = tmp_path / "untrimmed.toml"
+    path.write_text(text.replace("addendum = 0.859\n", ""))
+    assert main(["stiffness", str(path), "--method", "textbook"]) == 0
+    assert "note: the ring's tip (z = 84) was trimmed" in capsys.readouterr().err
 
 
 def test_render_makes_a_picture_of_stress(tmp_path, capsys):
@@ -36,7 +52,7 @@ def test_scenes_and_info(capsys):
     assert main(["scenes"]) == 0
     assert main(["info"]) == 0
     text = capsys.readouterr().out
-    assert "planetary_pitting: pairs sun_planet" in text
+    assert "planetary_pitting: pairs sun_planet, planet_ring" in text
     assert "gmsh starts" in text
 
 
@@ -47,7 +63,7 @@ def test_scenes_and_info(capsys):
         (["stiffness", "planetary_pitting", "--method", "magic"], "fe, textbook, published"),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
-        (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet"),
+        (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
     ],
 )
 def test_errors_go_to_stderr(arguments, message, capsys):

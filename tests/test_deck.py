@@ -67,9 +67,10 @@ def test_deck_is_complete(tmp_path):
         gf.write_inp(tmp_path / "gear.txt", gear, radius, 100.0, STEEL)
 
 
-def contact_difference(folder, phase, line_load):
+def contact_difference(folder, phase, line_load, *, ring=False):
     """Relative difference of k, gearfe's over CalculiX's nonlinear contact at the same approach."""
-    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), gf.Gear(z=31, r_bore=13.0, **RACK))
+    wheel = gf.Gear(z=84, r_rim=95.0, tip_radius=0.2, **RACK) if ring else gf.Gear(z=31, r_bore=13.0, **RACK)
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), wheel)
     curve = gf.mesh_stiffness(pair, 20 * line_load, STEEL, phases=[phase])
     deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, line_load, (STEEL, STEEL))
     done = run(folder, "pair")
@@ -100,3 +101,13 @@ def test_nonlinear_contact(tmp_path, phase, line_load, tolerance):
     difference = contact_difference(tmp_path, phase, line_load)
     print(f"phase {phase}, {line_load} N/mm: {100 * difference:+.2f} %")
     assert abs(difference) < tolerance
+
+
+@needs_ccx
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
+@pytest.mark.parametrize("phase", [0.3, 0.85])
+def test_nonlinear_contact_of_a_ring(tmp_path, phase):
+    difference = contact_difference(tmp_path, phase, 100.0, ring=True)
+    print(f"ring, phase {phase}: {100 * difference:+.2f} %")
+    assert abs(difference) < 0.01

@@ -69,9 +69,9 @@ def covered(seed, pair, force, damage):
 
 
 def test_error_estimate_covers_the_true_error_in_a_few_cases():
-    results = [r for r in (covered(*case) for case in admissible(range(12))) if r is not None]
-    assert len(results) >= 5
-    assert sum(results) >= len(results) - 1
+    results = [r for r in (covered(*case) for case in admissible(range(4))) if r is not None]
+    assert len(results) == 4
+    assert all(results)
 
 
 @pytest.mark.slow

@@ -17,8 +17,12 @@ def same(printed, shown):
     assert_allclose(*found, rtol=2e-3, atol=0.1)
 
 
-def test_program_prints_what_is_shown():
-    same(readme.program_output(TEXT), readme.OUTPUT.search(TEXT)[2])
+def test_programs_print_what_is_shown():
+    shown = [match[1] for match in readme.OUTPUT.findall(TEXT)]
+    printed = readme.outputs(TEXT)
+    assert len(shown) == len(printed) == 2
+    for ours, theirs in zip(printed, shown, strict=True):
+        same(ours, theirs)
 
 
 def test_table_is_what_compare_gives():

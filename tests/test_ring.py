@@ -103,6 +103,11 @@ def test_ring_pair_equals_full_contact(pair, phase):
     assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 
+def test_energy_methods_have_no_ring(pair):
+    with pytest.raises(ValueError, match="has no ring"):
+        gf.mesh_stiffness(pair, 2000.0, STEEL, method="textbook")
+
+
 def test_ring_crack(pair):
     healthy = gf.mesh_stiffness(pair, 2000.0, STEEL, span="tooth", phases=16)
     cracked = gf.mesh_stiffness(pair, 2000.0, STEEL, span="tooth", phases=16, damage={"wheel": [gf.Crack(level=0.3)]})

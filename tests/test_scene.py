@@ -14,7 +14,7 @@ def test_built_in_scene():
     assert (scene.gears["sun"].z, scene.gears["planet"].z) == (21, 31)
     assert scene.pair().pair.eps_alpha == pytest.approx(1.6149, rel=1e-4)
     assert len(scene.assumptions) >= 4
-    assert any("ring" in item for item in scene.later)
+    assert any("pits" in item for item in scene.later)
 
 
 @pytest.mark.parametrize(
@@ -23,12 +23,13 @@ def test_built_in_scene():
         ("z = 21", "z = 21\nteeth = 3", r"s.toml \[gear.sun\]: unknown key 'teeth'; expected z, m_n_mm"),
         ("z = 21", 'z = "21"', r"\[gear.sun\] z = '21': expected a whole number"),
         ("z = 21", "z = 21.0", "expected a whole number"),
-        ("r_bore_mm = 7.4\n", "", r"\[gear.sun\]: missing key 'r_bore_mm'; expected a number in mm"),
+        ("r_bore_mm = 7.4\n", "", r"\[gear.sun\]: give r_bore_mm \(an external gear\) or r_rim_mm"),
+        ("m_n_mm = 2.0\n", "", r"\[gear.sun\]: missing key 'm_n_mm'; expected a number in mm"),
         ("alpha_n_deg = 20.0", "alpha_n_deg = nan", "alpha_n_deg = nan: expected a number in degrees"),
         ("force_N = 2000.0", "force_N = -1.0", "force_N = -1.0"),
         ("force_N = 2000.0", "force_N = true", "expected a number in N"),
-        ('gear_2 = "planet"', 'gear_2 = "moon"', "no such gear; there is sun, planet"),
-        ('material = "20CrMnTi"', 'material = "tin"', "no such material; there is 20CrMnTi"),
+        ('gear_2 = "planet"', 'gear_2 = "moon"', "no such gear; there is sun, planet, ring"),
+        ('material = "20CrMnTi"', 'material = "tin"', "no such material; there is 20CrMnTi, 42Cr"),
         ("z = 21", "z = 3", r"\[gear.sun\]: z = 3, but a gear needs at least 5 teeth"),
         ("a_mm = 52.0", "a_mm = 50.0", r"\[pair.sun_planet\]: a = 50 mm"),
         ("[pair.sun_planet]", "[gearing.x]", "unknown key 'gearing'"),
@@ -48,5 +49,5 @@ def test_errors_name_file_table_and_key(tmp_path, old, new, message):
 def test_unknown_scene_and_pair():
     with pytest.raises(ValueError, match="built in are planetary_pitting"):
         gf.load_scene("nonsense")
-    with pytest.raises(ValueError, match="it has sun_planet"):
+    with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")

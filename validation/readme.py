@@ -1,4 +1,4 @@
-"""Remake what the README shows: the comparison table and the output of its program."""
+"""Remake what the README shows: the comparison table and the output of its programs."""
 
 import contextlib
 import io
@@ -15,13 +15,17 @@ OUTPUT = re.compile(r"(prints\n\n```text\n)(.*?)(```)", re.S)
 TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
 
 
-def program_output(text):
-    """What the README's program prints, run in an empty folder."""
+def outputs(text):
+    """What each of the README's programs prints, run in an empty folder."""
+    return [_printed(program) for program in PROGRAM.findall(text)]
+
+
+def _printed(program):
     printed, here = io.StringIO(), Path.cwd()
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(printed):
         os.chdir(folder)
         try:
-            exec(compile(PROGRAM.search(text)[1], "README.md", "exec"), {})
+            exec(compile(program, "README.md", "exec"), {})
         finally:
             os.chdir(here)
     return printed.getvalue()
@@ -33,6 +37,7 @@ def run():
     gf.compare(gf.load_scene("planetary_pitting"))  # warm
     table = gf.compare(gf.load_scene("planetary_pitting")).table()
     text = TABLE.sub(lambda _: table, text)
-    text = OUTPUT.sub(lambda m: m[1] + program_output(text) + m[3], text)
+    printed = iter(outputs(text))
+    text = OUTPUT.sub(lambda m: m[1] + next(printed) + m[3], text)
     README.write_text(text, encoding="utf-8")
     print("README.md remade")
