@@ -14,12 +14,12 @@ import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, lil_matrix
 
-from geometry.gear import Gear
 from geometry.mesher import section
 from geometry.outline import stations
 from geometry.tooth import arc_at, flank_normal
 
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
+from .flexibility import Flexibility, SeamFaces, TipHats
 from .hertz import half_plane, hat_logarithm
 
 SPAN = 2  # edges on either side of a hat's top
@@ -98,112 +98,6 @@ def turned(vectors, angle):
     """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
-
-
-@dataclass(frozen=True, slots=True)
-class SeamFaces:
-    """The faces of all cracks of a gear, pair of facing nodes by pair.
-
-    The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
-    hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
-    from passing through each other.
-
-    Attributes
-    ----------
-    opening : dict of int to spline
-        Over the arc of that tooth's flank: opening of the n face pairs under a unit load there [mm per N/mm].
-    influence : ndarray, shape (n, n)
-        Opening of the pairs under unit forces that push them apart [mm per N/mm].
-    stiffness : ndarray, shape (n, n)
-        Its inverse.
-    """
-
-    opening: dict
-    influence: np.ndarray
-    stiffness: np.ndarray
-
-    def at(self, arc, teeth):
-        """Opening ``(contacts, n)`` under unit loads at `arc` [mm] on `teeth`; zero for teeth that were not solved."""
-        none = np.zeros(self.influence.shape[0])
-        return np.array([self.opening[t](s) if t in self.opening else none for t, s in zip(teeth, arc, strict=True)])
-
-
-@dataclass(frozen=True, slots=True)
-class Flexibility:
-    """Flexibility of one gear between simultaneous contacts, local contact excluded.
-
-    Attributes
-    ----------
-    near : dict of int to spline
-        Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over the arc of `geometry.tooth.arc_at`.
-    far : dict of (int, int) to spline
-        Influence of a load on one tooth at another, over both arcs; the second tooth is further to the loaded
-        side.
-    tip : dict of int to TipHats
-        The flank next to the tip corner of each solved tooth, hat by hat.
-    limits : tuple of float
-        Arcs between which the splines hold [mm]; contacts outside are clamped to them.
-    dofs : int
-        Unknowns of the solve.
-    healthy : Flexibility or None
-        Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
-    seam : SeamFaces or None
-        The cracks; the splines above then are those with the cracks glued shut.
-    """
-
-    gear: Gear
-    near: dict
-    far: dict
-    tip: dict
-    limits: tuple
-    dofs: int = 0
-    healthy: object = None
-    seam: SeamFaces | None = None
-
-    def near_of(self, tooth):
-        """Spline S(s, s) of a tooth."""
-        return self.near[tooth] if tooth in self.near else self._whole().near[0]
-
-    def far_of(self, first, second):
-        """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
-        return self.far[first, second] if (first, second) in self.far else self._whole().far.get((0, second - first))
-
-    def tip_of(self, tooth):
-        """Tip hats of a tooth."""
-        return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
-
-    def _whole(self):
-        return self if self.healthy is None else self.healthy
-
-    def matrix(self, roll, teeth):
-        """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
-
-        Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
-        """
-        arc = np.clip(arc_at(self.gear, roll), *self.limits)
-        n = len(teeth)
-        out = np.zeros((*np.shape(roll), n))
-        for i in range(n):
-            out[..., i, i] = self.near_of(teeth[i])(arc[..., i])
-            for j in range(i):
-                low, high = (j, i) if teeth[i] > teeth[j] else (i, j)
-                spline = self.far_of(teeth[low], teeth[high]) if teeth[low] != teeth[high] else None
-                if spline is not None:
-                    out[..., i, j] = out[..., j, i] = spline.ev(arc[..., low], arc[..., high])
-        return out
-
-
-@dataclass(frozen=True, slots=True)
-class TipHats:
-    """Hats of one flank next to its tip corner, the corner's last.
-
-    `arc` (n,) are their centroids from the base circle [mm], `knots` (3, n), `influence` (n, n) the full displacement
-    between them, half-plane logarithm and all [mm per N/mm].
-    """
-
-    arc: np.ndarray
-    knots: np.ndarray
-    influence: np.ndarray
 
 
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
