@@ -154,6 +154,9 @@ def info(arguments):
     import importlib.metadata
     import os
     import platform
+    import shutil
+
+    from .cache import folder
 
     print(f"Python {platform.python_version()} on {platform.machine()}, {os.cpu_count()} cores")
     for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib"):
@@ -169,3 +172,5 @@ def info(arguments):
     except RuntimeError as error:
         print(error)
     print("solver: SuperLU (scipy), one thread")
+    print(f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}")
+    print(f"cache of solved gears: {folder() or 'switched off'}")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from .gear import Gear
-from .interference import overlap
+from .interference import overlap, radial_assembly
 from .involute import inv, inverse_inv
 from .tooth import cartesian, flank
 
@@ -153,6 +153,11 @@ class GearPair:
     def centre_2(self):
         """Height of gear 2's centre over gear 1's [mm]: the pitch point is above gear 1."""
         return self.outward * self.a
+
+    @property
+    def radial_assembly(self):
+        """Whether the pinion can be put into its ring radially; always true without a ring."""
+        return not self.gear_2.internal or radial_assembly(self)
 
     @property
     def alpha_w(self):

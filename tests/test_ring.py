@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.full_contact import full_contact
-from geometry.interference import radial_assembly
 from geometry.tooth import cartesian, fillet, flank, form_mismatch, form_point
 from validation import reference
 
@@ -133,10 +132,10 @@ def test_interference_of_close_tooth_numbers():
 
 
 def test_radial_assembly(pair):
-    assert radial_assembly(pair)
+    assert pair.radial_assembly
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        assert not radial_assembly(gf.GearPair(planet(30), ring(40)))
+        assert not gf.GearPair(planet(30), ring(40)).radial_assembly
 
 
 @pytest.mark.parametrize(

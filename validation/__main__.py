@@ -5,6 +5,7 @@ import importlib
 
 PAGES = {
     "cracks": "crack reductions and their conventions",
+    "slow": "the slow tests and what they print",
     "speed": "seconds against error of every method",
     "hard": "hard cases, each with its outcome",
     "readme": "the table and the program output in the README",

@@ -1,0 +1,39 @@
+"""Run the slow tests and keep what they printed."""
+
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from gearfe.export import written
+
+from . import machine
+
+PAGE = Path(__file__).parent / "slow.md"
+TELLING = (" of 48 inside", "curves,", "N/mm:", "ring, phase", "passed", "failed", "skipped")
+
+
+def run():
+    """Write `slow.md`; raise RuntimeError if a slow test failed."""
+    started = time.perf_counter()
+    command = [sys.executable, "-m", "pytest", "-m", "slow", "-s", "-q"]
+    done = subprocess.run(command, cwd=PAGE.parents[1], capture_output=True, text=True, check=False)
+    told = [line.lstrip(".") for line in done.stdout.splitlines() if any(word in line for word in TELLING)]
+    lines = [
+        "# Slow tests: last result",
+        "",
+        f"Made by `python -m validation slow` (`pytest -m slow`) on {machine.describe()},",
+        f"{time.perf_counter() - started:.0f} s:",
+        "error estimate against the true error on 48 random pairs at every phase, fuzzing of 300 random pairs and cracks, ",
+        "nonlinear contact in CalculiX (difference of k).",
+        "",
+        "```text",
+        *told,
+        "```",
+        "",
+    ]
+    with written(PAGE) as name:
+        Path(name).write_text("\n".join(lines), encoding="utf-8")
+    print("\n".join(lines))
+    if done.returncode:
+        raise RuntimeError(f"slow tests failed:\n{done.stdout[-3000:]}")
