@@ -1,4 +1,4 @@
-"""Gear mesh stiffness with its error: finite elements beside energy methods, carried on into dynamics."""
+"""Gear mesh stiffness with its error: finite elements beside energy methods."""
 
 import importlib
 

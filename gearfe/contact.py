@@ -112,7 +112,7 @@ class Mesh:
             (self.flexibility[1], contacts["roll_2"], -contacts["order"]),
         ):
             if flexible.seam is not None:
-                opening = flexible.seam.at(np.clip(arc_at(flexible.gear, roll), *flexible.limits), teeth)
+                opening = flexible.seam.at(np.clip(arc_at(flexible.gear, roll), *flexible.limits), teeth % flexible.gear.z)
                 contacts["flexibility"] = contacts["flexibility"] + opening @ flexible.seam.stiffness @ opening.T
                 rows.append(opening.T)
         return contacts | {"opening": np.vstack(rows) if rows else None}

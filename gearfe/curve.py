@@ -63,7 +63,7 @@ class StiffnessCurve:
         return out | {"mean": float(relative.max()), "max": float(relative[np.argmax(self.k)])}
 
     def _rows(self):
-        inside = self.phase % 1.0 <= self.meta["eps_alpha"] % 1.0 + 1e-9
+        inside = (self.phase + 1e-9) % 1.0 <= self.meta["eps_alpha"] % 1.0 + 2e-9
         low = int(self.meta["eps_alpha"])
         names = {1: "single", 2: "double", 3: "triple"}
         zones = {names.get(pairs, f"{pairs} pairs"): rows for pairs, rows in ((low, ~inside), (low + 1, inside))}
@@ -76,7 +76,7 @@ class StiffnessCurve:
         save(self, path)
 
     def to_csv(self, path):
-        """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly."""
+        """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
         from .export import write_csv
 
         write_csv(self, path)

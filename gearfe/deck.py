@@ -9,8 +9,8 @@ from geometry.outline import stations
 
 from .elasticity import Body
 from .export import written
-from .fe import EDGES, flank_load
-from .loaded_tooth import load_at, narrow_pressure
+from .fe import EDGES
+from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
 from .material import check_state
 
 
@@ -45,12 +45,13 @@ def write_inp(path, gear, radius, line_load, material, *, cracks=(), state="plan
     if Path(path).suffix != ".inp":
         raise ValueError(f"{path}: a deck's name ends in .inp")
     check_state(state)
-    m = gear.m_n / refine
+    check_line_load(line_load)
+    edge = edge_lengths(gear, EDGES, refine)
     arc, width = load_at(gear, radius), 0.05 * gear.m_n
-    roll = stations(gear, EDGES["flank"] * m, patches=[(arc - width, arc + width, width / 4)])
-    sizes = {"fillet_size": EDGES["fillet"] * m, "size": EDGES["near"] * m, "far_size": EDGES["far"] * m}
+    roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])
+    sizes = {"fillet_size": edge["fillet"], "size": edge["near"], "far_size": edge["far"]}
     mesh = section(gear, {0: roll}, **sizes, cracks=cracks)
-    load = line_load * flank_load(mesh, 0, narrow_pressure(arc, width), np.array([0]), roll.size - 1)
+    load = line_load * narrow_load(mesh, 0, arc, width)
     body = Body(mesh.mesh, material, state=state)
     with written(path) as name:
         Path(name).write_text("\n".join(_lines(body, load)), encoding="ascii")

@@ -88,6 +88,10 @@ def read_csv(path):
     header = lines[2].split(",")
     data = _columns(path, header, table)
     order = np.array([int(name.split()[1]) for name in header if name.startswith("force ")])
+    wanted = [f"{name} {k} [{unit}]" for k in order for name, unit in PER_PAIR.items()]
+    missing = [name for name in wanted if name not in data]
+    if missing or not isinstance(meta, dict) or order.size == 0:
+        raise ValueError(f"{path}: damaged table: {'no column ' + repr(missing[0]) if missing else 'no pairs or no meta data'}")
     per_pair = {name: np.array([data[f"{name} {k} [{unit}]"] for k in order]).T for name, unit in PER_PAIR.items()}
     plain = {name: data[f"{name} [{unit}]"] for name, unit in COLUMNS.items()}
     return StiffnessCurve(**plain, order=order, **per_pair, error=data.get("error [N/m]"), meta=meta)

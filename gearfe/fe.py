@@ -8,6 +8,7 @@ the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On
 into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,7 +106,7 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
 
     `refine` divides every edge length of `EDGES`; `teeth` and `cracks` as in `geometry.mesher.section`.
     """
-    if not refine > 0:
+    if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
     longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
@@ -166,9 +167,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     Flexibility
     """
     reach = max(1, neighbours - 1)
-    solved = sorted({crack.tooth + k for crack in cracks for k in range(-reach, reach + 1)})
-    if len(solved) > gear.z:
-        raise ValueError(f"z = {gear.z} is too small for cracks on so many teeth")
+    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
     body = Body(mesh.mesh, material, state=state)
     own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
@@ -183,7 +182,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
         glued = own[tooth].load.T @ moved[tooth] - openings[tooth].T @ stiffness @ openings[tooth]
         near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
         for other in solved:
-            if tooth < other:
+            if 0 < (other - tooth) % gear.z <= gear.z // 2:
                 # both are the same number, by reciprocity; their mean is symmetric to rounding
                 there, back = own[other].load.T @ moved[tooth], (own[tooth].load.T @ moved[other]).T
                 glued = (there + back) / 2 - openings[other].T @ stiffness @ openings[tooth]

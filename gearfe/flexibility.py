@@ -42,6 +42,7 @@ class Flexibility:
 
     Attributes
     ----------
+    gear : Gear
     near : dict of int to spline
         Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over the arc of `geometry.tooth.arc_at`.
     far : dict of (int, int) to spline
@@ -69,15 +70,18 @@ class Flexibility:
     seam: SeamFaces | None = None
 
     def near_of(self, tooth):
-        """Spline S(s, s) of a tooth."""
+        """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
+        tooth %= self.gear.z
         return self.near[tooth] if tooth in self.near else self._whole().near[0]
 
     def far_of(self, first, second):
         """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
-        return self.far[first, second] if (first, second) in self.far else self._whole().far.get((0, second - first))
+        key = first % self.gear.z, second % self.gear.z
+        return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
 
     def tip_of(self, tooth):
         """Tip hats of a tooth."""
+        tooth %= self.gear.z
         return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
 
     def _whole(self):

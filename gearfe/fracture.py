@@ -10,8 +10,8 @@ from geometry.mesher import section
 from geometry.outline import stations
 
 from .elasticity import Body
-from .fe import EDGES, flank_load
-from .loaded_tooth import load_at, narrow_pressure
+from .fe import EDGES
+from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,24 +57,16 @@ def stress_intensity(gear, crack, radius, line_load, material, *, state="plane s
     ValueError
         If the load is not positive, the point is off the flank, or the crack leaves the body.
     """
-    if not line_load > 0:
-        raise ValueError(f"line_load = {line_load} N/mm, but a tooth is pushed: give line_load > 0")
+    check_line_load(line_load)
     if not isinstance(crack, Crack):
         raise ValueError(f"crack = {crack!r}, but give a Crack")
-    m = gear.m_n / refine
+    edge = edge_lengths(gear, EDGES, refine)
     arc, width = load_at(gear, radius), 0.05 * gear.m_n
-    roll = stations(gear, EDGES["flank"] * m, patches=[(arc - width, arc + width, width / 4)])
-    mesh = section(
-        gear,
-        {crack.tooth: roll},
-        fillet_size=EDGES["fillet"] * m / 2,
-        size=EDGES["near"] * m,
-        far_size=EDGES["far"] * m,
-        cracks=[crack],
-    )
+    roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])
+    sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"], "far_size": edge["far"]}
+    mesh = section(gear, {crack.tooth: roll}, **sizes, cracks=[crack])
     body = Body(mesh.mesh, material, state=state)
-    load = flank_load(mesh, crack.tooth, narrow_pressure(arc, width), np.array([0]), roll.size - 1)
-    moved = line_load * body.solve(load)[:, 0]
+    moved = line_load * body.solve(narrow_load(mesh, crack.tooth, arc, width))[:, 0]
     return tip_intensity(body, moved, mesh.seams[0].faces)
 
 

@@ -1,6 +1,7 @@
 """One loaded tooth: its deflection and its root stress, as rating engineers and strain gauges see them."""
 
 import math
+from numbers import Real
 
 import numpy as np
 from skfem import MeshTri
@@ -23,26 +24,38 @@ def load_at(gear, radius):
     return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
 
 
-def narrow_pressure(arc, half_width):
-    """Pressure of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm]."""
+def check_line_load(line_load):
+    """ValueError unless the line load is a finite push."""
+    if not (isinstance(line_load, Real) and line_load > 0 and math.isfinite(line_load)):
+        raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
+
+
+def edge_lengths(gear, edges, refine):
+    """Edge lengths [mm] of a table in modules at a resolution; ValueError unless ``refine > 0``."""
+    if not (isinstance(refine, Real) and refine > 0 and math.isfinite(refine)):
+        raise ValueError(f"refine = {refine!r}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    return {name: size * gear.m_n / refine for name, size in edges.items()}
+
+
+def narrow_load(mesh, tooth, arc, half_width):
+    """Nodal forces of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm], as far as the flank reaches."""
 
     def pressure(s):
         away = np.minimum(np.abs(s - arc) / half_width, 1.0)
         return np.cos(math.pi / 2 * away) ** 2 / half_width
 
-    return pressure
+    load = flank_load(mesh, tooth, pressure, np.array([0]), mesh.roll[tooth % mesh.gear.z].size - 1)
+    return load / math.hypot(load[0::2].sum(), load[1::2].sum())
 
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
     """Displacement under a unit load [N/mm], ``cos**2`` pressure over `half_width` [mm] around `arc`."""
-    m = gear.m_n / refine
+    edge = edge_lengths(gear, edges, refine)
     inner = arc - half_width, arc + half_width
-    roll = stations(gear, edges["flank"] * m, patches=[(*inner, half_width / (4 * refine))])
-    mesh = section(gear, {0: roll}, fillet_size=edges["fillet"] * m, size=edges["near"] * m, far_size=edges["far"] * m)
+    roll = stations(gear, edge["flank"], patches=[(*inner, half_width / (4 * refine))])
+    mesh = section(gear, {0: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
     body = Body(mesh.mesh, material, state=state)
-    load = flank_load(mesh, 0, narrow_pressure(arc, half_width), np.array([0]), roll.size - 1)
-    unit = -load[0::2].sum(), -load[1::2].sum()
-    return mesh, body, body.solve(load / math.hypot(*unit))[:, 0]
+    return mesh, body, body.solve(narrow_load(mesh, 0, arc, half_width))[:, 0]
 
 
 def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane strain", refine=1.0):
@@ -121,11 +134,10 @@ def root_stress(gear, radius, line_load, material, *, half_width=None, state="pl
     ValueError
         If the load is not positive, or the point is off the flank.
     """
-    if not line_load > 0:
-        raise ValueError(f"line_load = {line_load} N/mm, but a tooth is pushed: give line_load > 0")
+    check_line_load(line_load)
     half_width = 0.05 * gear.m_n if half_width is None else half_width
-    if not half_width > 0:
-        raise ValueError(f"half_width = {half_width} mm, but the load needs a width: give half_width > 0")
+    if not 0 < half_width <= gear.m_n:
+        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
     mesh, _, moved = _solve(gear, material, state, load_at(gear, radius), half_width, STRESS_EDGES, refine)
     nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
     _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +23,11 @@ class Material:
 
     def __post_init__(self):
         """Refuse constants no stable material has."""
+        for name in ("E", "nu"):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real):
+                raise ValueError(f"{name} = {value!r}, but a material needs a number here")
+            object.__setattr__(self, name, float(value))
         if not (math.isfinite(self.E) and self.E > 0):
             raise ValueError(f"E = {self.E} MPa, but Young's modulus must be positive and finite")
         if not 0 <= self.nu < 0.5:

@@ -43,7 +43,9 @@ def plot_curves(curves, path=None):
     figure = Figure(figsize=(7, 5), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     for name, curve in curves.items():
-        phase, order = np.append(curve.phase, curve.phase[0] + 1), np.append(np.arange(curve.phase.size), 0)
+        phase, order = curve.phase, np.arange(curve.phase.size)
+        if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:  # one cycle: close it
+            phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
         style = "-" if name == next(iter(curves)) else "--"
         top.plot(phase, curve.k[order] / 1e9, style, label=name)
         if style == "-":

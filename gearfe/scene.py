@@ -114,12 +114,13 @@ def _scene(file, data):
         n: _made(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
     }
     gears = {n: _made(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
+    for name, row in rows["gear"].items():
+        _known(file, f"gear.{name}", "material", row["material"], materials, "material")
     pairs = {}
     for name, row in rows["pair"].items():
         where = f"pair.{name}"
         for key in ("gear_1", "gear_2"):
             _known(file, where, key, row[key], gears, "gear")
-            _known(file, f"gear.{row[key]}", "material", rows["gear"][row[key]]["material"], materials, "material")
         made = _made(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
         if not row["force_N"] > 0:

@@ -2,13 +2,16 @@
 
 import math
 import time
+import warnings
 from dataclasses import asdict, replace
 from importlib.metadata import PackageNotFoundError, version
+from numbers import Integral, Real
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
-from geometry.damage import Crack, crack_path
+from geometry.damage import Crack, check_apart
+from geometry.pair import GearPair
 
 from .cache import solved_gear
 from .contact import Mesh, Solved
@@ -85,9 +88,15 @@ def mesh_stiffness(
     ValueError
         If an input is impossible; the message says which.
     """
+    if not isinstance(pair, GearPair):
+        raise ValueError(f"pair = {pair!r}, but give a GearPair")
     if method not in METHODS:
         raise ValueError(f"method = {method!r}, but it must be one of {', '.join(METHODS)}")
     forces = np.atleast_1d(np.asarray(force, dtype=float))
+    if forces.ndim > 1 or forces.size == 0:
+        raise ValueError(f"force = {force!r}, but give one force or a non-empty list of forces [N]")
+    if teeth is not None and not (isinstance(teeth, Integral) and teeth >= 1):
+        raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
     for value in forces:
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
@@ -106,7 +115,10 @@ def mesh_stiffness(
         solve, details = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
     options = {"extended": bool(extended), **numeric} if method == "fe" else {}
     if any(cracks):
-        options["damage"] = {name: [asdict(c) for c in damage.get(name, ())] for name in ("pinion", "wheel")}
+        options["damage"] = {
+            name: [asdict(replace(c, tooth=sense * c.tooth)) for c in found]  # as the user numbers teeth: by pair
+            for name, found, sense in zip(("pinion", "wheel"), cracks, (1, -1), strict=True)
+        }
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
@@ -134,23 +146,23 @@ def estimate(k, *coarse):
 
 
 def _materials(material):
-    materials = (material, material) if isinstance(material, Material) else tuple(material)
-    if len(materials) != 2 or not all(isinstance(m, Material) for m in materials):
+    materials = (material, material) if isinstance(material, Material) else material
+    if not isinstance(materials, (tuple, list)) or len(materials) != 2 or not all(isinstance(m, Material) for m in materials):
         raise ValueError(f"material = {material!r}, but give one Material or a pair (pinion, wheel)")
-    return materials
+    return tuple(materials)
 
 
 def _phases(phases, span, pair):
     if span not in ("cycle", "tooth"):
         raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
     if np.ndim(phases) == 0:
-        if phases != int(phases) or phases < 1:
+        if not isinstance(phases, Real) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
             raise ValueError(f"phases = {phases}, but give a number of phases >= 1, or an array of phases")
         if span == "tooth":
             return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + 0.25) * phases) + 1) / int(phases)
         return np.arange(int(phases)) / int(phases)
     phases = np.asarray(phases, dtype=float)
-    if phases.size == 0 or not np.isfinite(phases).all():
+    if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
         raise ValueError("phases must be a non-empty array of finite numbers")
     return phases
 
@@ -174,11 +186,12 @@ def _cracks(pair, damage):
         raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
     out = []
     for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
-        cracks = tuple(damage.get(name, ()))
+        given = damage.get(name) or ()
+        cracks = (given,) if isinstance(given, Crack) else tuple(given)
         for crack in cracks:
             if not isinstance(crack, Crack):
                 raise ValueError(f"damage of the {name}: {crack!r} is not a Crack")
-            crack_path(gear, crack)
+        check_apart(gear, cracks)
         out.append(tuple(replace(crack, tooth=sense * crack.tooth) for crack in cracks))
     return tuple(out)
 
@@ -209,6 +222,7 @@ def _curve(pair, phase, force, solve, meta):
     meta = meta | {"seconds_contact": time.perf_counter() - started}
     used = solved.line_load.max(axis=0) > 0
     if "damage" in meta:
+        _warn_if_unseen(pair, meta["damage"], solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     return StiffnessCurve(
         phase=phase,
@@ -220,6 +234,16 @@ def _curve(pair, phase, force, solve, meta):
         pressure=solved.pressure[:, used] * 1e6,
         meta=meta,
     )
+
+
+def _warn_if_unseen(pair, damage, order):
+    """Warn if no cracked tooth is in contact at any of the phases."""
+    seen = ((pair.gear_1, damage["pinion"]), (pair.gear_2, damage["wheel"]))
+    if not any(crack["tooth"] % gear.z in order % gear.z for gear, cracks in seen for crack in cracks):
+        warnings.warn(
+            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            stacklevel=4,
+        )
 
 
 def _meta(pair, force, materials, method, options):

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from numbers import Integral, Real
 
 import numpy as np
 from scipy.optimize import brentq
@@ -51,6 +52,13 @@ class Crack:
 
     def __post_init__(self):
         """Refuse contradictory descriptions."""
+        for name in ("level", "length", "angle"):
+            value = getattr(self, name)
+            if value is not None and (isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)):
+                raise ValueError(f"{name} = {value!r}, but a crack needs a finite number here")
+        if isinstance(self.tooth, bool) or not isinstance(self.tooth, Integral):
+            raise ValueError(f"tooth = {self.tooth!r}, but it is a whole number")
+        object.__setattr__(self, "tooth", int(self.tooth))
         if (self.level is None) == (self.length is None):
             raise ValueError(f"level = {self.level}, length = {self.length}: give one of them")
         if self.level is not None and not 0 < self.level < 1:
@@ -59,7 +67,7 @@ class Crack:
             )
         if self.length is not None and not (math.isfinite(self.length) and self.length > 0):
             raise ValueError(f"length = {self.length} mm, but a crack has a positive length")
-        if not math.radians(5) <= self.angle <= math.radians(90):
+        if self.angle is None or not math.radians(5) <= self.angle <= math.radians(90):
             raise ValueError(f"angle = {self.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
         if self.start not in STARTS:
             raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
@@ -108,6 +116,25 @@ def mirrored(gear, crack):
     """Mirror image [mm] of the crack's starting point, in the frame of its tooth: where a turning crack breaks through."""
     sign = -1 if crack.side == "loaded" else 1
     return cartesian(*root_curve(gear, start_arc(gear, crack))) * [sign, 1]
+
+
+def check_apart(gear, cracks):
+    """Raise ValueError if two cracks of one tooth meet, or nearly do."""
+    paths = [(crack.tooth % gear.z, crack.side, crack_path(gear, crack)) for crack in cracks]
+    for i, (tooth, side, path) in enumerate(paths):
+        for other_tooth, other_side, other in paths[:i]:
+            if tooth != other_tooth:
+                continue
+            if side == other_side:
+                raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
+            near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
+            if np.hypot(*near).min() < 0.1 * gear.m_n:
+                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+
+
+def _sampled(path, count=200):
+    place = np.linspace(0, path.shape[1] - 1, count)
+    return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
 
 
 def _check_inside(gear, crack, path):

@@ -96,9 +96,11 @@ class Gear:
                 continue
             if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
                 raise ValueError(f"{field.name} = {value!r}, but a gear needs a finite number here")
+            object.__setattr__(self, field.name, float(value))
         if self.z != int(self.z):
-            raise ValueError(f"z = {self.z}, but the number of teeth is an integer")
+            raise ValueError(f"z = {self.z:g}, but the number of teeth is an integer")
         object.__setattr__(self, "z", int(self.z))
+        object.__setattr__(self, "z_cutter", int(self.z_cutter))
         if self.z < 5:
             raise ValueError(f"z = {self.z}, but a gear needs at least 5 teeth")
         for name in ("m_n", "b", "addendum", "dedendum"):

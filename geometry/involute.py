@@ -36,13 +36,3 @@ def inverse_inv(value):
         if abs(step) < 1e-15:
             break
     return float(alpha)
-
-
-def roll_at(radius, r_b):
-    """Roll length [mm] of the flank point at `radius` >= r_b [mm]."""
-    return np.sqrt(np.maximum(np.square(radius) - r_b**2, 0.0))
-
-
-def radius_at(roll, r_b):
-    """Radius [mm] of the flank point with roll length `roll` [mm]."""
-    return np.hypot(roll, r_b)

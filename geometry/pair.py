@@ -3,6 +3,7 @@
 import math
 import warnings
 from dataclasses import dataclass, field, replace
+from numbers import Real
 
 import numpy as np
 
@@ -70,6 +71,8 @@ class GearPair:
     def __post_init__(self):
         """Refuse gears that cannot mesh; trim a ring's tip."""
         one, two = self.gear_1, self.gear_2
+        if not isinstance(one, Gear) or not isinstance(two, Gear):
+            raise ValueError("gear_1 and gear_2 must be Gear objects")
         if one.internal:
             raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
         for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
@@ -82,8 +85,9 @@ class GearPair:
             raise ValueError(f"z = {one.z} does not fit into a ring of z = {two.z}: the ring needs more teeth")
         if self.a is None:
             object.__setattr__(self, "a", free_centre_distance(one, two))
-        elif not math.isfinite(self.a):
-            raise ValueError(f"a = {self.a}, but a centre distance is a finite length [mm]")
+        elif not isinstance(self.a, Real) or not math.isfinite(self.a):
+            raise ValueError(f"a = {self.a!r}, but a centre distance is a finite length [mm]")
+        object.__setattr__(self, "a", float(self.a))
         self._check_distance()
         if two.internal:
             self._trim_ring()

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from numbers import Integral
 
 from .gear import Gear
 from .involute import inv
@@ -34,10 +35,15 @@ class PlanetarySet:
 
     def __post_init__(self):
         """Check closure, spacing and neighbours."""
-        if not self.ring.internal:
-            raise ValueError("ring has r_bore, but a ring is given by r_rim")
+        if not self.ring.internal or self.sun.internal or self.planet.internal:
+            raise ValueError("sun and planet are external gears (r_bore), the ring is given by r_rim")
+        if isinstance(self.n_planets, bool) or not isinstance(self.n_planets, Integral) or self.n_planets < 1:
+            raise ValueError(f"n_planets = {self.n_planets!r}, but a set has a whole number of planets, at least 1")
         if self.a is None:
             object.__setattr__(self, "a", free_centre_distance(self.sun, self.planet))
+        if not (math.isfinite(self.a) and self.a > max(self.ring.r_b - self.planet.r_b, self.sun.r_b + self.planet.r_b)):
+            raise ValueError(f"a = {self.a} mm: the base circles do not allow a mesh at this centre distance; increase a")
+        GearPair(self.sun, self.planet, self.a)
         closing = self.closing_shift()
         if abs(closing - self.ring.x) > 2e-3:
             raise ValueError(

@@ -118,6 +118,36 @@ def test_any_tooth_and_several():
     assert base.max() > 0.2
 
 
+@pytest.mark.parametrize(("side", "z"), [("pinion", 18), ("wheel", 27)])
+def test_a_cracked_tooth_comes_round_again(side, z):
+    damage = {side: [gf.Crack(level=0.4)]}
+    phase = np.array([0.1, 0.5, 0.9])
+    first = gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=phase, damage=damage)
+    later = gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=phase + z, damage=damage)
+    assert_allclose(later.k, first.k, rtol=1e-9)
+    renamed = gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=phase, damage={side: [gf.Crack(level=0.4, tooth=z)]})
+    assert_allclose(renamed.k, first.k, rtol=1e-9)
+    assert renamed.meta["damage"][side][0]["tooth"] == z
+
+
+def test_cracks_on_both_sides_of_the_numbering_seam():
+    damage = {"pinion": [gf.Crack(level=0.4), gf.Crack(level=0.4, tooth=17)]}
+    same = {"pinion": [gf.Crack(level=0.4), gf.Crack(level=0.4, tooth=-1)]}
+    one, two = (gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3, 0.7], damage=d) for d in (damage, same))
+    assert_allclose(one.k, two.k, rtol=1e-9)
+
+
+def test_a_bare_crack_is_a_list_of_one():
+    listed = gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4)]})
+    bare = gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": gf.Crack(level=0.4)})
+    assert bare.k == listed.k
+
+
+def test_a_crack_out_of_sight_is_pointed_out():
+    with pytest.warns(UserWarning, match="no cracked tooth is in contact"):
+        gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4, tooth=5)]})
+
+
 def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite():
     gear = PAIR.gear_1
     healthy = fe.flexibility(gear, STEEL, neighbours=2)
@@ -189,7 +219,8 @@ def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
         ({"sun": [gf.Crack(level=0.3)]}, "'pinion' and 'wheel'"),
         ({"pinion": [0.3]}, "not a Crack"),
         ({"pinion": [gf.Crack(length=30.0)]}, "sector|held edge"),
-        ({"pinion": [gf.Crack(level=0.3), gf.Crack(level=0.1)]}, "two cracks"),
+        ({"pinion": [gf.Crack(level=0.3), gf.Crack(level=0.1)]}, "two cracks on the loaded side"),
+        ({"pinion": [gf.Crack(level=0.5), gf.Crack(level=0.5, side="unloaded")]}, "two cracks of tooth 0 meet"),
     ],
 )
 def test_bad_damage(damage, message):

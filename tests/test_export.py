@@ -23,6 +23,21 @@ def test_csv_round_trip_is_exact(pair, steel, tmp_path):
     assert after.meta == before.meta
 
 
+def test_numpy_scalars_in_the_input_can_be_saved(tmp_path):
+    rack = {"m_n": np.float32(2), "alpha_n": np.radians(20), "b": np.int64(20)}
+    pair = gf.GearPair(gf.Gear(z=np.int64(21), r_bore=np.float64(7.4), **rack), gf.Gear(z=31, r_bore=11, **rack))
+    steel = gf.Material(E=np.float64(207e3), nu=np.float32(0.3))
+    damage = {"pinion": [gf.Crack(level=np.float64(0.2), tooth=np.int64(0))]}
+    gf.mesh_stiffness(pair, np.float64(2000), steel, phases=[0.2, 0.4], damage=damage).save(tmp_path / "k.json")
+    gf.write_inp(tmp_path / "k.inp", pair.gear_1, 21.5, 10.0, steel, refine=0.5)
+    assert "np.float" not in (tmp_path / "k.inp").read_text()
+
+
+def test_plot_of_a_tooths_engagement_runs_forward(pair, steel):
+    figure = gf.mesh_stiffness(pair, 2000.0, steel, method="textbook", phases=16, span="tooth").plot()
+    assert (np.diff(figure.axes[0].lines[0].get_xdata()) > 0).all()
+
+
 def test_other_formats(curve, tmp_path):
     for suffix in ("npz", "mat", "json"):
         curve.save(tmp_path / f"k.{suffix}")

@@ -99,12 +99,24 @@ def test_stress_intensity_is_the_energy_released():
     assert_allclose(np.diff(values)[0] / 0.1, released, rtol=0.02)
 
 
+def test_the_whole_load_acts_at_the_tip_too(tmp_path):
+    near, at = (gf.stress_intensity(GEAR, gf.Crack(level=0.3), r, 100.0, STEEL).K_I for r in (GEAR.r_a - 0.05, GEAR.r_a))
+    assert abs(at / near - 1) < 0.1
+    for radius in (GEAR.r_a, GEAR.r_form):
+        _, load = gf.write_inp(tmp_path / "tip.inp", GEAR, radius, 100.0, STEEL, refine=0.6)
+        assert_allclose(np.hypot(load[0::2].sum(), load[1::2].sum()), 100.0, rtol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
         (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, -1.0, STEEL), "line_load = -1.0"),
         (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 25.0, 1.0, STEEL), "not on the involute flank"),
         (lambda: gf.stress_intensity(GEAR, 0.3, 19.5, 1.0, STEEL), "give a Crack"),
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, 1.0, STEEL, refine=0), "refine = 0"),
+        (lambda: gf.write_inp("x.inp", GEAR, 19.5, math.nan, STEEL), "line_load = nan"),
+        (lambda: gf.Crack(level="a"), "finite number"),
+        (lambda: gf.Crack(level=0.3, tooth=0.5), "whole number"),
         (lambda: gf.Crack(), "give one of them"),
         (lambda: gf.Crack(level=0.3, length=1.0), "give one of them"),
         (lambda: gf.Crack(level=1.0), "between 0 and 1"),

@@ -174,6 +174,12 @@ def test_planetary_spacing_and_neighbours():
     with pytest.raises(ValueError, match="touch each other"):
         gf.PlanetarySet(planet(18), planet(27), ring(72), 5)
     gf.PlanetarySet(planet(18), planet(27), ring(72), 3)
+    for n in (0, -3, 1.5):
+        with pytest.raises(ValueError, match="whole number of planets"):
+            gf.PlanetarySet(planet(18), planet(27), ring(72), n)
+    for a in (math.nan, 0.0, 20.0):
+        with pytest.raises(ValueError, match="base circles"):
+            gf.PlanetarySet(planet(18), planet(27), ring(72), 3, a)
 
 
 def test_planet_planet_is_an_external_pair():

@@ -152,6 +152,13 @@ def test_energy_methods_are_plain_sums(pair, steel, method):
         ({"phases": []}, "non-empty"),
         ({"state": "plain"}, "plane strain"),
         ({"material": "steel"}, "Material"),
+        ({"material": None}, "Material"),
+        ({"pair": 3}, "give a GearPair"),
+        ({"force": []}, "non-empty"),
+        ({"teeth": 0}, "teeth = 0"),
+        ({"phases": math.inf}, "phases = inf"),
+        ({"phases": [[0.1]]}, "non-empty array"),
+        ({"span": "year"}, "cycle"),
         ({"refine": 0.0}, "refine = 0.0"),
     ],
 )
@@ -159,5 +166,5 @@ def test_bad_input(pair, steel, change, message):
     import gmsh
 
     with pytest.raises(ValueError, match=message):
-        gf.mesh_stiffness(pair, **({"force": FORCE, "material": steel} | change))
+        gf.mesh_stiffness(**({"pair": pair, "force": FORCE, "material": steel} | change))
     assert not gmsh.isInitialized()
