@@ -197,16 +197,18 @@ class GearPair:
     @property
     def path(self):
         """Start and end of the path of contact as roll lengths of the pinion [mm]."""
-        return self._path(self.gear_1.roll_a, self.gear_2.roll_a)
+        start, end = self._overlap(self.gear_1.roll_a, self.gear_2.roll_a)
+        return max(start, self.gear_1.roll_f), end
 
-    def _path(self, tip_1, tip_2):
+    def _overlap(self, tip_1, tip_2):
+        """Where flanks ending at these roll lengths [mm] meet, as roll lengths of the pinion, its fillet disregarded."""
         first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
-        return max(first, self.gear_1.roll_f), min(last, tip_1)
+        return first, min(last, tip_1)
 
     def eps_alpha_of(self, tip_1, tip_2):
-        """Contact ratio if the flanks ended at these roll lengths [mm]."""
-        first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
-        return (min(last, tip_1) - first) / self.p_bt
+        """Contact ratio if the flanks ended at these roll lengths [mm] and the pinion's fillet were no obstacle."""
+        start, end = self._overlap(tip_1, tip_2)
+        return (end - start) / self.p_bt
 
     @property
     def eps_alpha(self):
