@@ -12,7 +12,7 @@ from scipy.linalg import block_diag
 from geometry.tooth import arc_at, roll_at_arc
 
 from .hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
-from .sharing import line_contact
+from .sharing import line_contact, line_contacts
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
@@ -37,6 +37,11 @@ class Solved:
     closed: tuple = ()
 
 
+def _closing(opening):
+    """Whether crack faces overlap, by the last axis."""
+    return opening.min(axis=-1) < -CLOSED * np.abs(opening).max(axis=-1)
+
+
 class Mesh:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
@@ -59,21 +64,30 @@ class Mesh:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        self.radius = pair.relative_radius(found.roll_1, found.roll_2)
+        self.radius = np.where(np.isfinite(found.gap), pair.relative_radius(found.roll_1, found.roll_2), 1.0)
+        self.opening = self._opening(found.roll_1, found.roll_2, found.order)
+        if self.opening is not None:
+            self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
+            self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
+        self._known = {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found = self.found
-        shape = found.gap.shape
-        line, pressure = np.zeros(shape), np.zeros(shape)
-        approach, tangent, closed = np.empty(shape[0]), np.empty(shape[0]), []
-        for i in range(shape[0]):
-            reach = self._reach(i, line_load)
-            near = np.flatnonzero(found.gap[i] < reach)
-            contacts = self._with_cracks(self._contacts(i, near, self._corners(i, near, line_load), reach))
+        found, c = self.found, sum(self.coefficients)
+        reach = self._reach(line_load)
+        possible = found.gap < reach[:, None]
+        corner = np.where(possible, self._corners(line_load), 0)
+        line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
+        pressure = peak_pressure(line, self.radius, self.modulus)
+        done &= ~corner.any(axis=1)
+        if self.opening is not None:
+            done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
+        closed = []
+        for i in np.flatnonzero(~done).tolist():
+            line[i] = pressure[i] = 0.0
+            contacts = self._contacts(i, np.flatnonzero(possible[i]), corner[i, possible[i]])
             force, approach[i], tangent[i] = self._share(contacts, line_load)
-            opening = contacts["opening"]
-            if opening is not None and (opening @ force).min() < -CLOSED * np.abs(opening @ force).max():
+            if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)
                 force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
             np.add.at(line[i], contacts["column"], force)
@@ -93,7 +107,7 @@ class Mesh:
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
         faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
-        opening = contacts["opening"]
+        opening = contacts["opening"].T
         m, n = opening.shape
         extended = {
             "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
@@ -104,51 +118,41 @@ class Mesh:
         force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
         return force[:n], approach, tangent
 
-    def _with_cracks(self, contacts):
-        """Add what cracks open: to the flexibility, and as ``opening`` (face pairs, contacts), None without cracks."""
+    def _opening(self, roll_1, roll_2, order):
+        """Opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
         rows = []
-        for flexible, roll, teeth in (
-            (self.flexibility[0], contacts["roll_1"], contacts["order"]),
-            (self.flexibility[1], contacts["roll_2"], -contacts["order"]),
-        ):
+        for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
             if flexible.seam is not None:
-                opening = flexible.seam.at(np.clip(arc_at(flexible.gear, roll), *flexible.limits), teeth % flexible.gear.z)
-                contacts["flexibility"] = contacts["flexibility"] + opening @ flexible.seam.stiffness @ opening.T
-                rows.append(opening.T)
-        return contacts | {"opening": np.vstack(rows) if rows else None}
+                arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
+                rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
+        return np.concatenate(rows, axis=-1) if rows else None
 
-    def _reach(self, i, line_load):
-        """Gap [mm] no contact can close at phase i: twice the approach of the best pair alone."""
-        gap = self.found.gap[i]
-        best = int(np.argmin(gap))
-        local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[i, best], self.modulus)) + 0.5)
-        return 2 * (gap[best] + max(self.matrix[i, best, best] + local, 0.0) * line_load)
+    def _reach(self, line_load):
+        """Gap [mm] no contact can close, by phase: twice the approach of the best pair alone."""
+        best = np.argmin(self.found.gap, axis=1)
+        at = np.arange(best.size), best
+        local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
+        return 2 * (self.found.gap[at] + np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load)
 
-    def _corners(self, i, near, line_load):
-        """For each pair of `near`: 0, or the gear (1, 2) whose tip corner it touches."""
-        corner = np.zeros(near.size, dtype=int)
+    def _corners(self, line_load):
+        """For each phase and pair: 0, or the gear (1, 2) whose tip corner it touches."""
+        corner = np.zeros(self.found.gap.shape, dtype=int)
         if not self.extended:
             return corner
-        reach = CORNER * half_width(line_load, self.radius[i, near], self.modulus)
+        reach = CORNER * half_width(line_load, self.radius, self.modulus)
         for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
-            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll[i, near]) < reach] = number
+            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def _contacts(self, i, near, corner, reach):
-        """Flexibility, gap, logarithm coefficient, radius and pair column of every unknown at phase i."""
-        if not corner.any():
-            c = np.full(near.size, sum(self.coefficients))
-            return {
-                "flexibility": self.matrix[i][np.ix_(near, near)],
-                "gap": self.found.gap[i, near],
-                "coefficient": c,
-                "radius": self.radius[i, near],
-                "column": near,
-                "roll_1": self.found.roll_1[i, near],
-                "roll_2": self.found.roll_2[i, near],
-                "order": self.found.order[near],
-            }
-        parts = [self._row(i, column, number, reach) for column, number in zip(near, corner, strict=True)]
+    def _contacts(self, i, near, corner):
+        """Flexibility, gap, logarithm coefficient, radius, pair column and crack opening of every unknown at phase i."""
+        key = i, tuple(near), tuple(corner)
+        if key not in self._known:
+            self._known[key] = self._built(i, near, corner)
+        return self._known[key]
+
+    def _built(self, i, near, corner):
+        parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
         roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
         column = np.repeat(near, [part[0].size for part in parts])
         order = self.found.order[column]
@@ -156,12 +160,14 @@ class Mesh:
         for part, k in zip(parts, near, strict=True):
             if part[5] is not None:
                 total[np.ix_(column == k, column == k)] = part[5]
+        opening = self._opening(roll_1, roll_2, order)
+        if opening is not None:
+            total = total + opening @ self.stiffness @ opening.T
         return {
-            "flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column,
-            "roll_1": roll_1, "roll_2": roll_2, "order": order,
+            "flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column, "opening": opening
         }  # fmt: skip
 
-    def _row(self, i, column, corner, reach):
+    def _row(self, i, column, corner):
         """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
         found = self.found
         if corner == 0:
@@ -174,7 +180,6 @@ class Mesh:
         roll = roll_at_arc(gears[tip], hats.arc)
         gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
         there = np.isfinite(met)
-        there &= gap <= max(reach, gap[there].min())
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)
         arc = arc_at(gears[flank], met[there])

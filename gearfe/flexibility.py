@@ -31,9 +31,15 @@ class SeamFaces:
     stiffness: np.ndarray
 
     def at(self, arc, teeth):
-        """Opening ``(contacts, n)`` under unit loads at `arc` [mm] on `teeth`; zero for teeth that were not solved."""
-        none = np.zeros(self.influence.shape[0])
-        return np.array([self.opening[t](s) if t in self.opening else none for t, s in zip(teeth, arc, strict=True)])
+        """Opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
+
+        It is zero for teeth that were not solved.
+        """
+        out = np.zeros((*np.shape(arc), self.influence.shape[0]))
+        for k, tooth in enumerate(teeth):
+            if tooth in self.opening:
+                out[..., k, :] = self.opening[tooth](arc[..., k])
+        return out
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,15 +99,17 @@ class Flexibility:
         Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
         """
         arc = np.clip(arc_at(self.gear, roll), *self.limits)
-        n = len(teeth)
-        out = np.zeros((*np.shape(roll), n))
-        for i in range(n):
-            out[..., i, i] = self.near_of(teeth[i])(arc[..., i])
-            for j in range(i):
-                low, high = (j, i) if teeth[i] > teeth[j] else (i, j)
-                spline = self.far_of(teeth[low], teeth[high]) if teeth[low] != teeth[high] else None
+        teeth = np.asarray(teeth)
+        out = np.zeros((*np.shape(roll), teeth.size))
+        members = {tooth: np.flatnonzero(teeth == tooth) for tooth in np.unique(teeth).tolist()}
+        for tooth, own in members.items():
+            out[..., own, own] = self.near_of(tooth)(arc[..., own])
+            for other, theirs in members.items():
+                spline = self.far_of(tooth, other) if tooth < other else None
                 if spline is not None:
-                    out[..., i, j] = out[..., j, i] = spline.ev(arc[..., low], arc[..., high])
+                    block = spline.ev(arc[..., own, None], arc[..., None, theirs])
+                    out[..., own[:, None], theirs] = block
+                    out[..., theirs[:, None], own] = np.swapaxes(block, -1, -2)
         return out
 
 

@@ -119,3 +119,53 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     touch = force > floor
     tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
     return force, approach, float(tangent)
+
+
+def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible):
+    """`line_contact` for many independent sets of a few contacts at once, by Newton and an active set.
+
+    Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
+
+    Parameters
+    ----------
+    flexibility : ndarray, shape (sets, n, n)
+    gap, radius : ndarray, shape (sets, n)
+    load, coefficient, modulus : float
+    possible : ndarray of bool, shape (sets, n)
+        Contacts that may carry load; at least one in each set.
+
+    Returns
+    -------
+    force, approach, tangent, settled : ndarray (sets, n), (sets,), (sets,), (sets,) of bool
+    """
+    n = gap.shape[1]
+    gap = np.where(possible, gap, 0.0)
+    floor = 1e-9 * load
+    active = possible.copy()
+    force = np.where(active, load / active.sum(axis=1, keepdims=True), 0.0)
+    settled = np.zeros(len(gap), dtype=bool)
+    diagonal = np.arange(n)
+    system, right = np.zeros((len(gap), n + 1, n + 1)), np.zeros((len(gap), n + 1))
+    for _ in range(30):
+        carried = np.maximum(force, floor)
+        total = flexibility.copy()
+        total[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus))
+        offset = gap + coefficient / 2 * carried
+        both = active[:, :, None] & active[:, None, :]
+        system[:, :n, :n] = np.where(both, total, 0.0)
+        system[:, diagonal, diagonal] += ~active
+        system[:, :n, n] = -active.astype(float)
+        system[:, n, :n] = active
+        right[:, :n] = np.where(active, -offset, 0.0)
+        right[:, n] = load
+        solution = np.linalg.solve(system, right[..., None])[..., 0]
+        new, approach = solution[:, :n], solution[:, n]
+        free = gap + np.einsum("pij,pj->pi", flexibility, np.maximum(new, 0.0))
+        wanted = np.where(active, new > 0, possible & (free < approach[:, None]))
+        settled = (wanted == active).all(axis=1) & (np.abs(new - force).max(axis=1) < 1e-10 * load)
+        if settled.all():
+            break
+        active, force = wanted, np.where(wanted, np.where(new > 0, new, floor), 0.0)
+        active[~active.any(axis=1)] = possible[~active.any(axis=1)]
+    tangent = 1 / np.linalg.inv(system)[:, n, n]
+    return np.where(active, new, 0.0), approach, tangent, settled

@@ -4,6 +4,7 @@ import math
 import time
 import warnings
 from dataclasses import asdict, replace
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from numbers import Integral, Real
 
@@ -16,12 +17,13 @@ from geometry.pair import GearPair
 from .cache import solved_gear
 from .contact import Mesh, Solved
 from .curve import StiffnessCurve
-from .energy import published, textbook
+from .energy import published, ritz, textbook
 from .hertz import linear_hertz
 from .material import Material, check_state
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
-METHODS = ("fe", "textbook", "published")
+METHODS = ("auto", "ritz", "fe", "textbook", "published")
+CONVERGED = ("ritz", "fe")  # whole gears with contact, cracks and rings; the others are closed forms
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
@@ -30,13 +32,14 @@ def mesh_stiffness(
     force,
     material,
     *,
-    method="fe",
+    method="auto",
     phases=64,
     span="cycle",
     damage=None,
     extended=True,
     state="plane strain",
     refine=1.0,
+    order=4,
     teeth=None,
     error=False,
     cache=True,
@@ -104,16 +107,21 @@ def mesh_stiffness(
     check_state(state)
     phase = _phases(phases, span, pair)
     cracks = _cracks(pair, damage)
-    if pair.gear_2.internal and method != "fe":
-        raise ValueError(f"method = {method!r} has no ring (Sainsot's foundation does not hold for one): use method = 'fe'")
-    if any(cracks) and method != "fe":
-        raise ValueError(f"damage with method = {method!r}: only 'fe' models cracks so far")
-    numeric = {"state": state, "refine": float(refine), "teeth": teeth}
-    if method == "fe":
-        solve, details = _fe(pair, materials, phase, extended, cracks, cache=cache, **numeric)
+    if method == "auto":
+        method = "ritz" if teeth is None else "fe"
+    if pair.gear_2.internal and method not in CONVERGED:
+        raise ValueError(f"method = {method!r} has no ring (Sainsot's foundation does not hold for one): use method = 'ritz'")
+    if any(cracks) and method not in CONVERGED:
+        raise ValueError(f"damage with method = {method!r}: only 'ritz' and 'fe' model cracks so far")
+    if teeth is not None and method == "ritz":
+        raise ValueError(f"teeth = {teeth} with method = 'ritz', which has all teeth: use method = 'fe'")
+    numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
+    if method in CONVERGED:
+        case = (pair, materials, phase, extended, cracks, method, cache)
+        solve, details = _converged(*case, **numeric)
     else:
         solve, details = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
-    options = {"extended": bool(extended), **numeric} if method == "fe" else {}
+    options = {"extended": bool(extended), **numeric} if method in CONVERGED else {}
     if any(cracks):
         options["damage"] = {
             name: [asdict(replace(c, tooth=sense * c.tooth)) for c in found]  # as the user numbers teeth: by pair
@@ -122,11 +130,8 @@ def mesh_stiffness(
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
-    if error and method == "fe":
-        coarser = [
-            _fe(pair, materials, phase, extended, cracks, cache=cache, **(numeric | {"refine": ratio * refine}))[0]
-            for ratio in COARSER
-        ]
+    if error and method in CONVERGED:
+        coarser = [_converged(*case, **(numeric | coarse))[0] for coarse in _coarser(method, refine, order)]
         for i, curve in enumerate(curves):
             others = [_curve(pair, phase, curve.meta["force_N"], solve, curve.meta).k for solve in coarser]
             curves[i] = replace(curve, error=estimate(curve.k, *others))
@@ -167,11 +172,20 @@ def _phases(phases, span, pair):
     return phases
 
 
-def _fe(pair, materials, phase, extended, damage, **options):
+def _coarser(method, refine, order):
+    """Options of the coarser solves that the error estimate compares with."""
+    return (
+        [{"refine": ratio * refine} for ratio in COARSER]
+        if method == "fe"
+        else [{"refine": COARSER[1] * refine, "order": order - 1}]
+    )
+
+
+def _converged(pair, materials, phase, extended, damage, method, cache, **options):
     started = time.perf_counter()
-    neighbours = math.ceil(pair.eps_alpha)
+    solved = partial(solved_gear, cache=cache) if method == "fe" else ritz.flexibility
     flexible = [
-        solved_gear(gear, material, cracks, neighbours=neighbours, **options)
+        solved(gear, material, cracks, neighbours=math.ceil(pair.eps_alpha), **options)
         for gear, material, cracks in zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
     ]
     mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=options["state"])

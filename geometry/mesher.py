@@ -149,7 +149,7 @@ def fill(rim, held, chains=(), *, ring=False):
         Nodes of both faces of each crack, see `Seam`.
     """
     loops = [loop for loop in (rim, held) if loop.size]
-    points, triangles = _triangulate([loop[:, ::2] for loop in loops], chains, ring)
+    points, triangles = triangulate([loop[:, ::2] for loop in loops], chains, ring)
     first = sum(loop.shape[1] // 2 for loop in loops)
     lines, doubles = [], {}
     for start, inner in chains:
@@ -186,7 +186,7 @@ def _faces(mesh, chain, double):
     return np.array(out)
 
 
-def _triangulate(loops, chains, ring):
+def triangulate(loops, chains, ring):
     """Vertices and triangles between closed vertex loops, with the chains as edges; nodes keep their order."""
     with gmsh_session() as gmsh:
         geo = gmsh.model.geo

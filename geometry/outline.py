@@ -35,17 +35,17 @@ def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
-    return roll_at_arc(gear, _spaced(start, stop, spacing, fine, span))
+    return roll_at_arc(gear, spaced(start, stop, spacing, fine, span))
 
 
-def _spaced(start, stop, spacing, fine, span=1):
+def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
     """Places from `start` to `stop`, about `spacing` apart, closer near each ``(first, last, size)`` of `fine`."""
     smallest = min([size for _, _, size in fine], default=spacing)
     place = np.linspace(start, stop, 2 + int(4 * (stop - start) / min(smallest, spacing)))
     step = np.full(place.size, float(spacing))
     for first, last, size in fine:
         away = np.maximum(np.maximum(first - place, place - last), 0.0)
-        step = np.minimum(step, size + GROWTH * away)
+        step = np.minimum(step, size + growth * away)
     count = np.concatenate([[0.0], np.cumsum(np.diff(place) * (1 / step[1:] + 1 / step[:-1]) / 2)])
     intervals = span * max(1, math.ceil(count[-1] / span - 1e-6))
     placed = np.interp(np.linspace(0, count[-1], intervals + 1), count, place)
@@ -66,13 +66,13 @@ def half(gear, roll, fillet_size, size, *, mark=None):
     """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm]."""
     width = gear.half_thickness(gear.r_a) * gear.r_a
     corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
-    tip = _doubled(_spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
+    tip = _doubled(spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
     below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
     if mark is None:
         parts = [np.linspace(top, below, max(2, round((top - below) / fillet_size)) + 1)]
     else:
         fine = [(mark[0], mark[0], mark[1])]
-        parts = [_spaced(a, b, fillet_size, fine)[::-1] for a, b in ((mark[0], top), (below, mark[0]))]
+        parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in ((mark[0], top), (below, mark[0]))]
     root = _doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
     pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, _doubled(roll[::-1])), root_curve(gear, root)]
     radius, angle = (np.concatenate([p[k][:-1] for p in pieces]) for k in (0, 1))
@@ -155,6 +155,6 @@ def along(corners, first, last, largest):
     legs = np.hypot(*np.diff(corners, axis=1))
     ends = np.concatenate([[0.0], np.cumsum(legs)])
     fine = [(0.0, 0.0, first), (ends[-1], ends[-1], last)]
-    places = [_spaced(a, b, largest, fine)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    places = [spaced(a, b, largest, fine)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
     place = np.concatenate([[0.0], *places])
     return np.array([np.interp(place, ends, row) for row in corners])

@@ -183,11 +183,16 @@ def fillet_length(gear):
     return float(_fillet_arc(gear)[1][-1])
 
 
+def fillet_angle(gear, arc):
+    """Rack tip angle [rad] at arc lengths [mm] from the root circle along the fillet."""
+    phi, length = _fillet_arc(gear)
+    return np.interp(arc, length, phi)
+
+
 def root_curve(gear, arc):
     """Radius [mm] and angle [rad] along root circle (`arc` < 0) and fillet (`arc` > 0), arc lengths [mm] from their joint."""
-    phi, length = _fillet_arc(gear)
     arc = np.asarray(arc, dtype=float)
-    radius, angle = fillet(gear, np.interp(arc, length, phi))
+    radius, angle = fillet(gear, fillet_angle(gear, arc))
     return np.where(arc < 0, gear.r_f, radius), np.where(arc < 0, root_half_angle(gear) - arc / gear.r_f, angle)
 
 

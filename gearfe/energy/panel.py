@@ -1,0 +1,285 @@
+"""A curved sector as an elastic body of polynomial triangles: stiffness, line loads on its flank, and its reduction to its sides.
+
+The singular field of each load (`flamant`) is taken out, so that what is left is smooth and a few triangles carry it. With
+u_s that field in the loaded sector and P u_s its values on the sector's two sides::
+
+    u = u_s + U - P u_s,    K U = -int N' (sigma_s n) ds + K P u_s
+
+over the whole boundary of the sector, crack faces included.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+from scipy.linalg import cholesky, solve_triangular
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+from geometry.tooth import arc_at, cartesian, flank, flank_normal
+
+from . import flamant
+from .triangle import BULGE, ENDS, lagrange, lobatto, table
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A sector reduced to its two sides (polar components, from the held edge to the root, left side first; m unknowns).
+
+    `stiffness` (m, m); for n loads on the flank `push` (m, n) their forces on the sides, `own` (n, n) the displacement at load
+    i with the sides held under load j, the half-plane's logarithm taken out; for k facing pairs of crack nodes `open_push`
+    (m, k), `open_own` (k, n) their opening under the loads and `open_open` (k, k) under unit forces that push them apart.
+    """
+
+    stiffness: np.ndarray
+    push: np.ndarray
+    own: np.ndarray
+    open_push: np.ndarray
+    open_own: np.ndarray
+    open_open: np.ndarray
+    unknowns: int
+
+
+def panel(gear, sector, material, roll, *, order, state="plane strain"):
+    """Reduce a sector to its sides.
+
+    Parameters
+    ----------
+    gear : Gear
+    sector : geometry.sector.Sector
+    material : Material
+    roll : ndarray, shape (n,)
+        Roll lengths of unit line loads on the loaded flank [mm]; none for a sector that only supports others.
+    order : int
+        Polynomial order of the displacements.
+    state : {"plane strain", "plane stress"}
+
+    Returns
+    -------
+    Panel
+    """
+    modulus = material.plane_modulus(state)
+    ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
+    numbers, count, chain = _numbering(sector, order)
+    stiffness = _assemble(sector, numbers, count, order, modulus, ratio)
+    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
+    inner = np.setdiff1d(np.arange(count), np.concatenate([sides, chain(sector.held)]))
+    turn = _polar(gear, sides.size // 2)
+    inside, border = (2 * nodes[:, None] + np.arange(2) for nodes in (inner, sides))
+    inside, border = inside.ravel(), border.ravel()
+    support = stiffness[inside][:, border] @ turn
+    edge = turn.T @ stiffness[border][:, border] @ turn
+    apart = _apart(sector, chain, count)
+    load, read, extra = _loads(gear, sector, chain, numbers, count, roll, order, modulus, ratio)
+    if roll.size:
+        where, inward, tip_side = _frames(gear, roll)
+        pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
+        matched = (2 * np.concatenate([sides, chain(sector.held)])[:, None] + np.arange(2)).ravel()
+        load += stiffness[:, matched] @ pinned.transpose(2, 0, 1).reshape(matched.size, -1)
+    forces = np.hstack([load, apart.toarray()])
+    m, n, k = border.size, roll.size, apart.shape[1]
+    between = _between(stiffness[inside][:, inside], np.hstack([support, forces[inside], read[:, inside].T]))
+    push = turn.T @ forces[border] - between[:m, m : m + n + k]
+    total = edge - between[:m, :m]
+    loads, faces, reads = slice(m, m + n), slice(m + n, m + n + k), slice(m + n + k, None)
+    own = between[reads, loads] + extra
+    return Panel(
+        (total + total.T) / 2, push[:, :n], own, push[:, n:], between[faces, loads], between[faces, faces], inside.size
+    )  # fmt: skip
+
+
+def _numbering(sector, order):
+    """Node numbers of the triangles without their insides, their count, and the nodes along a chain of vertices."""
+    triangles = sector.triangles
+    ends = np.array([triangles[[a, b]] for a, b in ENDS])  # (3, 2, m)
+    low, high = ends.min(axis=1), ends.max(axis=1)
+    vertices = sector.points.shape[1]
+    keys, edge = np.unique((low.astype(np.int64) * vertices + high).ravel(), return_inverse=True)
+    edge = edge.reshape(low.shape)
+    steps = np.arange(order - 1)
+    forward = np.where((ends[:, 0] < ends[:, 1])[..., None], steps, steps[::-1])
+    inner = vertices + edge[..., None] * (order - 1) + forward  # (3, m, order - 1)
+    numbers = np.concatenate([triangles, inner.transpose(0, 2, 1).reshape(-1, triangles.shape[1])])
+
+    def chain(corners):
+        a, b = np.asarray(corners[:-1], dtype=np.int64), np.asarray(corners[1:], dtype=np.int64)
+        at = np.searchsorted(keys, np.minimum(a, b) * vertices + np.maximum(a, b))
+        middle = vertices + at[:, None] * (order - 1) + np.where((a < b)[:, None], steps, steps[::-1])
+        return np.append(np.column_stack([a, middle]).ravel(), corners[-1])
+
+    return numbers, vertices + keys.size * (order - 1), chain
+
+
+def _edge_bulges(sector):
+    """Bulges of all local edges ``(3, 2, BULGE, m)``, zero inside."""
+    out = np.zeros((3, 2, BULGE, sector.triangles.shape[1]))
+    for local, (a, b) in enumerate(ENDS):
+        for i, (p, q) in enumerate(zip(sector.triangles[a].tolist(), sector.triangles[b].tolist(), strict=True)):
+            if (q, p) in sector.bulge:
+                out[local, :, :, i] = sector.bulge[q, p][:, ::-1]
+            elif (p, q) in sector.bulge:
+                out[local, :, :, i] = sector.bulge[p, q]
+    return out
+
+
+def _assemble(sector, numbers, count, order, modulus, ratio):
+    """Stiffness matrix with the insides of the triangles eliminated (csr)."""
+    basis = table(order)
+    corners = sector.points[:, sector.triangles]  # (2, 3, m)
+    jacobian = np.einsum("dce,ck->edk", corners, basis.corner_slope)[:, :, :, None]
+    jacobian = jacobian + np.einsum("kjqg,jdge->edkq", basis.bulge_slope, _edge_bulges(sector), optimize=True)
+    (xx, xy), (yx, yy) = jacobian.transpose(1, 2, 0, 3)
+    area = xx * yy - xy * yx
+    if area.min() <= 0:
+        raise RuntimeError("a curved triangle is folded over; use another refine, or method = 'fe'")
+    first, second = basis.slope
+    dx = (yy / area)[:, None] * first - (yx / area)[:, None] * second
+    dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first
+    weight = (area * basis.weight)[:, None]
+    a, b, c = modulus / (1 - ratio**2) * np.array([1.0, ratio, (1 - ratio) / 2])
+    n = basis.count
+    local = np.empty((area.shape[0], n, 2, n, 2))
+    wx, wy = (weight * dx), (weight * dy)
+    gxx, gyy, gxy = wx @ dx.transpose(0, 2, 1), wy @ dy.transpose(0, 2, 1), wx @ dy.transpose(0, 2, 1)
+    local[:, :, 0, :, 0] = a * gxx + c * gyy
+    local[:, :, 1, :, 1] = a * gyy + c * gxx
+    local[:, :, 0, :, 1] = b * gxy + c * gxy.transpose(0, 2, 1)
+    local[:, :, 1, :, 0] = local[:, :, 0, :, 1].transpose(0, 2, 1)
+    local = local.reshape(-1, 2 * n, 2 * n)
+    kept = 2 * (n - basis.inside)
+    if basis.inside:
+        side = local[:, :kept, kept:]
+        local = local[:, :kept, :kept] - side @ np.linalg.solve(local[:, kept:, kept:], side.transpose(0, 2, 1))
+    rows = (2 * numbers[:, None, :] + np.arange(2)[:, None]).reshape(kept, -1).T
+    shape = (rows.shape[0], kept, kept)
+    i, j = np.broadcast_to(rows[:, :, None], shape), np.broadcast_to(rows[:, None, :], shape)
+    return coo_matrix((local.ravel(), (i.ravel(), j.ravel())), shape=(2 * count, 2 * count)).tocsr()
+
+
+def _between(matrix, columns):
+    """``columns' matrix**-1 columns`` of a positive definite sparse `matrix`, by Cholesky in blocks along its band.
+
+    Only the forward substitution is needed; a column takes part from its first block on.
+    """
+    order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
+    matrix, right = matrix[order][:, order].tocsr(), columns[order]
+    entries = matrix.tocoo()
+    width = max(int((entries.row - entries.col).max()), 8)
+    out = np.zeros((columns.shape[1],) * 2)
+    started, previous, lower = np.zeros(columns.shape[1], dtype=bool), None, None
+    for start in range(0, matrix.shape[0], width):
+        span = slice(start, start + width)
+        block = matrix[span, span].toarray()
+        if previous is not None:
+            below = matrix[span, previous].toarray()
+            carried = solve_triangular(lower, below.T, lower=True, check_finite=False)
+            block -= carried.T @ carried
+            right[span, started] -= carried.T @ right[previous, started]
+        lower = cholesky(block, lower=True, check_finite=False)
+        started |= right[span].any(axis=0)
+        right[span, started] = solve_triangular(lower, right[span, started], lower=True, check_finite=False)
+        out[np.ix_(started, started)] += right[span, started].T @ right[span, started]
+        previous = span
+    return out
+
+
+def _polar(gear, nodes):
+    """Rotation from radial and tangential to Cartesian components of the side nodes."""
+    angle = math.pi / gear.z
+    blocks = [np.array([[math.sin(a), math.cos(a)], [math.cos(a), -math.sin(a)]]) for a in (-angle, angle)]
+    out = np.zeros((4 * nodes, 4 * nodes))
+    for k in range(2 * nodes):
+        out[2 * k : 2 * k + 2, 2 * k : 2 * k + 2] = blocks[k // nodes]
+    return out
+
+
+def _frames(gear, roll):
+    """Places ``(2, n)`` of loads on the flank, their directions into it, and the tangents towards the tip."""
+    radius, angle = flank(gear, roll)
+    inward = -flank_normal(gear, roll)
+    return np.array([radius * np.sin(angle), radius * np.cos(angle)]), inward, gear.outward * np.array([inward[1], -inward[0]])
+
+
+def _matched(gear, sector, order):
+    """Places ``(2, n)`` of the nodes of both sides, the held corner left out, and of the held edge."""
+    line = (lobatto(order) + 1) / 2
+    out = []
+    for side in (sector.left, sector.right):
+        a, b = sector.points[:, side[:-1], None], sector.points[:, side[1:], None]
+        out.append((a * (1 - line[1:]) + b * line[1:]).reshape(2, -1))
+    edges = sector.held.size - 1
+    places = np.append((np.arange(edges)[:, None] + line[:-1]).ravel(), edges) / edges
+    return np.hstack([*out, cartesian(gear.held, math.pi / gear.z * (1 - 2 * places))])
+
+
+def _apart(sector, chain, count):
+    """Columns of unit forces that push the facing nodes of the cracks apart, tips left out."""
+    rows, columns, values, k = [], [], [], 0
+    for left, right in sector.faces:
+        ahead = np.diff(sector.points[:, left], axis=1)
+        normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        pairs = np.array([chain(left), chain(right)])[:, :-1]
+        normal = np.repeat(normal, pairs.shape[1] // normal.shape[1], axis=1)
+        for sign, nodes in ((1, pairs[0]), (-1, pairs[1])):
+            rows.append((2 * nodes + np.arange(2)[:, None]).ravel())
+            columns.append(np.tile(k + np.arange(nodes.size), 2))
+            values.append(sign * normal.ravel())
+        k += pairs.shape[1]
+    if not rows:
+        return coo_matrix((2 * count, 0)).tocsr()
+    return coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(2 * count, k)).tocsr()
+
+
+def _loads(gear, sector, chain, numbers, count, roll, order, modulus, ratio):
+    """Nodal forces ``(2 count, n)`` of the singular fields' tractions, rows that read the flank, and what those fields add."""
+    n = roll.size
+    if n == 0:
+        return np.zeros((2 * count, 0)), np.zeros((0, 2 * count)), np.zeros((0, 0))
+    where, inward, tip_side = _frames(gear, roll)
+    gauss, weight = leggauss(BULGE)
+    shapes = lagrange(order, tuple(gauss))
+    start, stop, bulge = _boundary(sector)
+    ends = sector.points[:, start], sector.points[:, stop]
+    points = (ends[0][..., None] * (1 - gauss) + ends[1][..., None] * (1 + gauss)) / 2 + (1 - gauss**2) * bulge
+    nodal = np.linalg.solve(np.vander(gauss, increasing=True), np.moveaxis(bulge, -1, 0).reshape(BULGE, -1)).reshape(BULGE, 2, -1)
+    powers = np.arange(BULGE)
+    slope = (1 - gauss**2)[:, None] * np.where(powers > 0, powers * gauss[:, None] ** np.maximum(powers - 1, 0), 0.0)
+    slope = slope - 2 * gauss[:, None] * gauss[:, None] ** powers
+    along = (ends[1] - ends[0])[..., None] / 2 + np.einsum("gk,kde->deg", slope, nodal)
+    outward = np.array([along[1], -along[0]]) * weight  # times the length element; triangles run counter-clockwise
+    spread = flamant.traction(points.reshape(2, -1), outward.reshape(2, -1), where, inward, tip_side)
+    spread = spread.reshape(2, n, start.size, gauss.size)
+    force = -np.einsum("pg,dneg->epdn", shapes, spread)
+    nodes = np.array([chain([a, b]) for a, b in zip(start.tolist(), stop.tolist(), strict=True)])
+    load = np.zeros((count, 2, n))
+    np.add.at(load, nodes, force)
+    read = np.zeros((n, count, 2))
+    edge = np.clip(np.searchsorted(sector.roll * gear.outward, roll * gear.outward) - 1, 0, sector.roll.size - 2)
+    low, high = sector.roll[edge], sector.roll[edge + 1]
+    values = lagrange(order, tuple((2 * (roll - low) / (high - low) - 1).tolist()))
+    for i in range(n):
+        at = chain(sector.flank[edge[i] : edge[i] + 2])
+        read[i, at] = values[:, i, None] * inward[:, i]
+    near = np.where(np.eye(n, dtype=bool), 1.0, 0.0)
+    arc = arc_at(gear, roll)
+    apart = np.abs(arc[:, None] - arc) + near
+    shifted = where[:, None, :] + near * inward[:, None, :]  # keep the logarithm finite on the diagonal, which is zero
+    field = np.empty((n, n))
+    for j in range(n):
+        one = slice(j, j + 1)
+        moved = flamant.displacement(shifted[:, j], where[:, one], inward[:, one], tip_side[:, one], modulus, ratio)[:, 0]
+        field[:, j] = np.einsum("dn,dn->n", moved, inward)
+    field = np.where(near > 0, 0.0, field + 2 / (math.pi * modulus) * np.log(apart))
+    return load.reshape(2 * count, n), read.reshape(n, 2 * count), field
+
+
+def _boundary(sector):
+    """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
+    pairs = np.concatenate([sector.triangles[[a, b]].T for a, b in ENDS])
+    known = {tuple(pair) for pair in pairs.tolist()}
+    edges = [(a, b) for a, b in pairs.tolist() if (b, a) not in known]
+    flat = np.zeros((2, BULGE))
+    bulges = [sector.bulge[a, b] if (a, b) in sector.bulge else sector.bulge.get((b, a), flat)[:, ::-1] for a, b in edges]
+    start, stop = np.array(edges).T
+    return start, stop, np.array(bulges).transpose(1, 0, 2)
