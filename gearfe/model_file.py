@@ -18,6 +18,7 @@ ABSCISSAE = "'phase' (mesh cycles), 'angle [deg]' or 'angle [rad]' (of the pinio
 UNITS = "N/m, N/mm, N/um (also kN, MN, GN) or, per width, N/(mm um), N/(m um)"
 COARSEST = 1 / 20  # longest step between rows: of a mesh cycle, or of the active flank
 SNAP = 1e-4  # of a cycle: rounding of printed angles and phases
+EXACT = 1e-9  # the same for the phases asked for
 STEEP = 0.1  # of the mean k: a rise from one row to the next that means an entering pair
 
 
@@ -65,10 +66,12 @@ class ModelFile:
         once = x < x[0] + 1 - SNAP
         self._check_origin(x[once] + self.phase_offset, self.k[once])
         leaves = pair.eps_alpha % 1.0
-        rows, asked = ((v + SNAP) % 1.0 - SNAP for v in (x[once] + self.phase_offset, np.asarray(phase, dtype=float)))
+        rows = (x[once] + self.phase_offset + SNAP) % 1.0 - SNAP
+        asked = (np.asarray(phase, dtype=float) + EXACT) % 1.0 - EXACT
         out = np.empty(asked.shape)
         for low, high in ((-1.0, leaves), (leaves, 1.0)):
-            row, here = ((v > low + SNAP) & (v <= high + SNAP) for v in (rows, asked))
+            row = (rows > low + SNAP) & (rows <= high + SNAP)
+            here = (asked > low + EXACT) & (asked <= high + EXACT)
             if here.any() and not row.any():
                 raise ValueError(
                     f"{self.path}: no row between phases {max(low, 0):.4g} and {high:.4g}, where another number of pairs is in "
@@ -81,15 +84,14 @@ class ModelFile:
 
     def _check_cycle(self, x, cycle):
         span, step = x[-1] - x[0], np.diff(x).max()
-        unit = " deg" if self.abscissa == "angle" else ""
-        scale = 180 / math.pi if unit else 1.0
-        given = f"{scale * self.x[0]:.6g} to {scale * self.x[-1]:.6g}{unit}"
-        whole = f"one mesh cycle is {scale * cycle:.6g}{unit}"
+        unit, scale = (" deg", 180 / math.pi) if self.abscissa == "angle" else ("", 1.0)
+        start, stop, whole = scale * self.x[0], scale * self.x[-1], scale * cycle
+        given = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
         if span + step < 1 - SNAP:
-            raise ValueError(f"{self.path}: {given} covers {span:.4g} of a mesh cycle; {whole}: give a whole one")
+            raise ValueError(f"{given}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
         if span > 1 + step + SNAP:
-            raise ValueError(f"{self.path}: {given} covers {span:.4g} mesh cycles; {whole}: keep the rows of one")
-        if step > COARSEST:
+            raise ValueError(f"{given}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
+        if step > COARSEST + SNAP:
             finer = f"sample every {COARSEST * cycle * scale:.4g}{unit} or finer"
             raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")
 
