@@ -310,6 +310,17 @@ def test_a_jump_is_not_smeared(tmp_path):
         assert_allclose(curve_of(path, asked).k, want, rtol=1e-15, err_msg=f"{n} rows")
 
 
+def test_a_short_zone_needs_a_row(tmp_path):
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0, "addendum": 0.59}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    reference = gf.mesh_stiffness(pair, 2000.0, CHOSEN.materials, method="textbook")
+    assert 1.01 < pair.eps_alpha < 1.03
+    x = 0.04 + np.arange(20) / 20
+    path = write(tmp_path / "k.csv", ["phase,k [N/m]"], x, np.full(20, 3e8))
+    with pytest.raises(ValueError, match=r"no row from phase 0 to 0.0\d*, where another number of pairs is in contact"):
+        own_curve("mine", gf.read_model(path), pair, reference)
+
+
 def test_between_rows_k_is_linear_and_never_leaves_their_range(tmp_path):
     asked = np.linspace(0, 1, 777, endpoint=False)
     k = by_textbook(PHASE).k
