@@ -74,8 +74,8 @@ class ModelFile:
             here = (asked > low + EXACT) & (asked <= high + EXACT)
             if here.any() and not row.any():
                 raise ValueError(
-                    f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in contact; "
-                    "give rows there"
+                    f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in "
+                    "contact; give rows there"
                 )
             order = np.argsort(rows[row])
             if here.any():
