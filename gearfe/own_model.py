@@ -153,7 +153,7 @@ def _called(name, function, given, where):
     n = given[0].size
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
-        k = np.asarray(function(*(values.copy() for values in given)))
+        k = np.asarray(function(*given))
     except (TypeError, ValueError) as error:
         raise ValueError(f"model {name!r} failed: {error} ({once})") from error
     if k.shape != (n,):

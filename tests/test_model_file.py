@@ -106,6 +106,7 @@ def test_table_of_one_pair(tmp_path, name):
         ["# by hand, 2024", "", '"phase","k [N/m]"', "% all of it"],
         ["# phase,k [N/m]", "# by hand, 2024"],
         ["%phase;k_N_per_m"],
+        ["# phase,k [GN/m]", "# now phase and k in SI:", "# phase,k [N/m]"],
         ["\ufeffphase,k [N/m]"],
     ],
 )
@@ -165,6 +166,7 @@ def test_unreadable_files(tmp_path):
     ("x", "message"),
     [
         (np.linspace(0, 0.6, 61), "angles 0 to 10.2857 deg cover 0.6 mesh cycles, but one is needed: 0 to 17.1429 deg"),
+        (np.linspace(0, 0.97, 98), "cover 0.97 mesh cycles, but one is needed"),
         (np.linspace(0, PAIR.eps_alpha, 99), r"cover 1.615 mesh cycles: keep the rows of one, for example 0 to 17.1429 deg"),
         (np.linspace(0, 1, 17), "rows are up to 0.0625 of a mesh cycle apart; sample every 0.8571 deg or finer"),
         (np.delete(np.linspace(0, 1, 101), range(30, 36)), "rows are up to 0.07 of a mesh cycle apart"),
@@ -212,15 +214,15 @@ def test_both_ends_of_a_cycle_may_be_given_and_rounded(tmp_path):
     x = np.round(np.linspace(0, 360 / 21, 101), 3)
     for last in (STEP[0], STEP[-1]):  # 0.9999 of a cycle: whichever side of the jump the user means
         path = write(tmp_path / "k.csv", ["angle [deg],k [N/m]"], x, np.append(STEP, last))
-        assert_allclose(curve_of(path, [0.0, 0.3, 0.97, 0.985, 0.995]).k, [4e8, 4e8, 2.5e8, 2.5e8, 2.5e8], rtol=1e-15)
+        assert_allclose(curve_of(path, [0.0, 0.004, 0.3, 0.97, 0.985, 0.995]).k, [4e8, 4e8, 4e8, 2.5e8, 2.5e8, 2.5e8], rtol=1e-15)
 
 
 @pytest.mark.parametrize("line", ["# phase_offset = 0.25", "% Phase offset: 0.25", None])
 def test_phase_offset(tmp_path, line):
-    shifted = np.where((PHASE + 0.25) % 1 <= LEAVES, 4.0e8, 2.5e8)  # the file's zero is at phase 0.25
+    shifted = by_textbook(PHASE + 0.25).k  # the file's zero is at phase 0.25
     path = write(tmp_path / "k.csv", [*([line] if line else []), "angle [deg],k [N/m]"], PHASE * 360 / 21, shifted)
     model = path if line else gf.read_model(path, phase_offset=0.25)
-    assert_allclose(curve_of(model, PHASE).k, STEP, rtol=1e-14)
+    assert_allclose(curve_of(model, PHASE).k, by_textbook(PHASE).k, rtol=1e-11)
 
 
 def test_wrong_origin_is_hinted_at_with_its_remedy(tmp_path):

@@ -89,14 +89,6 @@ def test_functions_see_phases_of_one_cycle_and_radii_of_the_active_flank():
     )
 
 
-def test_a_function_may_change_what_it_is_given():
-    def total(phase):
-        phase += 1
-        return 3e8 * phase
-
-    assert_allclose(curve_of(total, [0.0, 0.5]).k, [3e8, 4.5e8], rtol=1e-15)
-
-
 @pytest.mark.parametrize(
     ("function", "message"),
     [
