@@ -22,6 +22,12 @@ def main(argv=None):
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", compare, "table of every formulation's error against finite elements, by zone, with cost")
     _scene_arguments(verb)
+    verb.add_argument(
+        "--model", metavar="FILE", action="append", default=[],
+        help="a stiffness curve of your own, may be repeated: two columns, units in the header; first phase (0 to 1; 0: "
+        "a pair enters), angle [deg] or angle [rad] (of the pinion), or radius [mm] (one tooth pair, on the pinion); then k in "
+        "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
+    )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
     verb = _verb(verbs, "render", render, "von Mises stress of the loaded teeth, without a screen")
     _scene_arguments(verb, phases=False)
@@ -109,13 +115,13 @@ def stiffness(arguments):
 
 def compare(arguments):
     """``gearfe compare``."""
-    from .compare import compare as run
+    from . import compare as run  # the function: importing it from its module would hide it from users of the package
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)
     _print_scene(scene)
     with _working("finite elements and energy methods"):
-        result = run(scene, arguments.pair, phases=arguments.phases, refine=arguments.refine)
+        result = run(scene, arguments.pair, models=arguments.model, phases=arguments.phases, refine=arguments.refine)
     meta = result.reference.meta
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
     print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")

@@ -3,6 +3,7 @@
 import time
 from dataclasses import dataclass
 
+from .own_model import own_curve, own_models
 from .stiffness import mesh_stiffness
 
 FORMULATIONS = ("textbook", "published")
@@ -52,14 +53,19 @@ class Comparison:
         return "\n".join(lines)
 
 
-def compare(scene, pair=None, *, phases=64, refine=1.0):
-    """Compare every built-in formulation with finite elements on one pair of `scene`; of ring pairs only the latter exists.
+def compare(scene, pair=None, *, models=(), phases=64, refine=1.0):
+    """Compare every built-in formulation, and models of your own, with finite elements on one pair of `scene`.
+
+    Of ring pairs there are no built-in formulations.
 
     Parameters
     ----------
     scene : Scene
     pair : str, optional
         Name of the pair; default the first.
+    models : sequence or dict of str to model
+        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair, or files
+        with stated units (see `gearfe.own_model` and `gearfe.model_file.read_model`).
     phases : int or array
         As in `mesh_stiffness`.
     refine : float
@@ -70,6 +76,7 @@ def compare(scene, pair=None, *, phases=64, refine=1.0):
     Comparison
     """
     chosen = scene.pair(pair)
+    own = own_models(models, taken=("fe", *FORMULATIONS))
     _warm_up()
     case = {"pair": chosen.pair, "force": chosen.force, "material": chosen.materials, "phases": phases, "refine": refine}
     curves, seconds = {}, {}
@@ -78,6 +85,10 @@ def compare(scene, pair=None, *, phases=64, refine=1.0):
         curves[method] = mesh_stiffness(**case, method=method, cache=False)
         seconds[method] = time.perf_counter() - started
     curves["fe"] = mesh_stiffness(**case, error=True)
+    for name, model in own.items():
+        started = time.perf_counter()
+        curves[name] = own_curve(name, model, chosen.pair, curves["fe"])
+        seconds[name] = time.perf_counter() - started
     return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
 
 

@@ -22,7 +22,7 @@ class StiffnessCurve:
     order : ndarray, shape (pairs,)
         Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
     force : ndarray, shape (n, pairs)
-        Force each pair carries [N].
+        Force each pair carries [N]; nan where a model gives only the total stiffness.
     pressure : ndarray, shape (n, pairs)
         Largest contact pressure of each pair [Pa]; nan for methods without one.
     error : ndarray, shape (n,) or None

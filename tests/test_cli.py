@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from importlib import resources
 
 import numpy as np
@@ -73,9 +75,14 @@ def test_errors_go_to_stderr(arguments, message, capsys):
     assert "Traceback" not in captured.err
 
 
-def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
-    import sys
+def test_the_command_leaves_the_function_compare_to_the_package():
+    run = "gearfe.cli.main(['compare', 'planetary_pitting', '--pair', 'x'])"
+    code = f"import gearfe, gearfe.cli; {run}; assert callable(gearfe.compare)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "has no pair 'x'" in done.stderr
 
+
+def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     assert main(["render", "planetary_pitting", "-o", str(tmp_path / "s.png")]) == 1
     assert "pip install pyvista" in capsys.readouterr().err

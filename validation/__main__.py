@@ -8,6 +8,7 @@ PAGES = {
     "slow": "the slow tests and what they print",
     "speed": "seconds against error of every method",
     "hard": "hard cases, each with its outcome",
+    "own_model": "the example of a curve exported by MATLAB",
     "readme": "the table and the program output in the README",
 }
 
