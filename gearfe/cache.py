@@ -15,6 +15,7 @@ from pathlib import Path
 import geometry
 
 from . import fe
+from .energy import ritz
 from .export import written
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
@@ -90,3 +91,4 @@ def _made_by():
 def clear():
     """Forget the gears kept in this process (files stay)."""
     _kept.cache_clear()
+    ritz.clear()

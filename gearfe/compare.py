@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from .own_model import own_curve, own_models
 from .stiffness import mesh_stiffness
 
-FORMULATIONS = ("textbook", "published")
+FORMULATIONS = ("ritz", "textbook", "published")
+RING = ("ritz",)  # those that know rings
 ZONES = ("single", "double", "triple", "mean", "max")
 
 
@@ -78,13 +79,14 @@ def compare(scene, pair=None, *, models=(), phases=64, refine=1.0):
     chosen = scene.pair(pair)
     own = own_models(models, taken=("fe", *FORMULATIONS))
     _warm_up()
-    case = {"pair": chosen.pair, "force": chosen.force, "material": chosen.materials, "phases": phases, "refine": refine}
+    case = {"pair": chosen.pair, "force": chosen.force, "material": chosen.materials, "phases": phases}
     curves, seconds = {}, {}
-    for method in ("fe", *(() if chosen.pair.gear_2.internal else FORMULATIONS)):
+    for method in ("fe", *(RING if chosen.pair.gear_2.internal else FORMULATIONS)):
         started = time.perf_counter()
-        curves[method] = mesh_stiffness(**case, method=method, cache=False)
+        options = {"refine": refine} if method == "fe" else {}
+        curves[method] = mesh_stiffness(**case, method=method, cache=False, **options)
         seconds[method] = time.perf_counter() - started
-    curves["fe"] = mesh_stiffness(**case, error=True)
+    curves["fe"] = mesh_stiffness(**case, method="fe", refine=refine, error=True)
     for name, model in own.items():
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves["fe"])

@@ -57,30 +57,33 @@ def mesh_stiffness(
         Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
-    method : {"fe", "textbook", "published"}
-        ``fe``: finite elements with line contact, neighbour coupling and load sharing (`gearfe.fe`). ``textbook``,
-        ``published``: beam energies, linear contact, plain sum of the pairs (`gearfe.energy`).
+    method : {"auto", "ritz", "fe", "textbook", "published"}
+        ``ritz`` (and ``auto``): the converged energy model, milliseconds (`gearfe.energy.ritz`). ``fe``: finite elements of
+        whole gears, the independent reference (`gearfe.fe`). Both with line contact, neighbour coupling and load sharing.
+        ``textbook``, ``published``: beam energies, linear contact, plain sum of the pairs (`gearfe.energy`).
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves.
     span : {"cycle", "tooth"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
         after it (where the damaged tooth is).
     damage : dict, optional
-        Cracks by gear: ``{"pinion": [Crack(...)], "wheel": [...]}``; ``fe`` only. Crack faces that the load presses together
+        Cracks by gear: ``{"pinion": [Crack(...)], "wheel": [...]}``; ``ritz`` and ``fe``. Crack faces that the load presses together
         are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
-        Let tip corners touch before the start and after the end of the path of contact (``fe`` only; the energy methods
-        know no contact there).
+        Let tip corners touch before the start and after the end of the path of contact (``ritz`` and ``fe``;
+        the closed forms know no contact there).
     state : {"plane strain", "plane stress"}
-        For ``fe``; the beams of the energy methods use E as their sources do.
+        For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
     refine : float
-        Resolution of ``fe``: divides its edge lengths.
+        Resolution of ``ritz`` and ``fe``: divides the edge lengths.
+    order : int
+        Polynomial order of ``ritz``, 2 to 8.
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
     error : bool
-        For ``fe``: estimate the discretisation error of every k from two coarser solves (see `estimate`).
+        For ``ritz`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
     cache : bool
-        For ``fe``: reuse a gear solved before, in this process or an earlier one (see `gearfe.cache`).
+        Reuse a gear solved before in this process; for ``fe`` also an earlier one (see `gearfe.cache`).
 
     Returns
     -------
@@ -184,6 +187,8 @@ def _coarser(method, refine, order):
 def _converged(pair, materials, phase, extended, damage, method, cache, **options):
     started = time.perf_counter()
     solved = partial(solved_gear, cache=cache) if method == "fe" else ritz.flexibility
+    if method == "ritz" and not cache:
+        ritz.clear()
     flexible = [
         solved(gear, material, cracks, neighbours=math.ceil(pair.eps_alpha), **options)
         for gear, material, cracks in zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)

@@ -57,7 +57,7 @@ def admissible(seeds):
 
 def covered(seed, pair, force, damage):
     """Whether the true errors at all phases lie within the estimate (against a mesh of 2.5 times the resolution)."""
-    run = {"phases": 12, "damage": damage, "cache": False}
+    run = {"phases": 12, "damage": damage, "cache": False, "method": "fe"}
     try:
         curve = gf.mesh_stiffness(pair, force, gf.Material(), error=True, **run)
         fine = gf.mesh_stiffness(pair, force, gf.Material(), refine=2.5, **run)
@@ -87,7 +87,7 @@ def test_error_estimate_covers_the_true_error():
     assert np.mean(results) >= 0.95
 
 
-def fuzz(seeds):
+def fuzz(seeds, method="ritz", refine=1.0):
     """Each seed gives a curve whose identities hold, or a ValueError; returns how many of each."""
     curves = refused = 0
     for seed in seeds:
@@ -96,7 +96,7 @@ def fuzz(seeds):
             warnings.filterwarnings("ignore", "tip_radius|the ring's tip", UserWarning)
             try:
                 pair, force, damage = random_case(seed)
-                run = {"phases": 8, "refine": 0.6, "cache": False, "span": "tooth"}
+                run = {"phases": 8, "refine": refine, "cache": False, "span": "tooth", "method": method}
                 healthy = gf.mesh_stiffness(pair, force, gf.Material(), **run)
                 curves += 1
                 if damage:
@@ -117,13 +117,15 @@ def fuzz(seeds):
     return curves, refused
 
 
-def test_fuzz_a_few():
-    curves, _ = fuzz(range(1000, 1008))
-    assert curves >= 3
+@pytest.mark.parametrize(("method", "seeds"), [("fe", range(1000, 1004)), ("ritz", range(1000, 1030))])
+def test_fuzz_a_few(method, seeds):
+    curves, _ = fuzz(seeds, method, 0.6 if method == "fe" else 1.0)
+    assert curves >= 2
 
 
 @pytest.mark.slow
-def test_fuzz():
-    curves, refused = fuzz(range(2000, 2300))
+@pytest.mark.parametrize(("method", "refine"), [("fe", 0.6), ("ritz", 1.0)])
+def test_fuzz(method, refine):
+    curves, refused = fuzz(range(2000, 2300), method, refine)
     print(f"{curves} curves, {refused} refused")
     assert curves >= 150

@@ -54,11 +54,11 @@ def healthy_pair(row):
     return pair, gf.Material(E=row["E"], nu=0.3)
 
 
-def healthy(row, *, phases=None, teeth=None):
+def healthy(row, *, phases=None, **options):
     """Mean, max, min stiffness [N/(mm um)] without extended contact; phases in the middle of 32 equal parts."""
     pair, steel = healthy_pair(row)
     phases = (np.arange(32) + 0.5) / 32 if phases is None else phases
-    k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, teeth=teeth).k / 1e6
+    k = gf.mesh_stiffness(pair, row["line_load"], steel, phases=phases, extended=False, **options).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 
 
@@ -96,23 +96,23 @@ def ring_root_stress(row):
     return stress, pair.eps_alpha_of(pair.gear_1.roll_a, ring.roll_a)
 
 
-def healthy_ring():
+def healthy_ring(method):
     """Mean, max, min stiffness [N/(mm um)] of the 27/72 ring pair."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         pair = gf.GearPair(gf.Gear(z=27, r_bore=12.0, **rack), gf.Gear(z=72, r_rim=90.0, **rack))
     steel = gf.Material(E=207e3, nu=0.3)
-    k = gf.mesh_stiffness(pair, 150.0, steel, phases=(np.arange(32) + 0.5) / 32, extended=False).k / 1e6
+    k = gf.mesh_stiffness(pair, 150.0, steel, method=method, phases=(np.arange(32) + 0.5) / 32, extended=False).k / 1e6
     return np.array([k.mean(), k.max(), k.min()])
 
 
-def crack_reduction(row, **crack):
+def crack_reduction(row, method="ritz", **crack):
     """Largest reduction of k [-] by a pinion crack of the row's level."""
     table = load()["healthy"]["rows"]
     source = next(r for r in table if r["z"] == row["z"])
     pair, steel = healthy_pair(source)
-    run = {"span": "tooth", "phases": 64, "extended": False}
+    run = {"span": "tooth", "phases": 64, "extended": False, "method": method}
     whole = gf.mesh_stiffness(pair, source["line_load"], steel, **run).k
     damage = {"pinion": [gf.Crack(**({"level": row["level"]} | crack))]}
     return float((1 - gf.mesh_stiffness(pair, source["line_load"], steel, damage=damage, **run).k / whole).max())

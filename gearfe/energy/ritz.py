@@ -225,3 +225,9 @@ def _own_tooth(gear, influence, coefficient, refine):
     centre = knots.mean(axis=0)
     carry = _carry(_variable(gear, centre))
     return near, TipHats(centre, knots, carry @ influence @ carry.T + coefficient * hat_logarithm(knots, knots))
+
+
+def clear():
+    """Forget the gears kept in this process."""
+    for kept in (_healthy, _panel, _places):
+        kept.cache_clear()
