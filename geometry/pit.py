@@ -212,9 +212,7 @@ def crossing(gear, pit, roll, z):
     found = found.real[np.abs(found.imag) < 1e-9]
     places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
     kept = [
-        (a, b)
-        for a, b in zip(places[:-1], places[1:], strict=True)
-        if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0
+        (a, b) for a, b in zip(places[:-1], places[1:], strict=True) if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0
     ]
     ends = [np.clip((pit.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
     return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
