@@ -6,6 +6,7 @@ _HOME = {
     "Crack": "geometry.damage",
     "Gear": "geometry.gear",
     "GearPair": "geometry.pair",
+    "Pit": "geometry.pit",
     "PlanetarySet": "geometry.planetary",
     "Material": "gearfe.material",
     "StiffnessCurve": "gearfe.curve",
