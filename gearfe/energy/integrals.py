@@ -65,14 +65,14 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
 
 
 def flank_edges(gear, cracks, pits, *, root="fillet", crack_model="constant"):
-    """Roll lengths [mm], from root to tip, between which the damaged section is smooth along the flank."""
+    """Roll lengths [mm], from the foot of the involute to the tip, between which the damaged section is smooth."""
     return _flank_edges(gear, root, _limits(gear, root, cracks, crack_model), pits)
 
 
 def _flank_edges(gear, root, found, pits):
-    kinks = _edges(_flank(gear), found, pits, (_lowest(gear, root), gear.roll_a))[:-1]
-    edges = np.unique(np.concatenate([kinks, *(np.linspace(*rolls(gear, pit), 7) for pit in pits)]))
-    return edges[:: gear.outward]
+    kinks = _edges(_flank(gear), found, pits, (_lowest(gear, root), gear.roll_a))
+    edges = np.unique(np.concatenate([kinks, *(np.linspace(*rolls(gear, pit), 7) for pit in pits)]))[:: gear.outward]
+    return edges[np.append(True, np.abs(np.diff(edges)) > 1e-9 * gear.m_n)]
 
 
 def _lowest(gear, root):

@@ -9,7 +9,8 @@ from numpy.polynomial.legendre import leggauss
 from geometry.pit import crossing
 
 FACES = ("spur", "helical", "herringbone")
-POINTS, WEIGHTS = leggauss(24)
+RULES = {False: leggauss(1), True: leggauss(24)}
+SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +130,7 @@ def _line(pair, place, pits, band, lost, edges):
     for (s, e), gone in zip(parts, under, strict=True):
         if gone and lost == "slices":
             continue
-        points, weights = (POINTS, WEIGHTS) if lag > 0 else (np.zeros(1), np.full(1, 2.0))
+        points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
         t = s + (e - s) * (1 + points) / 2
         at = roll[0] + (roll[1] - roll[0]) * t
         out.append(np.column_stack([at, share * (e - s) / 2 * weights, np.full(t.size, left if lost == "hertz" else 1.0)]))
