@@ -12,7 +12,7 @@ from geometry.pit import centre_arc, check_pits, crossing, intervals, lost_width
 from geometry.tooth import arc_at
 
 GEAR = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
-RING = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=90.0)
+RING = gf.Gear(z=72, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_rim=90.0, tip_radius=0.3)
 GOOD = {"radius": 21.0, "z": 10.0, "axes": (0.5, 1.5), "depth": 0.2}
 
 
