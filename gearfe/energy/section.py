@@ -16,9 +16,9 @@ Choices where the literature is ambiguous, or its words do not define a section:
    ``constant``: ``x = x_t`` (the h_c of Chen and Shao 2011; X. Liang, M. J. Zuo, M. Pandey, Mech. Mach. Theory 76 (2014) 20-38);
    ``straight``: to the tip corner (x_a, y_a) of the cracked side; ``parabola``: ``x = x_t + (x_a - x_t) sqrt((y - y_t) /
    (y_a - y_t))``, with its vertex in the crack's tip and through the corner (after O. D. Mohammed, M. Rantatalo, J.-O.
-   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). The flank
-   bulges beyond a line from the crack's mouth to the corner; that bulge is kept, or a crack of no length would weaken the
-   tooth.
+   Aidanpaa, Eng. Fail. Anal. 34 (2013) 235-251, who describe it in words; the axis along the tooth is our reading). What
+   the flank bulges beyond the same line drawn from the crack's mouth is kept alive, or a crack of no length would weaken the
+   tooth (on a true fillet ``constant`` has no bulge).
 4. A pit takes its depth off the half thickness (the literature's convention; the true chord is ``depth / cos(load angle)``)
    over the width of its chord there. Material that a crack has made dead is not taken twice. The inertia is about the
    centroid of what is left, so it is positive; the bending moment stays about the tooth centre-line, as in the literature.
@@ -48,23 +48,20 @@ class Limit:
 
     def edge(self, h, y):
         """Where the living section ends on the cracked side [mm], half thickness `h` at height `y`."""
-        if self.model == "constant":
-            bent = np.full(np.shape(h), self.tip[0])
-        else:
-            bulge = np.maximum(h - self._curve(self.mouth, y), 0.0)
-            bent = self._curve(self.tip, y) + bulge
-        return np.where(y >= self.mouth[1], np.minimum(h, bent), h)
+        return np.where(y >= self.mouth[1], np.minimum(h, self._line(h, y)), h)
 
     def switches(self, h, y, depths):
         """Functions of (h, y) that change sign where the section's formula changes; shape (functions, *h.shape)."""
-        line = np.full(np.shape(h), self.tip[0])
-        out = [y - self.mouth[1]]
-        if self.model != "constant":
-            out.append(h - self._curve(self.mouth, y))
-            line = self._curve(self.tip, y) + np.maximum(out[-1], 0.0)
-        return np.array([*out, *(h - depth - line for depth in (0.0, *depths))])
+        line = self._line(h, y)
+        return np.array([y - self.mouth[1], h - self._from(self.mouth, y), *(h - depth - line for depth in (0.0, *depths))])
 
-    def _curve(self, start, y):
+    def _line(self, h, y):
+        """Limit line from the tip, with what the flank bulges beyond the one from the mouth."""
+        return self._from(self.tip, y) + np.maximum(h - self._from(self.mouth, y), 0.0)
+
+    def _from(self, start, y):
+        if self.model == "constant":
+            return np.full(np.shape(y), start[0])
         part = np.maximum((y - start[1]) / (self.corner[1] - start[1]), 0.0)
         return start[0] + (self.corner[0] - start[0]) * (np.sqrt(part) if self.model == "parabola" else part)
 
