@@ -113,6 +113,7 @@ def mesh_stiffness(
         solve, details = _fe(pair, materials, phase, extended, cracks, cache=cache, **numeric)
     else:
         solve, details = plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
+        details["outside"] = [asdict(v) for v in details["outside"]]
     options = {"extended": bool(extended), **numeric} if method == "fe" else {}
     if any(cracks):
         options["damage"] = {

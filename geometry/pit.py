@@ -136,7 +136,7 @@ def pit_row(count, first, last, **numbers):
     return [Pit(z=float(z), **numbers) for z in np.linspace(first, last, count)]
 
 
-def intervals(gear, pits, arc, span=None):
+def intervals(gear, pits, arc):
     """Axial intervals the pits take from the flank at profile arcs `arc`.
 
     Parameters
@@ -145,16 +145,13 @@ def intervals(gear, pits, arc, span=None):
     pits : sequence of Pit
     arc : ndarray
         As of `geometry.tooth.arc_at` [mm]; nan is off the flank.
-    span : (float, float), optional
-        Part of the face the intervals are clipped to [mm]; default ``(0, b)``.
 
     Returns
     -------
     low, high : ndarray, shape (pits, *arc.shape)
-        Ends [mm], equal where the pit takes nothing.
+        Ends [mm] within 0..b, equal where the pit takes nothing.
     """
     arc = np.asarray(arc, dtype=float)
-    start, stop = (0.0, gear.b) if span is None else span
     low, high = np.zeros((2, len(pits), *arc.shape))
     for k, pit in enumerate(pits):
         across, mixed, along = pit.form
@@ -162,7 +159,7 @@ def intervals(gear, pits, arc, span=None):
         root = across - (across * along - mixed**2) * u**2
         half = np.sqrt(np.where(root > 0, root, 0.0)) / across
         middle = pit.z - mixed * np.where(root > 0, u, 0.0) / across
-        low[k], high[k] = np.clip(middle - half, start, stop), np.clip(middle + half, start, stop)
+        low[k], high[k] = np.clip(middle - half, 0, gear.b), np.clip(middle + half, 0, gear.b)
     return low, high
 
 
@@ -176,9 +173,9 @@ def union_length(low, high):
     return np.maximum(high - np.maximum(low, before), 0.0).sum(axis=0)
 
 
-def lost_width(gear, pits, arc, span=None):
+def lost_width(gear, pits, arc):
     """Width [mm] the pits of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
-    return union_length(*intervals(gear, pits, arc, span))
+    return union_length(*intervals(gear, pits, arc))
 
 
 def crossing(gear, pit, roll, z):
