@@ -40,6 +40,9 @@ class Pit:
     ------
     ValueError
         If the description is contradictory; a pit beside its flank is refused when it meets its gear, see `check_pits`.
+
+    >>> Pit(radius=21.0, z=10.0, axes=(1.0, 2.0), depth=0.2).reach
+    (1.0, 2.0)
     """
 
     radius: float

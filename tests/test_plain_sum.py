@@ -23,7 +23,6 @@ BOTH = (STEEL, STEEL)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
 PHASE = np.arange(-4, 30) / 16 + 0.003
-MODELS = ("constant", "straight", "parabola")
 
 
 @lru_cache

@@ -59,8 +59,8 @@ def plain_sum(
         Width of a herringbone gear's relief groove [mm], part of b.
     lost : {"hertz", "slices"}
         What a pit takes from its pair: the lost part of the contact's stiffness (Liang et al. 2016, and article S4 as printed),
-        or the slices in it with all they carry (slices that know nothing of each other). The sections it weakens are those
-        of the whole tooth in both.
+        or the slices in it with all they carry (slices that know nothing of each other). The material it takes
+        weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
     **variants
         Passed on to ``formulas.components``.
 

@@ -44,10 +44,10 @@ def components(
         Of this tooth (their numbers are not looked at). Pits also shorten the contact: see `gearfe.energy.plain_sum`.
     crack_model : {"constant", "straight", "parabola"}
         Limit line of the material a crack leaves alive.
-    root : {"fillet", "base", "line"}
+    root : {"fillet", "base", "line", "prism"}
         Where the beam begins: on the root circle over the true fillet; or where the involute, extended downwards, meets the
-        larger of base and root circle, ``base`` with nothing below it and ``line`` with a straight radial flank down to the
-        root circle.
+        larger of base and root circle, ``base`` with nothing below it, ``line`` with a straight radial flank and ``prism``
+        with constant thickness down to the root circle.
     foundation : {"sainsot", "none"}
     lever : {"crossing", "contact"}
         u: height over the root circle of the point where the load line crosses the centre-line (Sainsot), or of the
