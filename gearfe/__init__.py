@@ -7,6 +7,7 @@ _HOME = {
     "Gear": "geometry.gear",
     "GearPair": "geometry.pair",
     "PairModel": "gearfe.own_model",
+    "Pit": "geometry.pit",
     "PlanetarySet": "geometry.planetary",
     "Material": "gearfe.material",
     "StiffnessCurve": "gearfe.curve",

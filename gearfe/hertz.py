@@ -71,3 +71,56 @@ def linear_hertz(materials, state="plane strain"):
     Yang and Sun, J. Mech. Transm. Autom. Des. 107 (1985) 529-535; for two materials the compliances are averaged.
     """
     return 2 / (math.pi * contact_modulus(materials, state))
+
+
+def weber_line(line_load, materials, radius, depth):
+    """Contact flexibilities of two teeth under a line load, secant and tangent [mm per N/mm].
+
+    Approach of the two tooth centre-lines, per body ``2 (1 - nu**2) P / (pi E) (ln(2 h / a) - nu / (2 (1 - nu)))``, with a
+    the half width of the contact (`half_width`). Plane strain; needs h well above a.
+
+    Parameters
+    ----------
+    line_load : ndarray
+        [N/mm] of touching length.
+    materials : (Material, Material)
+    radius : ndarray
+        Relative radius of curvature [mm].
+    depth : (ndarray, ndarray)
+        Distance h from flank to tooth centre-line along the load line, of both bodies [mm].
+
+    References
+    ----------
+    C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern, Schriftenreihe
+    Antriebstechnik 11, Vieweg, 1953.
+    """
+    width = half_width(line_load, radius, contact_modulus(materials))
+    secant, tangent = 0.0, 0.0
+    for material, h in zip(materials, depth, strict=True):
+        own = half_plane(material)
+        secant = secant + own * (np.log(2 * h / width) - material.nu / (2 * (1 - material.nu)))
+        tangent = tangent - own / 2
+    return secant, secant + tangent
+
+
+def palmgren_line(line_load, materials, length):
+    """Contact flexibilities of two bodies in line contact, secant and tangent [mm per N/mm], after Palmgren and Lundberg.
+
+    ``delta = 3.81 (sum (1 - nu**2) / (pi E))**0.9 F**0.9 / L**0.8``, for steel ``3.84e-5 F**0.9 / L**0.8`` (mm, N): fitted to
+    rollers, and independent of their radius.
+
+    Parameters
+    ----------
+    line_load : ndarray
+        [N/mm] of touching length.
+    materials : (Material, Material)
+    length : ndarray
+        Touching length [mm].
+
+    References
+    ----------
+    A. Palmgren, Grundlagen der Waelzlagertechnik, 3rd ed., Franckh, 1964; T. A. Harris, Rolling Bearing Analysis, 3rd ed.,
+    Wiley, 1991, ch. 6 (the steel form).
+    """
+    secant = 3.81 * (1 / (math.pi * contact_modulus(materials))) ** 0.9 * (length / line_load) ** 0.1
+    return secant, 0.9 * secant

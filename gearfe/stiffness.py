@@ -15,10 +15,10 @@ from geometry.damage import Crack, check_apart
 from geometry.pair import GearPair
 
 from .cache import solved_gear
-from .contact import Mesh, Solved
+from .contact import Mesh
 from .curve import StiffnessCurve
 from .energy import published, ritz, textbook
-from .hertz import linear_hertz
+from .energy.plain_sum import plain_sum
 from .material import Material, check_state
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
@@ -123,7 +123,8 @@ def mesh_stiffness(
         case = (pair, materials, phase, extended, cracks, method, cache)
         solve, details = _converged(*case, **numeric)
     else:
-        solve, details = _plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
+        solve, details = plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
+        details["outside"] = [asdict(v) for v in details["outside"]]
     options = {"extended": bool(extended), **numeric} if method in CONVERGED else {}
     if any(cracks):
         options["damage"] = {
@@ -213,24 +214,6 @@ def _cracks(pair, damage):
         check_apart(gear, cracks)
         out.append(tuple(replace(crack, tooth=sense * crack.tooth) for crack in cracks))
     return tuple(out)
-
-
-def _plain_sum(pair, materials, phase, formulas):
-    """Sum of the pairs on the path of contact, each a chain of two teeth and a linear contact: independent of load."""
-    found = pair.contacts(phase, extended=False)
-    touch = np.isfinite(found.gap)
-    local = published.contact(materials) if formulas is published else linear_hertz(materials)
-    flexibility = np.full(found.gap.shape, np.inf)
-    flexibility[touch] = local
-    for gear, material, roll in ((pair.gear_1, materials[0], found.roll_1), (pair.gear_2, materials[1], found.roll_2)):
-        flexibility[touch] += formulas.components(gear, material, roll[touch]).total
-    stiffness = (1 / flexibility).sum(axis=1)
-
-    def solve(line_load):
-        line = line_load / flexibility / stiffness[:, None]
-        return Solved(found.order, line_load / stiffness, stiffness, line, np.full(line.shape, np.nan))
-
-    return solve, {}
 
 
 def _curve(pair, phase, force, solve, meta):

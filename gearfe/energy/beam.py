@@ -16,13 +16,27 @@ SAINSOT = np.array(
 
 
 @dataclass(frozen=True, slots=True)
+class Validity:
+    """A value outside the range a formula was made for: `what` it is, its `value`, and the range from `low` to `high`."""
+
+    what: str
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
 class Components:
-    """Flexibility of one tooth at some contact positions, itemised; arrays [mm per N/mm of width]."""
+    """Flexibility of one tooth at some contact positions, itemised; arrays [mm per N/mm of width].
+
+    `outside` names the ranges of validity that the gear is not in (a tuple of `Validity`).
+    """
 
     bending: np.ndarray
     shear: np.ndarray
     axial: np.ndarray
     foundation: np.ndarray
+    outside: tuple = ()
 
     @property
     def total(self):
@@ -42,6 +56,25 @@ def sainsot(h, theta):
     return SAINSOT @ np.array([1 / theta**2, h**2, h / theta, 1 / theta, h, 1.0])
 
 
+def sainsot_outside(gear, theta):
+    """Ranges of Sainsot's fit that `gear` with root half angle `theta` [rad] is not in, as a tuple of `Validity`.
+
+    Raises
+    ------
+    ValueError
+        For a ring: the fit is for a disc held at its bore.
+    """
+    if gear.internal:
+        raise ValueError(
+            f"the foundation of Sainsot does not hold for a ring (z = {gear.z}): use foundation = 'none', or method = 'fe'"
+        )
+    seen = (
+        Validity(f"h = r_f / r_bore of z = {gear.z} (Sainsot)", gear.r_f / gear.r_bore, 1.4, 7.0),
+        Validity(f"theta_f [rad] of z = {gear.z} (Sainsot)", float(theta), 0.01, 0.12),
+    )
+    return tuple(v for v in seen if not v.low <= v.value <= v.high)
+
+
 def load_angle(gear, roll):
     """Angle [rad] of the tooth force to the normal of the tooth centre-line, positive towards the root."""
-    return np.asarray(roll) / gear.r_b - gear.base_half_angle
+    return np.asarray(roll) / gear.r_b - gear.outward * gear.base_half_angle

@@ -5,13 +5,16 @@ import math
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from .beam import Components, load_angle, sainsot
+from geometry.tooth import flank
+
+from .beam import Components, load_angle, sainsot, sainsot_outside
+from .integrals import integrals
 
 GAUSS = leggauss(32)
 
 
-def components(gear, material, roll):
-    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
+def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant"):
+    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics"); not for rings.
 
     As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
     ``cos(a)**2 / (E L)``, and the coefficient table.
@@ -25,6 +28,17 @@ def components(gear, material, roll):
     3. u_f, S_f and theta_f are not defined: Sainsot's, with the root half angle of a straight radial flank below the
        base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``.
 
+    Damage (the same integrals with the article's ``A_x`` and ``I_x`` of a cracked and pitted section), corrected:
+
+    4. a cracked section is ``(h_x + h_c) L`` from the crack, at the foot of the beam, up to where ``h_x = h_c`` (the printed
+       transition "x <= d" is the whole tooth); the article's angle and length, and its undefined level as in
+       `geometry.damage.Crack`, of the half thickness at the foot;
+    5. the printed ``dI = dA (h_p**2 + 3/4 p_d**2) / 12`` mixes up the axes and lacks the parallel-axis term, so that I - dI
+       can become negative: the inertia here is that of the section left, about its own centroid;
+    6. several pits in a section take the union of their widths, not the sum; where the crack has made the material dead they
+       take nothing more (its case 3, there only said to be "close to");
+    7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
+
     The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
 
     References
@@ -34,7 +48,27 @@ def components(gear, material, roll):
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
     force = load_angle(gear, roll)
     alpha_2 = gear.base_half_angle
-    cos, sin = np.cos(force), np.sin(force)
+    cos = np.cos(force)
+    if cracks or pits:
+        bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model)
+    else:
+        bending, shear, axial = _healthy(gear, material, force)
+    theta = (
+        math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
+        if gear.r_f < gear.r_b
+        else float(gear.half_thickness(gear.r_f))
+    )
+    outside = sainsot_outside(gear, theta)
+    ratio = (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
+    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
+    tan = np.tan(force)
+    foundation = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan)
+    return Components(bending, shear, axial, foundation, outside)
+
+
+def _healthy(gear, material, force):
+    """Bending, shear and axial flexibility by the source's integrals over the angle."""
+    alpha_2, cos, sin = gear.base_half_angle, np.cos(force), np.sin(force)
     points, weights = GAUSS
     low = max(gear.r_f, gear.r_b)
     stop = alpha_2 - math.tan(math.acos(gear.r_b / low))
@@ -46,23 +80,26 @@ def components(gear, material, roll):
     bending = (step * 3 * arm**2 / (2 * depth**3)).sum(axis=1) / material.E
     shear = (step * 1.2 * (1 + material.nu) / depth).sum(axis=1) * cos**2 / material.E
     axial = (step / (2 * depth)).sum(axis=1) * sin**2 / material.E
-    theta = (
-        math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
-        if gear.r_f < gear.r_b
-        else float(gear.half_thickness(gear.r_f))
-    )
     if gear.r_f < gear.r_b:
+        theta = math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
         depth = (gear.r_b * math.cos(alpha_2) - gear.r_f * math.cos(theta)) / gear.r_b
         far = 1 - (gear.r_f / gear.r_b) * cos * math.cos(theta)
         near = 1 - cos * math.cos(alpha_2)
         bending += (far**3 - near**3) / (2 * material.E * cos * math.sin(alpha_2) ** 3)
         shear += 1.2 * (1 + material.nu) * cos**2 * depth / (material.E * math.sin(alpha_2))
         axial += sin**2 * depth / (2 * material.E * math.sin(alpha_2))
-    ratio = (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
-    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
-    tan = np.tan(force)
-    foundation = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan)
-    return Components(bending, shear, axial, foundation)
+    return bending, shear, axial
+
+
+def _damaged(gear, material, roll, cracks, pits, crack_model):
+    """The same over the same profile with the sections that damage leaves."""
+    force = load_angle(gear, roll)
+    cos, sin = np.cos(force), np.sin(force)
+    radius, angle = flank(gear, roll)
+    i0, i1, i2, area, uncracked = integrals(gear, roll, root="prism", cracks=cracks, pits=pits, crack_model=crack_model)
+    arm = cos * radius * np.cos(angle) - sin * radius * np.sin(angle)
+    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
+    return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E
 
 
 def contact(materials):
