@@ -1,17 +1,10 @@
 """The textbook: a cantilever of the true profile, Sainsot's foundation, plain sum of tooth pairs."""
 
-import math
-from functools import lru_cache
-
 import numpy as np
-from numpy.polynomial import Chebyshev
-from numpy.polynomial.legendre import leggauss
 
-from geometry.tooth import cartesian, fillet, flank, form_point, root_half_angle
+from geometry.tooth import cartesian, flank, root_half_angle
 
-from .beam import Components, load_angle, sainsot
-
-GAUSS = leggauss(24)
+from .beam import Components, along_fillet, along_flank, load_angle, sainsot
 
 
 def components(gear, material, roll, *, lever="crossing", theta_f=None):
@@ -51,8 +44,7 @@ def components(gear, material, roll, *, lever="crossing", theta_f=None):
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
     beta = load_angle(gear, roll)
     cos, sin = np.cos(beta), np.sin(beta)
-    radius, angle = flank(gear, roll)
-    x_f, y_f = radius * np.sin(angle), radius * np.cos(angle)
+    x_f, y_f = cartesian(*flank(gear, roll))
     (i0, i1, i2), area = _moments(gear, roll)
     arm = cos * y_f - sin * x_f
     bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
@@ -68,27 +60,7 @@ def components(gear, material, roll, *, lever="crossing", theta_f=None):
 
 def _moments(gear, roll):
     """Integrals of y**k / I (k = 0, 1, 2) and of 1 / A from the root circle to the load, unit width."""
-    bend, area = _fillet_moments(gear)
-    points, weights = GAUSS
-    low = gear.roll_f
-    span = (roll - low)[:, None] / 2
-    at = low + span * (1 + points)
-    radius, angle = flank(gear, at)
-    x, y = radius * np.sin(angle), radius * np.cos(angle)
-    slope = at / gear.r_b * np.cos(at / gear.r_b - gear.base_half_angle)  # dy / droll of an involute
-    step = slope * weights * span
-    inertia = 2 * x**3 / 3
-    return [bend[k] + (step * y**k / inertia).sum(axis=1) for k in range(3)], area + (step / (2 * x)).sum(axis=1)
-
-
-@lru_cache(maxsize=64)
-def _fillet_moments(gear):
-    """The same integrals over the fillet; its derivative from a Chebyshev interpolant of 48 nodes."""
-    top = form_point(gear)[0]
-    height = Chebyshev.interpolate(lambda phi: cartesian(*fillet(gear, phi))[1], 48, domain=[top, math.pi / 2])
-    points, weights = leggauss(64)
-    half = (math.pi / 2 - top) / 2
-    phi = top + half * (1 + points)
-    x, y = cartesian(*fillet(gear, phi))
-    step = -height.deriv()(phi) * weights * half
-    return [float((step * y**k * 1.5 / x**3).sum()) for k in range(3)], float((step / (2 * x)).sum())
+    pieces = along_fillet(gear), along_flank(gear, roll)
+    inertia = [(p.step * p.y**k * 1.5 / p.x**3).sum(axis=-1) for p in pieces for k in range(3)]
+    area = sum((p.step / (2 * p.x)).sum(axis=-1) for p in pieces)
+    return [inertia[k] + inertia[3 + k] for k in range(3)], area
