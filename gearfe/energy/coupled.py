@@ -14,12 +14,13 @@ material between section and circle deforms is left out, and what it stiffens to
 """
 
 import math
-from functools import lru_cache
+from dataclasses import replace
+from functools import lru_cache, partial
 
 import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
-from geometry.tooth import arc_at, cartesian, fillet, flank, root_half_angle, tangent_point
+from geometry.tooth import arc_at, cartesian, fillet, flank, roll_at_arc, root_half_angle, tangent_point
 
 from ..flexibility import Flexibility
 from ..hertz import half_plane
@@ -190,6 +191,17 @@ def local_remainder(gear, material, roll, *, state="plane strain"):
     return half_plane(material, state) * (np.log(depth) - 0.5 - ratio / 2)
 
 
+def isolated(gear, material, formula, *, state="plane strain"):
+    """Flexibility of a gear whose teeth do not feel each other: bulk of one tooth by `formula`, and `local_remainder`.
+
+    `formula` maps ``(gear, material, roll)`` to `Components`.
+    """
+    roll = np.linspace(gear.roll_f, gear.roll_a, NODES)
+    arc = arc_at(gear, roll)
+    near = formula(gear, material, roll).total + local_remainder(gear, material, roll, state=state)
+    return Flexibility(gear, {0: CubicSpline(arc, near)}, {}, {}, (arc[0], arc[-1]))
+
+
 def flexibility(gear, material, *, neighbours=1, state="plane strain"):
     """Flexibility of a healthy external gear in closed form, to be used where `gearfe.fe.flexibility` is.
 
@@ -213,15 +225,10 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain"):
         If the gear is a ring: its teeth are too wide at their root for a beam, and its body is held outside.
     """
     if gear.internal:
-        raise ValueError("the coupled closed form has no ring: use finite elements")
-    roll = np.linspace(gear.roll_f, gear.roll_a, NODES)
-    bulk = components(gear, material, roll, state=state).total
-    near = bulk + local_remainder(gear, material, roll, state=state)
-    loads = body_loads(gear, roll)
-    between = body(gear, material, state, neighbours)
-    arc = arc_at(gear, roll)
-    far = {
-        (0, k): RectBivariateSpline(arc, arc, np.einsum("an,ba,bm->nm", loads, between[k], loads))
-        for k in range(1, neighbours + 1)
-    }
-    return Flexibility(gear, {0: CubicSpline(arc, near)}, far, {}, (arc[0], arc[-1]))
+        raise ValueError("the coupled closed form has no ring (wide tooth roots, body held outside): use finite elements")
+    alone = isolated(gear, material, partial(components, state=state), state=state)
+    arc = alone.near[0].x
+    loads = body_loads(gear, roll_at_arc(gear, arc))
+    between = body(gear, material, state, neighbours)[1:]
+    far = {(0, k): RectBivariateSpline(arc, arc, loads.T @ c.T @ loads) for k, c in enumerate(between, start=1)}
+    return replace(alone, far=far)
