@@ -8,9 +8,22 @@ A tooth of an external, undamaged gear (transverse section) is
    through which every tooth moves the others;
 3. a local dent under Hertz's pressure down to the tooth's centre-line (`local_remainder`).
 
-Of the fillet below the 30-degree section only the arc is kept on which the tooth stands on the root circle: that between
-the radii through the section's ends. The section forces act there as they are in equilibrium with the load; what the little
-material between section and circle deforms is left out, and what it stiffens too.
+The body ends at the root circle, and a tooth stands on it between the feet of its fillets (Sainsot's theta_f, too). What
+little lies between that arc and the 30-degree section only hands the section forces on. This convention matters: on the
+narrower arc between the radii through the ends of the 30-degree section the four pairs below come out 9 to 12 % too soft,
+so their good agreement is partly that of two approximations that cancel.
+
+Range of validity, k against `gearfe.fe` without contact off the path of contact (single zone, double zone), at any load:
+
+- the rack 1.0/1.25/0.38 at 20 degrees, x = 0, solid bodies: +0.1, +1.6 % at 18/18, -1.4, +0.3 % at 25/25, -2.5, -0.6 % at
+  35/35, -3.3, -1.3 % at 50/50, -4.2, -2.0 % at 100/100: below 3 % up to about 40 teeth;
+- teeth wide at their root are too soft, being hardly beams: 30/30 with alpha = 25 degrees -6.0, -3.3 %, with x = 0.5 -5.7,
+  -3.1 %, with a tip radius of 0.2 -4.2, -2.3 %. Of 80 random pairs (z 12 to 119, alpha 17.5 to 25 degrees, x -0.4 to 0.6, tip
+  radius 0.2 to 0.38, bore 0.25 to 0.75 r_f) the median is -5.1, -3.0 %, the range -8.8 to +0.4 and -5.7 to +1.3 %;
+- thin rims: the coupling between teeth is 11 to 27 % too small at r_bore / r_f = 0.9 (up to 3 % at 0.5). There it is a small
+  part of the whole, so k is 3.6 % too stiff in the double zone at 18/18 and 0.85, and no worse than in solid bodies above 25
+  teeth, but not for a good reason;
+- no rings, cracks, or contact at tip corners.
 """
 
 import math
