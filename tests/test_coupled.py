@@ -14,7 +14,7 @@ from gearfe.energy import annulus, coupled
 from gearfe.energy.beam import along_fillet, along_flank
 from gearfe.energy.ladder import ladder
 from gearfe.hertz import half_plane
-from geometry.tooth import cartesian, fillet, flank, form_point, root_half_angle
+from geometry.tooth import cartesian, fillet, flank, form_point, root_half_angle, tangent_point
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 WIDTH = 20.0
@@ -90,6 +90,31 @@ def test_profile_slopes_are_those_of_the_curve(gear):
     total = along_fillet(gear, coupled.root_section(gear)[0]).step.sum() + along_flank(gear, roll).step.sum()
     joint = cartesian(*fillet(gear, form_point(gear)[0]))[1] - cartesian(*flank(gear, gear.roll_f))[1]
     assert_allclose(total, top - bottom - joint, rtol=1e-8)
+
+
+@pytest.mark.parametrize("state", ["plane strain", "plane stress"])
+@pytest.mark.parametrize("gear", [make(14, 5.0, x=0.3), make(40, 15.0)], ids=["z14", "z40"])
+def test_beam_is_twice_its_energy(gear, state):
+    """Section forces from statics at the load point, slopes by differences, trapezoids over a fine profile."""
+    roll = 0.93 * gear.roll_a
+    beta = roll / gear.r_b - gear.base_half_angle
+    x_f, y_f = cartesian(*flank(gear, roll))
+    lower = cartesian(*fillet(gear, np.linspace(tangent_point(gear), form_point(gear)[0], 4001)))
+    upper = cartesian(*flank(gear, np.linspace(gear.roll_f, roll, 4001)))
+    want = np.zeros(3)
+    for half, y in (lower, upper):
+        slope = np.gradient(half, y, edge_order=2)
+        moment = math.cos(beta) * (y_f - y) - math.sin(beta) * x_f
+        points, weights = np.polynomial.legendre.leggauss(6)
+        tau = coupled.shear_stress(half[:, None] * points, *(v[:, None] for v in (half, slope)), -math.cos(beta),
+                                   -math.sin(beta), moment[:, None])  # fmt: skip
+        stretch = STEEL.E / (1 - STEEL.nu**2) if state == "plane strain" else STEEL.E
+        want += [
+            np.trapezoid(moment**2 / (stretch * 2 * half**3 / 3), y),
+            np.trapezoid((tau**2 @ weights) * half / STEEL.shear_modulus, y),
+            np.trapezoid(math.sin(beta) ** 2 / (stretch * 2 * half), y),
+        ]
+    assert_allclose(coupled.beam(gear, STEEL, [roll], state=state)[:, 0], want, rtol=1e-5)
 
 
 def test_root_section_touches_the_fillet_at_30_degrees():
