@@ -1,8 +1,16 @@
 """What the closed forms share: an itemised tooth flexibility, and Sainsot's gear-body polynomials."""
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.polynomial.legendre import leggauss
+
+from geometry.tooth import cartesian, fillet, flank, form_point
+
+FLANK_POINTS, FILLET_POINTS = leggauss(24), leggauss(64)
 
 # rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F
 SAINSOT = np.array(
@@ -78,3 +86,43 @@ def sainsot_outside(gear, theta):
 def load_angle(gear, roll):
     """Angle [rad] of the tooth force to the normal of the tooth centre-line, positive towards the root."""
     return np.asarray(roll) / gear.r_b - gear.outward * gear.base_half_angle
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Gauss points along a piece of the right half of a tooth, for integrals over its height; arrays ``(..., m)``.
+
+    Half thickness `x` [mm], height `y` over the gear's centre [mm], `slope` dx / dy, and `step`, the weights of dy [mm].
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    slope: np.ndarray
+    step: np.ndarray
+
+
+def along_flank(gear, roll):
+    """Involute from its lower end to each of `roll` [mm] ``(n,)``, as a `Profile` of shape ``(n, m)``."""
+    points, weights = FLANK_POINTS
+    span = (roll - gear.roll_f)[:, None] / 2
+    at = gear.roll_f + span * (1 + points)
+    angle = load_angle(gear, at)
+    x, y = cartesian(*flank(gear, at))
+    return Profile(x, y, -np.tan(angle), at / gear.r_b * np.cos(angle) * weights * span)
+
+
+@lru_cache(maxsize=128)
+def along_fillet(gear, phi=math.pi / 2):
+    """Fillet from rack tip angle `phi` [rad], pi/2 at the root circle, to the involute, as a `Profile` of shape ``(m,)``.
+
+    Its derivatives are those of a Chebyshev interpolant of 48 nodes.
+    """
+    top = form_point(gear)[0]
+    points, weights = FILLET_POINTS
+    half = (phi - top) / 2
+    at = top + half * (1 + points)
+    x, y = cartesian(*fillet(gear, at))
+    across, up = (
+        Chebyshev.interpolate(lambda t, k=k: cartesian(*fillet(gear, t))[k], 48, domain=[top, phi]).deriv()(at) for k in (0, 1)
+    )
+    return Profile(x, y, across / up, -up * weights * half)
