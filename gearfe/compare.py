@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from .own_model import own_curve, own_models
 from .stiffness import mesh_stiffness
 
-FORMULATIONS = ("ritz", "textbook", "published")
+FORMULATIONS = ("ritz", "coupled", "textbook", "published")
 RING = ("ritz",)  # those that know rings
 ZONES = ("single", "double", "triple", "mean", "max")
 

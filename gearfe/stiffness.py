@@ -13,17 +13,18 @@ from scipy.ndimage import maximum_filter1d
 
 from geometry.damage import Crack, check_apart
 from geometry.pair import GearPair
+from geometry.pit import Pit
 
 from .cache import solved_gear
 from .contact import Mesh
 from .curve import StiffnessCurve
-from .energy import published, ritz, textbook
+from .energy import coupled, published, ritz, textbook
 from .energy.plain_sum import plain_sum
 from .material import Material, check_state
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
-METHODS = ("auto", "ritz", "fe", "textbook", "published")
-CONVERGED = ("ritz", "fe")  # whole gears with contact, cracks and rings; the others are closed forms
+CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
+METHODS = ("auto", "ritz", "fe", "coupled", *CLOSED)
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
@@ -41,6 +42,7 @@ def mesh_stiffness(
     refine=1.0,
     order=4,
     teeth=None,
+    variants=None,
     error=False,
     cache=True,
 ):
@@ -57,18 +59,20 @@ def mesh_stiffness(
         Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
-    method : {"auto", "ritz", "fe", "textbook", "published"}
+    method : {"auto", "ritz", "fe", "coupled", "textbook", "published"}
         ``ritz`` (and ``auto``): the converged energy model, milliseconds (`gearfe.energy.ritz`). ``fe``: finite elements of
-        whole gears, the independent reference (`gearfe.fe`). Both with line contact, neighbour coupling and load sharing.
-        ``textbook``, ``published``: beam energies, linear contact, plain sum of the pairs (`gearfe.energy`).
+        whole gears, the independent reference (`gearfe.fe`). ``coupled``: closed forms repaired by known means, external
+        healthy gears (`gearfe.energy.coupled`). All three with line contact, neighbour coupling and load sharing.
+        ``textbook``, ``published``: beam energies and a plain sum of the pairs (`gearfe.energy.plain_sum`).
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves.
     span : {"cycle", "tooth"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
         after it (where the damaged tooth is).
     damage : dict, optional
-        Cracks by gear: ``{"pinion": [Crack(...)], "wheel": [...]}``; ``ritz`` and ``fe``. Crack faces that the load presses together
-        are kept apart; ``meta["crack_closed_phases"]`` says where.
+        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: ``ritz``, ``fe`` and the plain
+        sums; pits: the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses together are kept apart;
+        ``meta["crack_closed_phases"]`` says where.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (``ritz`` and ``fe``;
         the closed forms know no contact there).
@@ -80,6 +84,9 @@ def mesh_stiffness(
         Polynomial order of ``ritz``, 2 to 8.
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
+    variants : dict, optional
+        For ``textbook`` and ``published``: options of `gearfe.energy.plain_sum.plain_sum` and of the formulas' ``components``
+        (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``face``, ``groove``, ``lost``).
     error : bool
         For ``ritz`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
     cache : bool
@@ -109,32 +116,31 @@ def mesh_stiffness(
     materials = _materials(material)
     check_state(state)
     phase = _phases(phases, span, pair)
-    cracks = _cracks(pair, damage)
+    cracks, pits = _damage(pair, damage)
     if method == "auto":
         method = "ritz" if teeth is None else "fe"
-    if pair.gear_2.internal and method not in CONVERGED:
-        raise ValueError(f"method = {method!r} has no ring (Sainsot's foundation does not hold for one): use method = 'ritz'")
-    if any(cracks) and method not in CONVERGED:
-        raise ValueError(f"damage with method = {method!r}: only 'ritz' and 'fe' model cracks so far")
-    if teeth is not None and method == "ritz":
-        raise ValueError(f"teeth = {teeth} with method = 'ritz', which has all teeth: use method = 'fe'")
+    _refuse(method, pair, cracks, pits, teeth, variants)
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
-    if method in CONVERGED:
+    if method in CLOSED:
+        options = dict(variants or {})
+        solve, details = plain_sum(pair, materials, phase, CLOSED[method], cracks=cracks, pits=pits, **options)
+        details["outside"] = [asdict(v) for v in details["outside"]]
+    elif method == "coupled":
+        options = {"state": state}
+        solve, details = _coupled(pair, materials, phase, state)
+    else:
+        options = {"extended": bool(extended), **numeric}
         case = (pair, materials, phase, extended, cracks, method, cache)
         solve, details = _converged(*case, **numeric)
-    else:
-        solve, details = plain_sum(pair, materials, phase, {"textbook": textbook, "published": published}[method])
-        details["outside"] = [asdict(v) for v in details["outside"]]
-    options = {"extended": bool(extended), **numeric} if method in CONVERGED else {}
-    if any(cracks):
+    if any(cracks) or any(pits):
         options["damage"] = {
-            name: [asdict(replace(c, tooth=sense * c.tooth)) for c in found]  # as the user numbers teeth: by pair
-            for name, found, sense in zip(("pinion", "wheel"), cracks, (1, -1), strict=True)
+            name: [asdict(replace(d, tooth=sense * d.tooth)) for found in (cracks, pits) for d in found[i]]  # numbered by pair
+            for i, (name, sense) in enumerate((("pinion", 1), ("wheel", -1)))
         }
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
-    if error and method in CONVERGED:
+    if error and method in ("ritz", "fe"):
         coarser = [_converged(*case, **(numeric | coarse))[0] for coarse in _coarser(method, refine, order)]
         for i, curve in enumerate(curves):
             others = [_curve(pair, phase, curve.meta["force_N"], solve, curve.meta).k for solve in coarser]
@@ -198,22 +204,48 @@ def _converged(pair, materials, phase, extended, damage, method, cache, **option
     return mesh.solve, {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
 
 
-def _cracks(pair, damage):
-    """Cracks of pinion and wheel, numbered in each gear's own frame."""
+def _coupled(pair, materials, phase, state):
+    neighbours = math.ceil(pair.eps_alpha)
+    flexible = [
+        coupled.flexibility(gear, material, neighbours=neighbours, state=state)
+        for gear, material in zip((pair.gear_1, pair.gear_2), materials, strict=True)
+    ]
+    return Mesh(pair, materials, flexible, phase, extended=False, state=state).solve, {"extended": False}
+
+
+def _refuse(method, pair, cracks, pits, teeth, variants):
+    """Raise ValueError for what a method does not model."""
+    ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
+    if ring and (method == "coupled" or (method in CLOSED and (variants or {}).get("foundation") != "none")):
+        raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")
+    if damaged and method == "coupled":
+        raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
+    if any(pits) and method not in CLOSED:
+        raise ValueError(f"pits with method = {method!r}: in two dimensions only 'textbook' and 'published' model them")
+    if teeth is not None and method != "fe":
+        raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
+    if variants and method not in CLOSED:
+        raise ValueError(f"variants = {variants!r} with method = {method!r}: only {' and '.join(CLOSED)} have variants")
+
+
+def _damage(pair, damage):
+    """Cracks and pits of pinion and wheel, numbered in each gear's own frame."""
     damage = {} if damage is None else damage
     unknown = set(damage) - {"pinion", "wheel"}
     if unknown:
         raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
-    out = []
+    cracks, pits = [], []
     for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
         given = damage.get(name) or ()
-        cracks = (given,) if isinstance(given, Crack) else tuple(given)
-        for crack in cracks:
-            if not isinstance(crack, Crack):
-                raise ValueError(f"damage of the {name}: {crack!r} is not a Crack")
-        check_apart(gear, cracks)
-        out.append(tuple(replace(crack, tooth=sense * crack.tooth) for crack in cracks))
-    return tuple(out)
+        given = (given,) if isinstance(given, (Crack, Pit)) else tuple(given)
+        for one in given:
+            if not isinstance(one, (Crack, Pit)):
+                raise ValueError(f"damage of the {name}: {one!r} is neither a Crack nor a Pit")
+        check_apart(gear, [one for one in given if isinstance(one, Crack)])
+        own = [replace(one, tooth=sense * one.tooth) for one in given]
+        cracks.append(tuple(one for one in own if isinstance(one, Crack)))
+        pits.append(tuple(one for one in own if isinstance(one, Pit)))
+    return tuple(cracks), tuple(pits)
 
 
 def _curve(pair, phase, force, solve, meta):

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from numbers import Integral, Real
 
 import numpy as np
@@ -77,6 +78,7 @@ class Crack:
             raise ValueError("a turning crack is given by its level, not its length")
 
 
+@lru_cache(maxsize=256)
 def start_arc(gear, crack):
     """Where the crack starts, as arc of `geometry.tooth.root_curve` [mm]."""
     if crack.start == "root":

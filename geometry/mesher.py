@@ -186,8 +186,11 @@ def _faces(mesh, chain, double):
     return np.array(out)
 
 
-def triangulate(loops, chains, ring):
-    """Vertices and triangles between closed vertex loops, with the chains as edges; nodes keep their order."""
+def triangulate(loops, chains, ring, free=np.zeros((2, 0))):
+    """Vertices and triangles between closed vertex loops, with the chains as edges and the free points as vertices.
+
+    Nodes keep their order: loops, chains, free points, then those that gmsh adds.
+    """
     with gmsh_session() as gmsh:
         geo = gmsh.model.geo
         closed, last = [], 0
@@ -200,8 +203,11 @@ def triangulate(loops, chains, ring):
         for start, points in chains:
             tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
             inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
+        alone = [geo.addPoint(x, y, 0.0) for x, y in free.T]
         surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # the outer loop first
         geo.synchronize()
+        if alone:
+            gmsh.model.mesh.embed(0, alone, 2, surface)
         if inner:
             gmsh.model.mesh.embed(1, inner, 2, surface)
         for line in [*range(1, last + 1), *inner]:

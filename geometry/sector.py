@@ -17,7 +17,7 @@ from .tooth import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank
 from .tooth import root_half_angle as root_half
 
 # edge lengths in modules: flank, tip corner of the loaded flank, a form point with a kink, fillet, rim, crack, crack tip
-SIZES = {"flank": 0.8, "corner": 0.003, "kink": 0.03, "fillet": 0.5, "rim": 0.8, "crack": 0.35, "crack tip": 0.002}
+SIZES = {"flank": 0.8, "corner": 0.003, "kink": 0.03, "fillet": 0.5, "rim": 0.8, "crack": 0.5, "crack tip": 0.004}
 GROWTH = 1.2  # of the edge length per length, away from fine places
 
 
@@ -93,8 +93,8 @@ def _attempt(gear, cracks, refine, bulge):
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
-    chains = _chains(gear, size, cracks, loop)
-    points, triangles = triangulate([loop], chains, False)
+    chains, around = _chains(gear, size, cracks, loop)
+    points, triangles = triangulate([loop], chains, False, around)
     if np.linalg.det(_arms(points, triangles)).sum() < 0:
         triangles = triangles[[0, 2, 1]]
     if np.linalg.det(_arms(points, triangles)).min() <= 0:
@@ -195,15 +195,18 @@ def _roots(gear, size, mark, tips, side):
 
 
 def _chains(gear, size, cracks, loop):
-    """For each crack the rim vertex it starts at with its further vertices, then its tip with those of a line ahead of it."""
-    out, at = [], loop.shape[1]
+    """For each crack the rim vertex it starts at with its further vertices, then its tip with those of a line ahead of it.
+
+    Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
+    """
+    out, around, at = [], [np.zeros((2, 0))], loop.shape[1]
     for crack in cracks:
         corners = crack_path(gear, crack)
         start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
         legs = np.hypot(*np.diff(corners, axis=1))
         ends = np.concatenate([[0.0], np.cumsum(legs)])
         tip_size, largest = min(size["crack tip"], ends[-1] / 20), min(size["crack"], ends[-1] / 2)
-        fine = [(ends[-1], ends[-1], tip_size)] + [(end, end, largest / 4) for end in ends[1:-1]]
+        fine = [(ends[-1], ends[-1], tip_size)] + [(end, end, 5 * tip_size) for end in ends[1:-1]]
         places = np.concatenate(
             [spaced(a, b, largest, fine, 1, 1.5 * GROWTH)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
         )
@@ -211,9 +214,23 @@ def _chains(gear, size, cracks, loop):
         reach = min(size["crack"], 0.4 * np.hypot(*(loop - corners[:, -1:])).min())
         ahead = (corners[:, -1] - corners[:, -2]) / legs[-1]
         further = spaced(0.0, reach, reach, [(0.0, 0.0, tip_size)], 1, 1.5 * GROWTH)[1:]
-        out += [(start, line), (at + line.shape[1] - 1, corners[:, -1:] + ahead[:, None] * further)]
+        on_line = corners[:, -1:] + ahead[:, None] * further
+        out += [(start, line), (at + line.shape[1] - 1, on_line)]
         at += line.shape[1] + further.size
-    return out
+        taken = np.hstack([loop, line, on_line])
+        around.append(_rings(corners[:, -1], further, taken))
+        for k in range(1, corners.shape[1] - 1):
+            radii = places[places > ends[k] + 1e-9] - ends[k]
+            around.append(_rings(corners[:, k], radii[radii <= min(size["crack"], 0.4 * min(legs[k - 1 : k + 1]))], taken))
+    return out, np.hstack(around)
+
+
+def _rings(centre, radii, taken):
+    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius."""
+    angle = np.arange(6) * math.pi / 3
+    points = centre[:, None, None] + radii[:, None] * np.array([np.sin(angle), np.cos(angle)])[:, None, :]
+    away = np.hypot(*(points[..., None] - taken[:, None, None, :])).min(axis=-1)
+    return points[:, away > 0.55 * radii[:, None]]
 
 
 def _bulges(pieces, first, doubles, points):

@@ -75,7 +75,7 @@ def ladder(pair, force, material, phases=64):
     materials = (material, material) if isinstance(material, Material) else tuple(material)
     phase = np.arange(phases) / phases
     sum_of_pairs = mesh_stiffness(pair, force, materials, method="textbook", phases=phase)
-    reference = mesh_stiffness(pair, force, materials, phases=phase, extended=False)
+    reference = mesh_stiffness(pair, force, materials, method="fe", phases=phase, extended=False)
     gears = list(zip((pair.gear_1, pair.gear_2), materials, strict=True))
     neighbours = math.ceil(pair.eps_alpha)
     alone = {

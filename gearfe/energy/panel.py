@@ -15,12 +15,14 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from geometry.tooth import arc_at, cartesian, flank, flank_normal
 
 from . import flamant
 from .triangle import BULGE, ENDS, lagrange, lobatto, table
+
+
+GROUP = 20  # triangles eliminated together
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,8 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
         load += stiffness[:, matched] @ pinned.transpose(2, 0, 1).reshape(matched.size, -1)
     forces = np.hstack([load, apart.toarray()])
     m, n, k = border.size, roll.size, apart.shape[1]
-    between = _between(stiffness[inside][:, inside], np.hstack([support, forces[inside], read[:, inside].T]))
+    group = np.repeat(_groups(sector, numbers, count)[inner], 2)
+    between = _between(stiffness[inside][:, inside], np.hstack([support, forces[inside], read[:, inside].T]), group)
     push = turn.T @ forces[border] - between[:m, m : m + n + k]
     total = edge - between[:m, :m]
     loads, faces, reads = slice(m, m + n), slice(m + n, m + n + k), slice(m + n + k, None)
@@ -157,31 +160,48 @@ def _assemble(sector, numbers, count, order, modulus, ratio):
     return coo_matrix((local.ravel(), (i.ravel(), j.ravel())), shape=(2 * count, 2 * count)).tocsr()
 
 
-def _between(matrix, columns):
-    """``columns' matrix**-1 columns`` of a positive definite sparse `matrix`, by Cholesky in blocks along its band.
+def _between(matrix, columns, group):
+    """``columns' matrix**-1 columns`` of a positive definite sparse `matrix`, by Cholesky: groups first, then what joins them.
 
-    Only the forward substitution is needed; a column takes part from its first block on.
+    Only the forward substitution is needed. `group` ``(n,)`` is a number from 0 for unknowns that are coupled only to their own
+    group and to those of number -1.
     """
-    order = reverse_cuthill_mckee(matrix, symmetric_mode=True)
-    matrix, right = matrix[order][:, order].tocsr(), columns[order]
-    entries = matrix.tocoo()
-    width = max(int((entries.row - entries.col).max()), 8)
+    order = np.argsort(np.where(group < 0, group.max() + 1, group), kind="stable")
+    ends = np.append(np.searchsorted(group[order][: (group >= 0).sum()], np.arange(group.max() + 2)), group.size)
+    matrix, columns = matrix[order][:, order].tocsr(), columns[order]
+    first = ends[-2]
+    joint, load = matrix[first:, first:].toarray(), columns[first:]
     out = np.zeros((columns.shape[1],) * 2)
-    started, previous, lower = np.zeros(columns.shape[1], dtype=bool), None, None
-    for start in range(0, matrix.shape[0], width):
-        span = slice(start, start + width)
-        block = matrix[span, span].toarray()
-        if previous is not None:
-            below = matrix[span, previous].toarray()
-            carried = solve_triangular(lower, below.T, lower=True, check_finite=False)
-            block -= carried.T @ carried
-            right[span, started] -= carried.T @ right[previous, started]
-        lower = cholesky(block, lower=True, check_finite=False)
-        started |= right[span].any(axis=0)
-        right[span, started] = solve_triangular(lower, right[span, started], lower=True, check_finite=False)
-        out[np.ix_(started, started)] += right[span, started].T @ right[span, started]
-        previous = span
-    return out
+    for start, stop in zip(ends[:-2], ends[1:-1], strict=True):
+        lower = cholesky(matrix[start:stop, start:stop].toarray(), lower=True, check_finite=False)
+        across = matrix[start:stop, first:]
+        touched = np.unique(across.indices)
+        seen = np.flatnonzero(columns[start:stop].any(axis=0))
+        right = np.hstack([across[:, touched].toarray(), columns[start:stop, seen]])
+        right = solve_triangular(lower, right, lower=True, check_finite=False)
+        product = right.T @ right
+        n = touched.size
+        joint[np.ix_(touched, touched)] -= product[:n, :n]
+        load[np.ix_(touched, seen)] -= product[:n, n:]
+        out[np.ix_(seen, seen)] += product[n:, n:]
+    right = solve_triangular(cholesky(joint, lower=True, check_finite=False), load, lower=True, check_finite=False)
+    return out + right.T @ right
+
+
+def _groups(sector, numbers, count):
+    """Group of each node for `_between`: triangles halved again and again by place, -1 where groups meet."""
+    centre = sector.points[:, sector.triangles].mean(axis=1)
+    group = np.zeros(centre.shape[1], dtype=int)
+    for level in range(max(1, round(math.log2(group.size / GROUP)))):
+        for k in range(2**level):
+            own = np.flatnonzero(group == k)
+            axis = np.argmax(np.ptp(centre[:, own], axis=1))
+            group[own[np.argsort(centre[axis, own])[own.size // 2 :]]] += 2**level
+    low, high = np.full(count, group.size), np.full(count, -1)
+    every = np.broadcast_to(group, numbers.shape).ravel()
+    np.minimum.at(low, numbers.ravel(), every)
+    np.maximum.at(high, numbers.ravel(), every)
+    return np.where(low == high, low, -1)
 
 
 def _polar(gear, nodes):

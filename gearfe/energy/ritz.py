@@ -203,7 +203,9 @@ def _carry(places):
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
 
+@lru_cache(maxsize=64)
 def _knots(gear):
+    """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
     places = np.linspace(-1, 1, KNOTS)
     return _arcs(gear, places), _carry(places)
 
@@ -213,21 +215,27 @@ def _spline(gear, influence):
     return RectBivariateSpline(arcs, arcs, carry @ influence @ carry.T)
 
 
-def _own_tooth(gear, influence, coefficient, refine):
-    """Spline S(s, s) of a tooth and its `TipHats`, from the smooth influence between its loads."""
-    arcs, carry = _knots(gear)
-    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", carry, influence, carry))
+@lru_cache(maxsize=64)
+def _hats(gear, refine):
+    """Knots ``(3, n)`` of the hats next to the tip corner, and the matrix from values at the loads to values at their centres."""
     edge = {name: size * gear.m_n / (HATS * refine) for name, size in EDGES.items()}
     arc = arc_at(gear, stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], span=SPAN))
     knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
     knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
     knots = knots[:, knots[1] > arc[-1] - TIP_ZONE * gear.m_n]
-    centre = knots.mean(axis=0)
-    carry = _carry(_variable(gear, centre))
-    return near, TipHats(centre, knots, carry @ influence @ carry.T + coefficient * hat_logarithm(knots, knots))
+    return knots, _carry(_variable(gear, knots.mean(axis=0)))
+
+
+def _own_tooth(gear, influence, coefficient, refine):
+    """Spline S(s, s) of a tooth and its `TipHats`, from the smooth influence between its loads."""
+    arcs, carry = _knots(gear)
+    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", carry, influence, carry))
+    knots, carry = _hats(gear, refine)
+    smooth = carry @ influence @ carry.T
+    return near, TipHats(knots.mean(axis=0), knots, smooth + coefficient * hat_logarithm(knots, knots))
 
 
 def clear():
     """Forget the gears kept in this process."""
-    for kept in (_healthy, _panel, _places):
+    for kept in (_healthy, _panel, _places, _knots, _hats):
         kept.cache_clear()
