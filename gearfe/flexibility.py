@@ -35,7 +35,8 @@ class SeamFaces:
 
         It is zero for teeth that were not solved.
         """
-        out = np.zeros((*np.shape(arc), self.influence.shape[0]))
+        arc = np.asarray(arc)
+        out = np.zeros((*arc.shape, self.influence.shape[0]))
         for k, tooth in enumerate(teeth):
             if tooth in self.opening:
                 out[..., k, :] = self.opening[tooth](arc[..., k])

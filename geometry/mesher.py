@@ -186,8 +186,8 @@ def _faces(mesh, chain, double):
     return np.array(out)
 
 
-def triangulate(loops, chains, ring, free=np.zeros((2, 0))):
-    """Vertices and triangles between closed vertex loops, with the chains as edges and the free points as vertices.
+def triangulate(loops, chains, ring, free=()):
+    """Vertices and triangles between closed vertex loops, with the chains as edges and the free points ``(n, 2)`` as vertices.
 
     Nodes keep their order: loops, chains, free points, then those that gmsh adds.
     """
@@ -203,7 +203,7 @@ def triangulate(loops, chains, ring, free=np.zeros((2, 0))):
         for start, points in chains:
             tags = [start + 1] + [geo.addPoint(x, y, 0.0) for x, y in points.T]
             inner += [geo.addLine(a, b) for a, b in zip(tags[:-1], tags[1:], strict=True)]
-        alone = [geo.addPoint(x, y, 0.0) for x, y in free.T]
+        alone = [geo.addPoint(x, y, 0.0) for x, y in free]
         surface = geo.addPlaneSurface(closed[::-1] if ring else closed)  # the outer loop first
         geo.synchronize()
         if alone:

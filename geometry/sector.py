@@ -15,9 +15,12 @@ from .outline import spaced
 from .seam import open_seam
 from .tooth import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
 from .tooth import root_half_angle as root_half
+from .triangle import BULGE, ENDS, jacobians
 
-# edge lengths in modules: flank, tip corner of the loaded flank, a form point with a kink, fillet, rim, crack, crack tip
-SIZES = {"flank": 0.8, "corner": 0.003, "kink": 0.03, "fillet": 0.5, "rim": 0.8, "crack": 0.5, "crack tip": 0.004}
+# edge lengths in modules: flank, tip corner of the loaded flank, a form point with a kink, fillet,
+# root arc, sides and tip, crack, crack tip
+SIZES = {"flank": 0.8, "corner": 0.003, "kink": 0.03, "fillet": 0.5, "root": 0.8, "side": 0.8, "crack": 0.5, "crack tip": 0.004}
+CHECKED = 6  # order at whose quadrature points the maps are checked
 GROWTH = 1.2  # of the edge length per length, away from fine places
 
 
@@ -53,8 +56,20 @@ class Sector:
     roll: np.ndarray
     faces: tuple = ()
 
+    def edge_bulges(self):
+        """Bulges of the local edges of all triangles ``(3, 2, k, m)``, zero inside."""
+        shape = next(iter(self.bulge.values())).shape
+        out = np.zeros((3, *shape, self.triangles.shape[1]))
+        for local, (a, b) in enumerate(ENDS):
+            for i, (p, q) in enumerate(zip(self.triangles[a].tolist(), self.triangles[b].tolist(), strict=True)):
+                if (q, p) in self.bulge:
+                    out[local, :, :, i] = self.bulge[q, p][:, ::-1]
+                elif (p, q) in self.bulge:
+                    out[local, :, :, i] = self.bulge[p, q]
+        return out
 
-def sector(gear, cracks=(), *, refine=1.0, bulge=8):
+
+def sector(gear, cracks=(), *, refine=1.0):
     """Sector of `gear` with the cracks of its tooth.
 
     Parameters
@@ -64,8 +79,6 @@ def sector(gear, cracks=(), *, refine=1.0, bulge=8):
         All of one tooth.
     refine : float
         Divides the edge lengths.
-    bulge : int
-        Number of Gauss points that describe each curved edge.
 
     Returns
     -------
@@ -80,21 +93,22 @@ def sector(gear, cracks=(), *, refine=1.0, bulge=8):
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
-    for finer in (1.0, 1.5, 2.25):
-        made = _attempt(gear, cracks, refine * finer, bulge)
+    for finer in (1.0, 1.4, 2.0, 2.8):
+        made = _attempt(gear, cracks, refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, refine, bulge):
-    size = {name: length * gear.m_n / refine for name, length in SIZES.items()}
+def _attempt(gear, cracks, refine, finer):
+    """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
+    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in SIZES.items()}
     pieces = _pieces(gear, size, cracks)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
-    points, triangles = triangulate([loop], chains, False, around)
+    points, triangles = triangulate([loop], chains, False, around.T)
     if np.linalg.det(_arms(points, triangles)).sum() < 0:
         triangles = triangles[[0, 2, 1]]
     if np.linalg.det(_arms(points, triangles)).min() <= 0:
@@ -109,10 +123,12 @@ def _attempt(gear, cracks, refine, bulge):
         at += line.shape[1]
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
     rolls = next(params for name, params, _ in pieces if name == "flank")
-    return Sector(
-        points, triangles, _bulges(pieces, first, doubles, bulge), vertices["left"], vertices["right"][::-1], vertices["held"],
+    made = Sector(
+        points, triangles, _bulges(pieces, first, doubles), vertices["left"], vertices["right"][::-1], vertices["held"],
         vertices["flank"][::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
+    jacobian = jacobians(points, triangles, made.edge_bulges(), CHECKED)
+    return made if np.linalg.det(jacobian.transpose(0, 3, 1, 2)).min() > 0 else None
 
 
 def _arms(points, triangles):
@@ -128,7 +144,7 @@ def _pieces(gear, size, cracks):
     thick = abs(gear.r_f - gear.held)
     near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
     side = gear.r_f - gear.outward * spaced(
-        0.0, thick, max(thick / 2, size["rim"]), [(0.0, 0.0, size["rim"]), *near_bore], 1, 0.7
+        0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
     )
     side[-1] = gear.held
     inner = 2 * pitch * gear.held
@@ -137,7 +153,7 @@ def _pieces(gear, size, cracks):
     roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
     back, front = (_flank(gear, size, corner) for corner in (max(2 * half * gear.r_a, size["corner"]), size["corner"]))
     width = half * gear.r_a
-    tip = spaced(-width, width, size["rim"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
+    tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
     for name, sign in (("unloaded", -1), ("loaded", 1)):
         arc, phi = roots[name]
         part = [
@@ -190,7 +206,7 @@ def _roots(gear, size, mark, tips, side):
     phi = fillet_angle(gear, fillet_arc)
     root = np.array([0.0])
     if -below > 1e-6 * gear.m_n:
-        root = spaced(below, 0.0, size["rim"], [*fine, (0.0, 0.0, largest)], 1, GROWTH)[::-1]
+        root = spaced(below, 0.0, size["root"], [*fine, (0.0, 0.0, largest)], 1, GROWTH)[::-1]
     return root_half(gear) - root / gear.r_f, phi
 
 
@@ -233,9 +249,9 @@ def _rings(centre, radii, taken):
     return points[:, away > 0.55 * radii[:, None]]
 
 
-def _bulges(pieces, first, doubles, points):
+def _bulges(pieces, first, doubles):
     """How the boundary edges depart from their chords; edges at a crack's mouth under both numbers of the mouth."""
-    out, gauss = {}, leggauss(points)[0]
+    out, gauss = {}, leggauss(BULGE)[0]
     for k, (_, params, place) in enumerate(pieces):
         middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
         ends = place(params)

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe import cache, fe
+from gearfe.energy import ritz
 from geometry.damage import crack_path, start_arc
 from geometry.mesher import section
 from geometry.outline import stations
@@ -149,10 +150,14 @@ def test_a_crack_out_of_sight_is_pointed_out():
         gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4, tooth=5)]})
 
 
-def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite():
-    gear = PAIR.gear_1
-    healthy = fe.flexibility(gear, STEEL, neighbours=2)
-    cracked = fe.cracked_flexibility(gear, STEEL, (gf.Crack(level=0.6),), healthy, neighbours=2)
+@pytest.mark.parametrize("method", ["fe", "ritz"])
+def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite(method):
+    gear, crack = PAIR.gear_1, (gf.Crack(level=0.6),)
+    if method == "fe":
+        healthy = fe.flexibility(gear, STEEL, neighbours=2)
+        cracked = fe.cracked_flexibility(gear, STEEL, crack, healthy, neighbours=2)
+    else:
+        healthy, cracked = ritz.flexibility(gear, STEEL, neighbours=2), ritz.flexibility(gear, STEEL, crack, neighbours=2)
     rolls = np.array([2.5, 2.5 + gear.p_bt])
     opening = cracked.seam.at([r**2 / (2 * gear.r_b) for r in rolls], [0, 1])
     matrix = cracked.matrix(rolls, [0, 1]) + opening @ cracked.seam.stiffness @ opening.T
@@ -175,7 +180,7 @@ def counted(monkeypatch, tmp_path):
 
 
 def test_only_what_changed_is_solved_again(counted):
-    run = {"phases": [0.3]}
+    run = {"phases": [0.3], "method": "fe"}
     gf.mesh_stiffness(PAIR, 127.0, STEEL, **run)
     assert counted == ["flexibility"] * 2
     one = gf.mesh_stiffness(PAIR, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.3)]}, **run)
@@ -189,7 +194,7 @@ def test_only_what_changed_is_solved_again(counted):
 def test_a_wrong_hit_is_impossible(counted, tmp_path):
     import pickle
 
-    run = {"phases": [0.3]}
+    run = {"phases": [0.3], "method": "fe"}
     gf.mesh_stiffness(PAIR, 127.0, STEEL, **run)
     other = gf.GearPair(replace(PAIR.gear_1, r_bore=9.0000001), PAIR.gear_2)
     gf.mesh_stiffness(other, 127.0, STEEL, **run)
@@ -208,8 +213,8 @@ def test_a_wrong_hit_is_impossible(counted, tmp_path):
 
 def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
     monkeypatch.setenv("GEARFE_CACHE", "")
-    gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], cache=False)
-    gf.mesh_stiffness(PAIR, 127.0, STEEL, phases=[0.3], cache=False)
+    gf.mesh_stiffness(PAIR, 127.0, STEEL, method="fe", phases=[0.3], cache=False)
+    gf.mesh_stiffness(PAIR, 127.0, STEEL, method="fe", phases=[0.3], cache=False)
     assert len(counted) == 4
     assert not list(tmp_path.iterdir())
 
@@ -218,7 +223,7 @@ def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
     ("damage", "message"),
     [
         ({"sun": [gf.Crack(level=0.3)]}, "'pinion' and 'wheel'"),
-        ({"pinion": [0.3]}, "not a Crack"),
+        ({"pinion": [0.3]}, "neither a Crack"),
         ({"pinion": [gf.Crack(length=30.0)]}, "sector|held edge"),
         ({"pinion": [gf.Crack(level=0.3), gf.Crack(level=0.1)]}, "two cracks on the loaded side"),
         ({"pinion": [gf.Crack(level=0.5), gf.Crack(level=0.5, side="unloaded")]}, "two cracks of tooth 0 meet"),
@@ -229,6 +234,15 @@ def test_bad_damage(damage, message):
         gf.mesh_stiffness(PAIR, 127.0, STEEL, damage=damage, phases=[0.3])
 
 
-def test_energy_methods_refuse_cracks():
-    with pytest.raises(ValueError, match="only 'fe'"):
-        gf.mesh_stiffness(PAIR, 127.0, STEEL, method="textbook", damage={"pinion": [gf.Crack(level=0.3)]})
+@pytest.mark.parametrize(
+    ("damage", "options", "message"),
+    [
+        ([gf.Crack(level=0.3)], {"method": "coupled"}, "which has none"),
+        ([gf.Pit(radius=18.0, z=0.5, axes=(0.1, 0.1), depth=0.05)], {"method": "ritz"}, "pits with method"),
+        ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
+        ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
+    ],
+)
+def test_what_a_method_does_not_model_is_refused(damage, options, message):
+    with pytest.raises(ValueError, match=message):
+        gf.mesh_stiffness(PAIR, 127.0, STEEL, damage={"pinion": damage}, **options)

@@ -17,10 +17,9 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import coo_matrix
 
 from geometry.tooth import arc_at, cartesian, flank, flank_normal
+from geometry.triangle import BULGE, ENDS, jacobians, lagrange, lobatto, table
 
 from . import flamant
-from .triangle import BULGE, ENDS, lagrange, lobatto, table
-
 
 GROUP = 20  # triangles eliminated together
 
@@ -114,28 +113,12 @@ def _numbering(sector, order):
     return numbers, vertices + keys.size * (order - 1), chain
 
 
-def _edge_bulges(sector):
-    """Bulges of all local edges ``(3, 2, BULGE, m)``, zero inside."""
-    out = np.zeros((3, 2, BULGE, sector.triangles.shape[1]))
-    for local, (a, b) in enumerate(ENDS):
-        for i, (p, q) in enumerate(zip(sector.triangles[a].tolist(), sector.triangles[b].tolist(), strict=True)):
-            if (q, p) in sector.bulge:
-                out[local, :, :, i] = sector.bulge[q, p][:, ::-1]
-            elif (p, q) in sector.bulge:
-                out[local, :, :, i] = sector.bulge[p, q]
-    return out
-
-
 def _assemble(sector, numbers, count, order, modulus, ratio):
     """Stiffness matrix with the insides of the triangles eliminated (csr)."""
     basis = table(order)
-    corners = sector.points[:, sector.triangles]  # (2, 3, m)
-    jacobian = np.einsum("dce,ck->edk", corners, basis.corner_slope)[:, :, :, None]
-    jacobian = jacobian + np.einsum("kjqg,jdge->edkq", basis.bulge_slope, _edge_bulges(sector), optimize=True)
+    jacobian = jacobians(sector.points, sector.triangles, sector.edge_bulges(), order)
     (xx, xy), (yx, yy) = jacobian.transpose(1, 2, 0, 3)
     area = xx * yy - xy * yx
-    if area.min() <= 0:
-        raise RuntimeError("a curved triangle is folded over; use another refine, or method = 'fe'")
     first, second = basis.slope
     dx = (yy / area)[:, None] * first - (yx / area)[:, None] * second
     dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first

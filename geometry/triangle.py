@@ -87,3 +87,19 @@ def _modes(x, y, order):
     pairs = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
     i, j = np.array(pairs).T
     return px[:, i] * py[:, j], dx[:, i] * py[:, j], px[:, i] * dy[:, j]
+
+
+def jacobians(points, triangles, bulges, order):
+    """Derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
+
+    Parameters
+    ----------
+    points : ndarray, shape (2, n)
+    triangles : ndarray, shape (3, m)
+    bulges : ndarray, shape (3, 2, BULGE, m)
+        Of the local edges `ENDS`, see `geometry.sector.Sector`.
+    order : int
+    """
+    basis = table(order)
+    linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]
+    return linear + np.einsum("kjqg,jdge->edkq", basis.bulge_slope, bulges, optimize=True)
