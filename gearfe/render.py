@@ -64,6 +64,47 @@ def plot_curves(curves, path=None):
     return figure
 
 
+def plot_map(found, formulations, x, y, zone, path=None, bins=8):
+    """Heat maps of the median error over two columns of an `gearfe.error_map.ErrorMap`, one for each formulation.
+
+    Columns with few different values (loads) get one bin each, others `bins` of equal width.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(3.4 * len(formulations) + 1, 3.4), layout="constrained")
+    row = figure.subplots(1, len(formulations), sharex=True, sharey=True, squeeze=False)[0]
+    (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
+    for axes, name in zip(row, formulations, strict=True):
+        error = 100 * found.columns[f"{name} {zone}"]
+        table = np.full((len(names_y), len(names_x)), np.nan)
+        for i in range(len(names_y)):
+            for j in range(len(names_x)):
+                here = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
+                table[i, j] = np.median(here) if here.size else np.nan
+                if here.size:
+                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7)
+        image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")
+        axes.set_title(name, fontsize=9)
+        axes.set_xlabel(x)
+        axes.set_xticks(range(len(names_x)), names_x, fontsize=7)
+        axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
+    row[0].set_ylabel(y)
+    figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=100)
+    return figure
+
+
+def _binned(values, bins):
+    """Bin of every value, and the names of the bins."""
+    few = np.unique(values)
+    if few.size <= bins:
+        return np.searchsorted(few, values), [f"{v:g}" for v in few]
+    edges = np.linspace(values.min(), values.max(), bins + 1)
+    return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]
+
+
 def render_stress(scene_pair, path, *, phase=0.0, size=(1400, 1050), refine=1.0):
     """Render von Mises stress of both gears around the loaded teeth to a PNG, without a screen.
 

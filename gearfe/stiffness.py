@@ -4,7 +4,7 @@ import math
 import time
 import warnings
 from dataclasses import asdict, replace
-from functools import partial
+from functools import lru_cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from numbers import Integral, Real
 
@@ -296,6 +296,7 @@ def _meta(pair, force, materials, method, options):
     }
 
 
+@lru_cache(maxsize=16)
 def _version(name):
     try:
         return version(name)

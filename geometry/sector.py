@@ -103,6 +103,7 @@ def sector(gear, cracks=(), *, refine=1.0):
 def _attempt(gear, cracks, refine, finer):
     """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
     size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in SIZES.items()}
+    size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
     pieces = _pieces(gear, size, cracks)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
     count = first[-1]
@@ -191,7 +192,7 @@ def _flank(gear, size, corner):
 def _roots(gear, size, mark, tips, side):
     """Angles of the root arc's vertices from fillet to sector side, and rack tip angles of the fillet's from root to flank."""
     below, top = -gear.r_f * (math.pi / gear.z - root_half(gear)), fillet_length(gear)
-    fine, largest = [], min(size["fillet"], top / 2)
+    fine, largest = [], size["fillet"]
     arcs = np.linspace(below, top, 200)
     sign = 1 if side == "loaded" else -1
     for tip, _ in tips:
@@ -199,7 +200,7 @@ def _roots(gear, size, mark, tips, side):
         near = arcs[np.argmin(away)]
         fine.append((near, near, 0.7 * away.min()))
     if mark is not None:
-        fine.append((mark, mark, min(size["crack"], top / 4)))
+        fine.append((mark, mark, min(size["crack"], size["fillet"] / 2)))
     cuts = [0.0, *([mark] if mark is not None and mark > 1e-6 * top else []), top]
     parts = [spaced(a, b, largest, fine, 1, GROWTH) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
     fillet_arc = np.concatenate([parts[0], *[part[1:] for part in parts[1:]]])

@@ -29,7 +29,7 @@ def test_flamant_is_in_equilibrium_and_elastic():
     at = np.array([[0.7], [-0.3]])
 
     def moved(dx, dy):
-        return flamant.displacement(at + [[dx], [dy]], place, inward, tip_side, modulus, nu)[:, 0, 0]
+        return flamant.displacement(at + np.array([[dx], [dy]]), place, inward, tip_side, modulus, nu)[:, 0, 0]
 
     strain = np.array([moved(h, 0) - moved(-h, 0), moved(0, h) - moved(0, -h)]) / (2 * h)
     xx, yy, xy = strain[0, 0], strain[1, 1], (strain[0, 1] + strain[1, 0]) / 2

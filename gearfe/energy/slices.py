@@ -84,6 +84,11 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
     order = pair.contacts([phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
     flanks = [[p for p in found if p.side == "loaded"] for found in pits]
+    if lag == 0 and not any(flanks):  # one station for each pair on the path of contact
+        found = pair.contacts(phase, extended=False)
+        i, j = np.nonzero(np.isfinite(found.gap))
+        whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size))
     rows = []
     for i, p in enumerate(phase):
         for j, number in enumerate(order):
