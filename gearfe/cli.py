@@ -115,7 +115,7 @@ def stiffness(arguments):
 
 def compare(arguments):
     """``gearfe compare``."""
-    from . import compare as run  # the function: importing it from its module would hide it from users of the package
+    from .comparison import compare as run
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)

@@ -65,7 +65,7 @@ def plot_curves(curves, path=None):
 
 
 def plot_map(found, formulations, x, y, zone, path=None, bins=8):
-    """Heat maps of the median error over two columns of an `gearfe.error_map.ErrorMap`, one for each formulation.
+    """Heat maps of the median error over two columns of an `gearfe.errormap.ErrorMap`, one for each formulation.
 
     Columns with few different values (loads) get one bin each, others `bins` of equal width.
     """

@@ -109,6 +109,8 @@ def _attempt(gear, cracks, refine, finer):
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
+    if chains and not _inside(loop, np.hstack([line for _, line in chains] + [around])).all():
+        return None  # a chord of the outline cuts the crack off: gmsh would not end
     points, triangles = triangulate([loop], chains, False, around.T)
     if np.linalg.det(_arms(points, triangles)).sum() < 0:
         triangles = triangles[[0, 2, 1]]
@@ -132,6 +134,15 @@ def _attempt(gear, cracks, refine, finer):
     return made if np.linalg.det(jacobian.transpose(0, 3, 1, 2)).min() > 0 else None
 
 
+def _inside(loop, points):
+    """Whether points ``(2, n)`` lie inside a closed polygon, by the crossings of a ray."""
+    (x, y), (end_x, end_y) = loop[:, :, None], np.roll(loop, -1, axis=1)[:, :, None]
+    spans = (y > points[1]) != (end_y > points[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = x + (points[1] - y) / (end_y - y) * (end_x - x)
+    return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
+
+
 def _arms(points, triangles):
     corners = points[:, triangles]
     return (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1)
@@ -149,7 +160,10 @@ def _pieces(gear, size, cracks):
     )
     side[-1] = gear.held
     inner = 2 * pitch * gear.held
-    bottom = np.linspace(pitch, -pitch, 1 + min(16, max(1, math.ceil(inner / max(1.5 * thick, 0.1 * inner)))))
+    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip, _ in tips]
+    close = [(place, place, 0.7 * away) for place, away in close]
+    bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
+    bottom[-1] = -pitch
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
     back, front = (_flank(gear, size, corner) for corner in (max(2 * half * gear.r_a, size["corner"]), size["corner"]))
@@ -217,6 +231,8 @@ def _chains(gear, size, cracks, loop):
     Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
     """
     out, around, at = [], [np.zeros((2, 0))], loop.shape[1]
+    part = np.arange(10) / 10
+    rim = (loop[..., None] + (np.roll(loop, -1, axis=1) - loop)[..., None] * part).reshape(2, -1)
     for crack in cracks:
         corners = crack_path(gear, crack)
         start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
@@ -228,13 +244,13 @@ def _chains(gear, size, cracks, loop):
             [spaced(a, b, largest, fine, 1, 1.5 * GROWTH)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
         )
         line = np.array([np.interp(places, ends, row) for row in corners])
-        reach = min(size["crack"], 0.4 * np.hypot(*(loop - corners[:, -1:])).min())
+        reach = min(size["crack"], 0.4 * np.hypot(*(rim - corners[:, -1:])).min())
         ahead = (corners[:, -1] - corners[:, -2]) / legs[-1]
         further = spaced(0.0, reach, reach, [(0.0, 0.0, tip_size)], 1, 1.5 * GROWTH)[1:]
         on_line = corners[:, -1:] + ahead[:, None] * further
         out += [(start, line), (at + line.shape[1] - 1, on_line)]
         at += line.shape[1] + further.size
-        taken = np.hstack([loop, line, on_line])
+        taken = np.hstack([rim, line, on_line])
         around.append(_rings(corners[:, -1], further, taken))
         for k in range(1, corners.shape[1] - 1):
             radii = places[places > ends[k] + 1e-9] - ends[k]

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+import gearfe
+
 ROOT = Path(__file__).parents[1]
 FILES = sorted([*ROOT.glob("geometry/**/*.py"), *ROOT.glob("gearfe/**/*.py")])
 ALLOWED = {"gmsh": {"geometry/mesher.py"}, "pyvista": {"gearfe/render.py"}, "matplotlib": {"gearfe/render.py"}}
@@ -42,6 +44,12 @@ def test_heavy_imports_stay_home(path):
 @pytest.mark.parametrize("path", [p for p in FILES if "geometry" in p.parts], ids=name_of)
 def test_geometry_never_imports_gearfe(path):
     assert not [m for m in imports(path, everywhere=True) if m.split(".")[0] == "gearfe"]
+
+
+def test_no_public_name_is_that_of_a_module():
+    """Importing a module binds its name in the package, over a function of the same name."""
+    modules = {path.stem for path in FILES if path.parent.name == "gearfe"}
+    assert not modules & set(gearfe.__all__)
 
 
 def test_no_import_cycle():

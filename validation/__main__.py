@@ -7,6 +7,8 @@ PAGES = {
     "cracks": "crack reductions and their conventions",
     "slow": "the slow tests and what they print",
     "speed": "seconds against error of every method",
+    "formulations": "closed forms on known pairs, and what each ingredient changes",
+    "map": "errors of the closed forms over thousands of gear pairs",
     "hard": "hard cases, each with its outcome",
     "own_model": "the example of a curve exported by MATLAB",
     "readme": "the table and the program output in the README",

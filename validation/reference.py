@@ -9,8 +9,10 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.energy import textbook
-from gearfe.hertz import half_plane, linear_hertz
+from gearfe.energy.beam import load_angle
+from gearfe.hertz import half_plane, linear_hertz, weber_line
 from gearfe.iso import theoretical_stiffness, virtual_teeth
+from geometry.tooth import flank
 
 STEEL = gf.Material(E=206e3, nu=0.3)
 RACK = {"alpha_n": math.radians(20), "b": 1.0}
@@ -62,12 +64,46 @@ def healthy(row, *, phases=None, **options):
     return np.array([k.mean(), k.max(), k.min()])
 
 
+def formulation(row, **options):
+    """Errors [%] of a closed form against finite elements with `options`, per pair of ``healthy``: single and double zone."""
+    out = []
+    for source in load()["healthy"]["rows"]:
+        pair, steel = healthy_pair(source)
+        run = {"phases": (np.arange(64) + 0.5) / 64, "extended": False}
+        truth = gf.mesh_stiffness(pair, source["line_load"], steel, method="fe", **options, **run).zones()
+        found = gf.mesh_stiffness(pair, source["line_load"], steel, method=row["method"], variants=row.get("variants"), **run)
+        out.append([100 * (found.zones()[zone] / truth[zone] - 1) for zone in ("single", "double")])
+    return np.array(out).T
+
+
+def _ross_gear():
+    """Gear of the beam code's example and its root half angle."""
+    rho = 0.25 / (1 - math.sin(math.radians(20)))
+    gear = gf.Gear(z=62, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=17.5, tip_radius=rho)
+    return gear, (math.pi / 2 + 2 * math.tan(gear.alpha_n) * (1 - rho) + 2 * rho / math.cos(gear.alpha_n)) / gear.z
+
+
+def load_trend(line_load):
+    """Errors [%] of the beam code's single pair at the pitch point: against the source's composition, and against `fe`.
+
+    The composition is two teeth by finite elements at the centre-line, and Weber's local deflection down to it.
+    """
+    gear, theta_f = _ross_gear()
+    pair = gf.GearPair(gear, gear)
+    roll = np.array([gear.r_b * math.tan(gear.alpha_n)])
+    beam = 2 * textbook.components(gear, STEEL, roll, lever="contact", theta_f=theta_f).total[0] + linear_hertz((STEEL, STEEL))
+    radius, angle = flank(gear, roll)
+    depth = radius * np.sin(angle) / np.cos(load_angle(gear, roll))
+    local, _ = weber_line(line_load, (STEEL, STEEL), pair.relative_radius(roll, roll), (depth, depth))
+    composed = 2 * gf.tooth_flexibility(gear, gear.r, STEEL) + local[0]
+    run = {"phases": [pair.pitch_phase], "extended": False}
+    whole = 1e-6 * gf.mesh_stiffness(pair, line_load * gear.b, STEEL, method="fe", **run).k[0] / gear.b
+    return 100 * (composed / beam - 1), 100 * (1e-3 / beam / whole - 1)
+
+
 def beam_code():
     """The ross 62/62 numbers, with its conventions: k, k_hertz [N/m], contact ratio."""
-    sin = math.sin(math.radians(20))
-    rho = 0.25 / (1 - sin)
-    gear = gf.Gear(z=62, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=17.5, tip_radius=rho)
-    theta_f = (math.pi / 2 + 2 * math.tan(gear.alpha_n) * (1 - rho) + 2 * rho / math.cos(gear.alpha_n)) / gear.z
+    gear, theta_f = _ross_gear()
     low, high = math.atan(gear.roll_f / gear.r_b), math.acos(gear.r_b / gear.r_a)
     eps_alpha = gf.GearPair(gear, gear).eps_alpha
     step = (high - low) / eps_alpha

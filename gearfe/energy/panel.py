@@ -211,9 +211,9 @@ def _matched(gear, sector, order):
     for side in (sector.left, sector.right):
         a, b = sector.points[:, side[:-1], None], sector.points[:, side[1:], None]
         out.append((a * (1 - line[1:]) + b * line[1:]).reshape(2, -1))
-    edges = sector.held.size - 1
-    places = np.append((np.arange(edges)[:, None] + line[:-1]).ravel(), edges) / edges
-    return np.hstack([*out, cartesian(gear.held, math.pi / gear.z * (1 - 2 * places))])
+    angle = np.arctan2(*sector.points[:, sector.held])
+    places = np.append((angle[:-1, None] + np.diff(angle)[:, None] * line[:-1]).ravel(), angle[-1])
+    return np.hstack([*out, cartesian(gear.held, places)])
 
 
 def _apart(sector, chain, count):

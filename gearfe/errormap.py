@@ -12,7 +12,7 @@ from geometry.damage import Crack
 from geometry.gear import Gear
 from geometry.pair import GearPair
 
-from .batch import batch
+from .batches import batch
 from .export import written
 from .material import Material
 from .own_model import own_curve
@@ -34,8 +34,8 @@ LOADS = (10.0, 50.0, 250.0)
 ZONES = ("single", "double", "mean", "max")
 HEALTHY = {"textbook": ("textbook", {}), "published": ("published", {}), "coupled": ("coupled", None)}
 CRACKED = {
-    **{f"textbook, {model}": ("textbook", {"crack_model": model}) for model in ("constant", "straight", "parabola")},
-    "published, constant": ("published", {"crack_model": "constant"}),
+    **{f"textbook {model}": ("textbook", {"crack_model": model}) for model in ("constant", "straight", "parabola")},
+    "published constant": ("published", {"crack_model": "constant"}),
 }
 
 
@@ -107,9 +107,9 @@ def error_map(pairs=2000, *, seed=0, loads=LOADS, models=None, phases=24, worker
     phases : int
         Per mesh cycle.
     workers : int, optional
-        As in `gearfe.batch.batch`.
+        As in `gearfe.batches.batch`.
     progress : callable, optional
-        As in `gearfe.batch.batch`.
+        As in `gearfe.batches.batch`.
 
     Returns
     -------
@@ -179,7 +179,9 @@ def _one(sample, loads, models, phases):
     for name, make in models.items():
         found[name] = [own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)]
     rows = [
-        sample | {"crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1} | _errors(truth, found, i)
+        sample
+        | {"crack": 0.0, "load": load, "extended mean": beyond[i].k.mean() / truth[i].k.mean() - 1}
+        | _errors(truth, found, i)
         for i, load in enumerate(loads)
     ]
     if sample["crack"]:
