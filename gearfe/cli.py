@@ -14,7 +14,7 @@ def main(argv=None):
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
-    verb.add_argument("--method", default="ritz", help="ritz, fe, textbook or published (default: ritz)")
+    verb.add_argument("--method", default="ritz", help="ritz, fe, coupled, textbook or published (default: ritz)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
     verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (ritz, fe)")

@@ -78,8 +78,8 @@ def compare(scene, pair=None, *, models=(), phases=64, refine=1.0):
     """
     chosen = scene.pair(pair)
     own = own_models(models, taken=("fe", *FORMULATIONS))
-    _warm_up()
     case = {"pair": chosen.pair, "force": chosen.force, "material": chosen.materials, "phases": phases}
+    mesh_stiffness(**(case | {"phases": 1}))  # imports what the methods load lazily, so that the seconds are those of the work
     curves, seconds = {}, {}
     for method in ("fe", *(RING if chosen.pair.gear_2.internal else FORMULATIONS)):
         started = time.perf_counter()
@@ -92,11 +92,3 @@ def compare(scene, pair=None, *, models=(), phases=64, refine=1.0):
         curves[name] = own_curve(name, model, chosen.pair, curves["fe"])
         seconds[name] = time.perf_counter() - started
     return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
-
-
-def _warm_up():
-    """Import what the methods load lazily, so that the seconds are those of the work."""
-    from geometry.mesher import gmsh_session
-
-    with gmsh_session():
-        pass

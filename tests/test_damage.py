@@ -241,6 +241,8 @@ def test_bad_damage(damage, message):
         ([gf.Pit(radius=18.0, z=0.5, axes=(0.1, 0.1), depth=0.05)], {"method": "ritz"}, "pits with method"),
         ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
         ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
+        ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
+        ((), {"method": "published", "variants": {"root": "base"}}, "'root' is none of method = 'published'"),
     ],
 )
 def test_what_a_method_does_not_model_is_refused(damage, options, message):

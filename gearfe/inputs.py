@@ -1,0 +1,96 @@
+"""What `mesh_stiffness` is given, checked and brought into one form; errors say what was given and what to do."""
+
+import math
+import warnings
+from dataclasses import replace
+from inspect import signature
+from numbers import Real
+
+import numpy as np
+
+from geometry.damage import Crack, check_apart
+from geometry.pit import Pit
+
+from .energy import published, textbook
+from .energy.plain_sum import plain_sum
+from .material import Material
+
+CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
+METHODS = ("auto", "ritz", "fe", "coupled", *CLOSED)
+
+
+def two_materials(material):
+    """Materials of pinion and wheel."""
+    materials = (material, material) if isinstance(material, Material) else material
+    if not isinstance(materials, (tuple, list)) or len(materials) != 2 or not all(isinstance(m, Material) for m in materials):
+        raise ValueError(f"material = {material!r}, but give one Material or a pair (pinion, wheel)")
+    return tuple(materials)
+
+
+def phase_array(phases, span, pair):
+    """Phases spelled out."""
+    if span not in ("cycle", "tooth"):
+        raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
+    if np.ndim(phases) == 0:
+        if not isinstance(phases, Real) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
+            raise ValueError(f"phases = {phases}, but give a number of phases >= 1, or an array of phases")
+        if span == "tooth":
+            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + 0.25) * phases) + 1) / int(phases)
+        return np.arange(int(phases)) / int(phases)
+    phases = np.asarray(phases, dtype=float)
+    if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
+        raise ValueError("phases must be a non-empty array of finite numbers")
+    return phases
+
+
+def refuse(method, pair, cracks, pits, teeth, variants):
+    """Raise ValueError for what a method does not model."""
+    ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
+    if ring and (method == "coupled" or (method in CLOSED and (variants or {}).get("foundation") != "none")):
+        raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")
+    if damaged and method == "coupled":
+        raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
+    if any(pits) and method not in CLOSED:
+        raise ValueError(f"pits with method = {method!r}: in two dimensions only 'textbook' and 'published' model them")
+    if teeth is not None and method != "fe":
+        raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
+    if variants and method not in CLOSED:
+        raise ValueError(f"variants = {variants!r} with method = {method!r}: only {' and '.join(CLOSED)} have variants")
+    if variants:
+        known = [*signature(plain_sum).parameters, *signature(CLOSED[method].components).parameters]
+        known = sorted(
+            set(known) - {"pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants"}
+        )
+        for name in variants:
+            if name not in known:
+                raise ValueError(f"variants: {name!r} is none of method = {method!r}; it has {', '.join(known)}")
+
+
+def by_gear(pair, damage):
+    """Cracks and pits of pinion and wheel, numbered in each gear's own frame."""
+    damage = {} if damage is None else damage
+    unknown = set(damage) - {"pinion", "wheel"}
+    if unknown:
+        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
+    cracks, pits = [], []
+    for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
+        given = damage.get(name) or ()
+        given = (given,) if isinstance(given, (Crack, Pit)) else tuple(given)
+        for one in given:
+            if not isinstance(one, (Crack, Pit)):
+                raise ValueError(f"damage of the {name}: {one!r} is neither a Crack nor a Pit")
+        check_apart(gear, [one for one in given if isinstance(one, Crack)])
+        own = [replace(one, tooth=sense * one.tooth) for one in given]
+        cracks.append(tuple(one for one in own if isinstance(one, Crack)))
+        pits.append(tuple(one for one in own if isinstance(one, Pit)))
+    return tuple(cracks), tuple(pits)
+
+
+def warn_if_unseen(pair, damage, order):
+    """Warn if no cracked tooth is in contact at any of the phases."""
+    seen = ((pair.gear_1, damage["pinion"]), (pair.gear_2, damage["wheel"]))
+    if not any(crack["tooth"] % gear.z in order % gear.z for gear, cracks in seen for crack in cracks):
+        warnings.warn(
+            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            stacklevel=4,
+        )
