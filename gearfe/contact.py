@@ -42,6 +42,15 @@ def _closing(opening):
     return opening.min(axis=-1) < -CLOSED * np.abs(opening).max(axis=-1)
 
 
+def _within(contacts, reach):
+    """Without the unknowns whose gap cannot close."""
+    near = contacts["gap"] <= max(reach, contacts["gap"].min())
+    if near.all():
+        return contacts
+    kept = {name: values if values is None else values[near] for name, values in contacts.items()}
+    return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
+
+
 class Mesh:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
@@ -85,7 +94,7 @@ class Mesh:
         closed = []
         for i in np.flatnonzero(~done).tolist():
             line[i] = pressure[i] = 0.0
-            contacts = self._contacts(i, np.flatnonzero(possible[i]), corner[i, possible[i]])
+            contacts = _within(self._contacts(i, np.flatnonzero(possible[i]), corner[i, possible[i]]), reach[i])
             force, approach[i], tangent[i] = self._share(contacts, line_load)
             if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)

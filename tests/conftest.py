@@ -1,8 +1,12 @@
 import math
 
-import pytest
+from validation import machine  # first: one thread, which suits small matrices
 
-import gearfe as gf
+import pytest  # isort: skip
+
+import gearfe as gf  # isort: skip
+
+assert machine
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 
