@@ -47,7 +47,7 @@ def test_errors_name_file_table_and_key(tmp_path, old, new, message):
 
 
 def test_unknown_scene_and_pair():
-    with pytest.raises(ValueError, match="built in are planetary_pitting"):
+    with pytest.raises(ValueError, match="built in are compound_planetary, planetary_pitting"):
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")
