@@ -9,6 +9,7 @@ from scipy.signal import ShortTimeFFT, firwin, get_window, upfirdn
 from .signals import Spectrum, analytic
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
+WIDER = 1.3  # than its band a filter is at half amplitude; at the edge of the band it still passes 0.96
 FEWEST = 128  # samples at the deepest level, before the ends are cut
 
 
@@ -90,8 +91,9 @@ def fast_kurtogram(signal, levels=None):
     k + 1 and cut in three into level ``k + log2(3)``, which is not split further and stays below `levels`. The kurtosis of a
     band c is ``<|c|**4> / <|c|**2>**2 - 2`` (``- 3`` for level 0, which is real; the others come from the analytic signal, so
     that the bands beside 0 Hz are complex too). Antoni's program cuts printed levels after one decimal: its "5.5" is 5.58.
-    Filters are Hamming windows of 33 and 49 taps, -6 dB at the edges of the bands (Antoni: 17 and 25, wider); samples that a
-    filter takes from beyond the ends are left out.
+    Filters are Hamming windows of 33 and 49 taps that pass 0.96 at the edges of a band, 0.5 at 1.3 and 0.04 at 1.6 times its
+    half width (Antoni: 17 and 25 taps, 0.96, 0.5 at 1.6): a line beside an edge shows in both bands. Samples that a filter
+    takes from beyond the ends are left out.
 
     Parameters
     ----------
@@ -132,7 +134,7 @@ def _rows(level, parts, bands):
 def _split(x, parts):
     """Bands of equal width from low to high, each shifted to 0 ... 1/2 of its own rate."""
     taps = {2: HALF_TAPS, 3: THIRD_TAPS}[parts]
-    low_pass = firwin(taps, 0.5 / parts)
+    low_pass = firwin(taps, WIDER * 0.5 / parts)
     k = np.arange(taps)
     out = []
     for i in range(parts):

@@ -191,18 +191,24 @@ def _is_number(cell):
 
 
 def _table(path, rows, separator, count):
+    if not rows:
+        raise ValueError(f"{path}: no rows of numbers")
     try:
         table = np.loadtxt([line for _, line in rows], delimiter=separator, ndmin=2)
-    except ValueError:
-        table = np.empty((0, 0))
-    if table.shape[1] == count and rows:
-        return table
+    except ValueError as error:
+        raise ValueError(_bad_row(path, rows, separator, count) or f"{path}: {error}") from error
+    if table.shape[1] != count:
+        raise ValueError(_bad_row(path, rows, separator, count))
+    return table
+
+
+def _bad_row(path, rows, separator, count):
     for i, line in rows:
         cells = line.split(separator)
         if len(cells) != count or not all(map(_is_number, cells)):
             hint = "; use a decimal point" if any(re.fullmatch(r"\s*[-+\d]*,\d+(e.*)?\s*", cell) for cell in cells) else ""
-            raise ValueError(f"{path}, line {i}: {line!r} is not a row of {count} numbers{hint}")
-    raise ValueError(f"{path}: no rows of numbers")
+            return f"{path}, line {i}: {line!r} is not a row of {count} numbers{hint}"
+    return None
 
 
 def _from_npz(path):
