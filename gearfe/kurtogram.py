@@ -23,7 +23,7 @@ def spectral_kurtosis(signal, size, *, window="hann"):
         SK(f) = <|X(t, f)|**4> / <|X(t, f)|**2>**2 - 2
 
     0 for stationary Gaussian noise (3 is subtracted at 0 Hz and Nyquist's frequency, where X is real), -1 for a sine, large
-    where impulses are. Over K separate frames noise scatters by ``2 / sqrt(K)``.
+    where impulses are. Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the largest get 0.
 
     Parameters
     ----------
@@ -49,7 +49,10 @@ def spectral_kurtosis(signal, size, *, window="hann"):
     frames = transform.stft(x, p0=transform.lower_border_end[1], p1=transform.upper_border_begin(n)[1])
     real = np.isin(np.arange(transform.f.size), [0] if size % 2 else [0, size // 2])
     power = np.abs(frames) ** 2
-    values = (power**2).mean(axis=1) / power.mean(axis=1) ** 2 - np.where(real, 3, 2)
+    mean = power.mean(axis=1)
+    full = mean > EMPTY * mean.max()
+    values = np.zeros(mean.size)
+    values[full] = (power[full] ** 2).mean(axis=1) / mean[full] ** 2 - np.where(real[full], 3, 2)
     step = signal.rate / size
     bandwidth = step * size * float(weights @ weights) / float(weights.sum()) ** 2
     return Spectrum(transform.f, values, "1", step, bandwidth, f"spectral kurtosis of {signal.name}")

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import fft, fftfreq, ifft
+from scipy.fft import fft, fftfreq, ifft, irfft, rfft, rfftfreq
 from scipy.signal import get_window, periodogram, welch
 
 
@@ -221,7 +221,8 @@ def power_spectral_density(signal, *, resolution=None, window="hann"):
 def analytic(signal, band=None):
     """Analytic signal of the oscillation (without the mean), of `band` = (low, high) [Hz] only if given; shape (n,), complex.
 
-    The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does.
+    The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
+    closes; any other rings at its ends, for about ``1 / (high - low)``.
     """
     low, high = (0.0, signal.rate / 2) if band is None else band
     if not 0 <= low < high <= signal.rate / 2 * (1 + 1e-12):
@@ -258,3 +259,32 @@ def squared_envelope_spectrum(signal, band=None, *, window="hann"):
     """
     squared = np.abs(analytic(signal, band)) ** 2
     return amplitudes(squared, signal.rate, window, f"({signal.unit})^2", f"squared envelope of {signal.name}", "Hz")
+
+
+def integrate(signal, times, above, unit):
+    """Integral over time, of the part above a frequency: displacement from acceleration, as S4 measures it.
+
+    Divides the discrete Fourier transform by ``(2 pi i f)**times``; a record that does not close drifts at its ends.
+
+    Parameters
+    ----------
+    signal : Signal
+    times : int
+        1: velocity from acceleration, 2: displacement.
+    above : float
+        What lies below [Hz] is taken out, with the mean: noise there would grow without bound.
+    unit : str
+        Of the result; for ``m/s^2`` integrated twice ``m``.
+
+    Returns
+    -------
+    Signal
+    """
+    if times < 1 or not 0 < above < signal.rate / 2:
+        raise ValueError(f"times = {times}, above = {above} Hz: give times >= 1 and above between 0 and {signal.rate / 2:g} Hz")
+    frequency = rfftfreq(signal.values.size, 1 / signal.rate)
+    weight = np.zeros(frequency.size, dtype=complex)
+    kept = frequency >= above
+    weight[kept] = (2j * math.pi * frequency[kept]) ** -times
+    values = irfft(weight * rfft(signal.values), signal.values.size)
+    return Signal(values, signal.rate, unit, f"integral of {signal.name}", signal.angle, signal.shaft_frequency)

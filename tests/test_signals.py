@@ -208,6 +208,20 @@ def test_envelope_refuses_a_band_outside_the_spectrum(band):
         gf.envelope(gf.Signal(noise(100), RATE, "N"), band)
 
 
+@pytest.mark.parametrize("n", [5120, 5121])
+def test_displacement_from_acceleration(n):
+    """S4 measures acceleration and integrates twice."""
+    rate = float(n)
+    omega = 2 * np.pi * 480.0
+    signal = gf.Signal(9.81 + sine(-(omega**2) * 3e-6, 480.0, n, rate) + sine(1.0, 2.0, n, rate), rate, "m/s^2")
+    found = gf.integrate(signal, 2, 10.0, "m")
+    assert found.unit == "m"
+    assert_allclose(found.values, sine(3e-6, 480.0, n, rate), atol=1e-15)
+    for arguments in ((0, 10.0), (2, 0.0), (2, 3000.0)):
+        with pytest.raises(ValueError, match="give times >= 1 and above between 0 and"):
+            gf.integrate(signal, *arguments, "m")
+
+
 # ---------------------------------------------------------------- kurtogram
 
 
@@ -361,6 +375,29 @@ def test_poincare_section_counts_the_period():
         gf.poincare_section(faulty, 80.0, start=2)
     with pytest.raises(ValueError, match="frequency = 30000 Hz, but signal has 0 to 25600 Hz"):
         gf.poincare_section(faulty, 30000)
+
+
+# ---------------------------------------------------------------- pictures
+
+
+def test_plot_of_spectra_marks_the_lines(tmp_path):
+    found = gf.spectrum(gf.Signal(sine(1.0, 280.0, 5120), RATE, "N"))
+    lines = gf.expected_lines(280.0, 40.0, count=1)
+    figure = gf.plot_spectra({"healthy": found, "pitted": found}, lines, tmp_path / "s.png")
+    assert (tmp_path / "s.png").stat().st_size > 1000
+    assert {text.get_text() for text in figure.axes[0].texts} == set(lines)
+    assert_allclose(sorted(line.get_xdata()[0] for line in figure.axes[1].lines[1:]), sorted(lines.values()))
+    assert_allclose(figure.axes[1].get_xlim(), (0, 1.2 * 320))
+    assert_allclose(gf.plot_spectra({"all": found}).axes[0].get_xlim(), (0, 2560))
+
+
+def test_plot_of_a_portrait_shows_the_section(tmp_path):
+    signal = gf.Signal(sine(1.0, 40.0, 2000, 2000.0), 2000.0, "um")
+    section = gf.poincare_section(signal, 40.0)
+    figure = gf.plot_phase(gf.phase_portrait(signal), section, "um", tmp_path / "p.png")
+    assert_allclose(figure.axes[0].lines[1].get_xydata(), section)
+    assert figure.axes[0].get_ylabel() == "velocity [um/s]"
+    assert (tmp_path / "p.png").exists()
 
 
 # ---------------------------------------------------------------- Signal and files
