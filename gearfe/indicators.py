@@ -116,7 +116,8 @@ def sideband_centroid_s1(found, mesh_frequency, fault_frequency):
 
     but f is the amplitude and E the distance of the bin from the origin of the spectrum, here its frequency. It rises with the
     sidebands, and as much with those of impact loads. Twice the duration halves it (the lines stay, the bins between them
-    double): compare signals of one length, rate and window.
+    double): compare signals of one length, rate and window. The fault sidebands are the ends of the sum, so with a Hann window
+    half of their outer bins is left out; the same holds for S0's form.
     """
     frequency, amplitude = _around(found, mesh_frequency, fault_frequency)
     return float(amplitude @ frequency / frequency.sum())

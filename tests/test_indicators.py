@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe import indicators as ind
+from validation import centroid
 
 RATE, N = 5120.0, 51200  # 10 s, bins 0.1 Hz apart
 F_M, F_FAULT = 280.0, 40.0  # of S0's machine
@@ -229,6 +230,11 @@ def test_printed_349_8_and_352_9_are_impossible():
         found = ind.sideband_centroid_s0(gf.signals.Spectrum(frequency, amplitude, "N", 0.1, 0.1), F_M, F_FAULT)
         assert_allclose(found, extreme)
     assert 315.4 < found < 349.8 < 352.9, "the moderate values lie in the window, the severe ones beyond its end"
+
+
+def test_the_page_of_verdicts_is_up_to_date():
+    assert [holds for _, holds, _ in centroid.verdicts(centroid.study())] == [False, False, True, False]
+    assert centroid.page() == centroid.PAGE.read_text(encoding="utf-8"), "remake: python -m validation centroid"
 
 
 @pytest.mark.parametrize("noise", [0.3, 3.0, 30.0])
