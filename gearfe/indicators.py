@@ -24,6 +24,7 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
+LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
 
 
 def rms(values):
@@ -84,9 +85,15 @@ def sideband_index(found, mesh_frequency, fault_frequency, *, tolerance=None, ha
 
     In the unit of the spectrum. S4 prints 1.03 to 2.26 without unit, beside a mesh line of 0.097 um: not amplitudes in um.
     """
-    sides = [(n, sign) for n in range(1, harmonics + 1) for sign in (-1, 1)]
-    lines = {f"{n} f_m {sign:+d} f_fault": n * mesh_frequency + sign * fault_frequency for n, sign in sides}
-    return float(np.mean([amplitude for _, amplitude in find_lines(found, lines, tolerance).values()]))
+    if fault_frequency < LOBES * found.resolution:
+        raise ValueError(
+            f"fault_frequency = {fault_frequency:g} Hz, but {found.name} has bins of {found.resolution:g} Hz, so that the mesh "
+            f"line covers its sidebands; record {LOBES / fault_frequency:.3g} s or longer"
+        )
+    sides = [(n, sign) for n in range(1, harmonics + 1) for sign in (-1, 0, 1)]
+    lines = {(n, sign): n * mesh_frequency + sign * fault_frequency for n, sign in sides}
+    amplitudes = [amplitude for (_, sign), (_, amplitude) in find_lines(found, lines, tolerance).items() if sign]
+    return float(np.mean(amplitudes))
 
 
 def sideband_centroid_s0(found, mesh_frequency, fault_frequency):
@@ -155,6 +162,8 @@ def indicators(signal, mesh_frequency=None, fault_frequency=None, *, window="han
     dict of str to float
     """
     x = signal.values
+    if not np.ptp(x) > 1e-12 * np.abs(x).max():
+        raise ValueError(f"{signal.name} is constant: it has no indicators")
     out = {
         "rms": rms(x),
         "peak": peak(x),

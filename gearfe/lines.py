@@ -62,7 +62,7 @@ def _times(n, name):
 
 
 def find_lines(found, lines, tolerance=None):
-    """Largest bin near each expected line.
+    """Largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
 
     Parameters
     ----------
@@ -90,7 +90,11 @@ def find_lines(found, lines, tolerance=None):
             raise ValueError(
                 f"line {name} at {expected:g} lies above {found.name}, which ends at {found.frequency[-1]:g} {found.axis}"
             )
-        frequency, values = found.within(expected - tolerance, expected + tolerance)
+        others = [other for other in lines.values() if abs(other - expected) > found.resolution]
+        low = max((other for other in others if other < expected), default=-math.inf)
+        high = min((other for other in others if other > expected), default=math.inf)
+        span = max(expected - tolerance, (low + expected) / 2), min(expected + tolerance, (expected + high) / 2)
+        frequency, values = found.within(*span)
         top = int(np.argmax(values))
         out[name] = float(frequency[top]), float(values[top])
     return out

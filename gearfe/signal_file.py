@@ -2,6 +2,7 @@
 
 import math
 import re
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -160,12 +161,15 @@ def _from_csv(path):
     separator = next((s for s in ";\t," if s in rows[-1][1]), ",")
     first = rows[0][1].split(separator)
     statements = [(_plain(m[1]), m[2].strip()) for c in comments if (m := re.fullmatch(r"([\w ]+?)\s*[:=]\s*(.+)", c))]
-    stated = {key: value for key, value in statements if key in (*RATES, *SHAFTS, "unit")}
+    stated = {}
+    for key, value in statements:
+        if stated.setdefault(key, value) != value and key in (*RATES, *SHAFTS, "unit"):
+            raise ValueError(f"{path}: {key} is stated twice, {stated[key]} and {value}; keep one")
     if not any(map(_is_number, first)):
         header = rows.pop(0)[1].split(separator)
     else:
         named = [c.split(separator) for c in comments if len(c.split(separator)) == len(first)]
-        named = [cells for cells in named if len(cells) > 1 or not re.search("[:=]", cells[0])]
+        named = [cells for cells in named if len(cells) > 1 or re.fullmatch(r"[^:=]+\[.+\]", cells[0].strip())]
         header = named[-1] if named else ["signal"] if len(first) == 1 else _no_header(path, len(first))
     units, names = {}, []
     for cell in header:
@@ -215,9 +219,9 @@ def _from_npz(path):
     from zipfile import BadZipFile
 
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return _from_arrays(path, {name: file[name] for name in file.files})
-    except (BadZipFile, ValueError, AttributeError) as error:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
+            return _from_arrays(path, {name: archive[name] for name in archive.files})
+    except (BadZipFile, ValueError, TypeError, EOFError, zlib.error) as error:
         if str(path) in str(error):
             raise
         raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
@@ -228,10 +232,11 @@ def _from_mat(path):
     from scipy.io.matlab import MatReadError
 
     try:
-        return _from_arrays(path, {k: v for k, v in loadmat(path).items() if not k.startswith("__")})
+        with open(path, "rb") as file:
+            return _from_arrays(path, {name: value for name, value in loadmat(file).items() if not name.startswith("__")})
     except NotImplementedError as error:
         raise ValueError(f"{path} is a MATLAB file of version 7.3 (HDF5): save it with '-v7'") from error
-    except (MatReadError, ValueError, TypeError) as error:
+    except (MatReadError, ValueError, TypeError, EOFError, zlib.error) as error:
         if str(path) in str(error):
             raise
         raise ValueError(f"{path} is not a MATLAB file: {error}") from error

@@ -38,7 +38,7 @@ class Signal:
         object.__setattr__(self, "values", _samples(self.name, self.values))
         for name in ("rate", "shaft_frequency"):
             value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | float | np.number) and 0 < value < math.inf):
+            if value is not None and not (isinstance(value, int | float | np.integer | np.floating) and 0 < value < math.inf):
                 raise ValueError(f"{self.name}: {name} = {value!r}, but give a positive number of Hz")
         if self.rate is None:
             raise ValueError(f"{self.name}: rate = None, but give a positive number of Hz")

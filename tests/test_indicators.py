@@ -83,6 +83,11 @@ def test_a_constant_has_no_shape(part):
         part(np.full(100, 9.81))
 
 
+def test_indicators_name_the_signal_that_is_constant():
+    with pytest.raises(ValueError, match="sun x is constant: it has no indicators"):
+        gf.Signal(np.zeros(100), RATE, "um", "sun x").indicators()
+
+
 def test_zeros_have_no_crest_factor():
     with pytest.raises(ValueError, match="a signal of zeros"):
         ind.crest_factor_s4(np.zeros(100))
@@ -157,6 +162,15 @@ def test_find_lines_refuses_what_the_spectrum_does_not_hold():
         gf.find_lines(found, {"f_m": 40.05}, 0.02)
 
 
+def test_a_line_is_not_found_on_its_neighbour():
+    """S1's carrier sidebands, 3.33 Hz beside the mesh line, looked for as far as 3.4 Hz away."""
+    found = gf.spectrum(gf.Signal(cos(F_M) + 0.1 * cos(F_M + 3.4), RATE, "N"))
+    lines = gf.find_lines(found, gf.expected_lines(F_M, carrier_frequency=10 / 3, count=1), 3.4)
+    assert_allclose(lines["f_m"], (280.0, 1.0))
+    assert_allclose(lines["f_m + f_carrier"], (283.4, 0.1))
+    assert lines["f_m - f_carrier"][1] < 1e-9
+
+
 # ---------------------------------------------------------------- sidebands
 
 
@@ -166,6 +180,14 @@ def test_sideband_index_is_the_mean_of_the_first_order(severity):
     assert_allclose(ind.sideband_index(gf.spectrum(signal), F_M, F_FAULT), severity, rtol=1e-9)
     two = gf.Signal(signal.values + 2 * cos(560 - 40.0) + 4 * cos(560 + 40.0), RATE, "N")
     assert_allclose(ind.sideband_index(gf.spectrum(two), F_M, F_FAULT, harmonics=2), (2 * severity + 6) / 4, rtol=1e-9)
+
+
+def test_sideband_index_needs_sidebands_apart_from_the_mesh_line():
+    short = gf.Signal(cos(F_M)[:256], RATE, "N")
+    with pytest.raises(ValueError, match=r"bins of 20 Hz, so that the mesh line covers its sidebands; record 0\.1 s or longer"):
+        ind.sideband_index(gf.spectrum(short), F_M, F_FAULT)
+    longer = gf.Signal(cos(F_M)[:512], RATE, "N")
+    assert ind.sideband_index(gf.spectrum(longer), F_M, F_FAULT) < 1e-9
 
 
 def both(signal):

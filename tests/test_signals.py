@@ -520,6 +520,8 @@ EVEN = [f"{i / 1000:.3f},{i}" for i in range(20)]
         ("\n".join(EVEN), {}, "2 columns without names; write a header"),
         (with_rows(EVEN, "a [N],a [g]"), {}, r"two columns have the same name"),
         ("# nothing\n", {}, "no rows of numbers"),
+        ("# rate = 5\n# rate = 6\n" + with_rows(["1", "2"], "a [N]"), {}, "rate is stated twice, 5 and 6"),
+        ("# run 3 (second try)\n1\n2\n", {"rate": 1}, "no unit for 'signal'"),
         ("a [N]\n", {"rate": 1}, "no rows of numbers"),
     ],
 )
@@ -576,6 +578,18 @@ def test_files_that_are_something_else(tmp_path):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ValueError, match=message):
             gf.read_signal(tmp_path / name)
+    np.savez_compressed(tmp_path / "whole.npz", a=noise(5000))
+    savemat(tmp_path / "whole.mat", {"a": noise(5000)}, do_compression=True)
+    for name in ("npz", "mat"):
+        whole = (tmp_path / f"whole.{name}").read_bytes()
+        for part in (0, 3, 200, len(whole) // 2, len(whole) - 40):
+            (tmp_path / f"cut.{name}").write_bytes(whole[:part])
+            with pytest.raises(ValueError, match=r"is not a (numpy archive|MATLAB file)|cannot read"):
+                gf.read_signal(tmp_path / f"cut.{name}", rate=1, unit="N")
+    with open(tmp_path / "array.npz", "wb") as file:
+        np.save(file, noise(9))
+    with pytest.raises(ValueError, match="is not a numpy archive"):
+        gf.read_signal(tmp_path / "array.npz")
     with pytest.raises(ValueError, match=r"cannot read .*No such file"):
         gf.read_signal(tmp_path / "missing.csv")
     np.savez(tmp_path / "o.npz", a=np.array([{}, 1], dtype=object), allow_pickle=True)
