@@ -55,8 +55,8 @@ def crest_factor_s4(values):
 
 def kurtosis(values):
     """Pearson's kurtosis, ``mean((x - mean)**4) / mean((x - mean)**2)**2`` (S4): 3 for Gaussian noise, 1.5 for a sine."""
-    y = values - np.mean(values)
-    return float(np.mean(y**4) / _spread(values) ** 4)
+    y = (values - np.mean(values)) / _spread(values)
+    return float(np.mean(y**4))
 
 
 def shape_factor(values):

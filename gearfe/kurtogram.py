@@ -166,7 +166,8 @@ def _excess(x, gaussian, floor):
 
 
 def _oscillation(signal):
+    """Values without their mean, the largest 1."""
     x = signal.values - signal.values.mean()
     if np.abs(x).max() <= 1e-12 * np.abs(signal.values).max():
         raise ValueError(f"{signal.name} is constant: it has no kurtosis")
-    return x
+    return x / np.abs(x).max()
