@@ -9,7 +9,7 @@ from gearfe import indicators as ind
 from gearfe.export import written
 
 PAGE = Path(__file__).parent / "centroid.md"
-RATE, SECONDS = 10_000.0, 10.0  # S0: 10 s, 100 000 steps
+RATE, SECONDS = 1000.0, 10.0  # S0: 10 s, which sets the distance of the bins
 F_M, F_FAULT, F_IMPACT = 280.0, 40.0, 2.0  # Hz; the articles print no frequency of their impacts
 SEVERITY = {"mild": 0.1, "moderate": 0.2, "severe": 0.4}  # amplitude of the fault sidebands, of the mesh line
 IMPACT = {"none": 0.0, "weak": 0.1, "strong": 0.3}  # amplitude of the first impact sidebands, of the mesh line
@@ -22,7 +22,7 @@ def family(severity, impact, lean):
     t = np.arange(round(RATE * SECONDS)) / RATE
     lines = {F_M: 1.0, F_M - F_FAULT: severity * (1 - lean), F_M + F_FAULT: severity * (1 + lean), F_FAULT: severity / 2}
     lines |= {F_M + k * F_IMPACT: impact / abs(k) for k in range(-5, 6) if k}
-    noise = 0.02 * np.random.default_rng(0).standard_normal(t.size)
+    noise = 0.006 * np.random.default_rng(0).standard_normal(t.size)
     return gf.Signal(noise + sum(a * np.cos(2 * np.pi * f * t + f) for f, a in lines.items()), RATE, "N")
 
 
@@ -67,9 +67,9 @@ def page():
         "# Sideband centroid SC",
         "",
         "S0: `sum(f E) / sum(E)`, f frequency, E amplitude squared [Hz]. S1, with the roles of f and E swapped: amplitude",
-        "weighted by frequency [here mN]. Both from 240 to 320 Hz (f_m 280, f_fault 40 Hz), Hann window, 10 s at 10 kHz.",
+        "weighted by frequency [here mN]. Both from 240 to 320 Hz (f_m 280, f_fault 40 Hz), Hann window, 10 s at 1 kHz.",
         "Synthetic: mesh line of 1 N; fault sidebands of 0.1, 0.2, 0.4 N (mean of both); impact sidebands 2 Hz apart, the first",
-        "0, 0.1, 0.3 N (assumed: the articles print neither rate nor size of their impacts); noise 0.02 N.",
+        "0, 0.1, 0.3 N (assumed: the articles print neither rate nor size of their impacts); noise 0.006 N.",
         "Rebuild: `python -m validation centroid`.",
         "",
         f"| sidebands | severity | {' | '.join(f'{form}, impacts {name}' for form in ('S0', 'S1') for name in IMPACT)} |",
