@@ -244,3 +244,52 @@ def _loaded_gear(gear, material, loads, refine):
         force = force + flank_load(mesh, tooth, pressure, np.array([0]), rolls[tooth].size - 1)
     moved = body.solve(force)[:, 0]
     return mesh, moved, body.stress(moved)
+
+
+def plot_spectra(spectra, lines=None, path=None, top=None):
+    """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
+
+    Parameters
+    ----------
+    spectra : dict of str to gearfe.signals.Spectrum
+    lines : dict of str to float, optional
+        See `gearfe.lines.expected_lines`.
+    path : path, optional
+    top : float, optional
+        Largest frequency or order; default 1.2 times the last line.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
+    rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    for axes, (name, found) in zip(rows, spectra.items(), strict=True):
+        axes.plot(found.frequency, found.values, linewidth=0.8)
+        axes.set_ylabel(f"{name} [{found.unit}]")
+        for value in (lines or {}).values():
+            axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
+    for name, value in (lines or {}).items():
+        rows[0].annotate(name, (value, 1), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom")
+    end = 1.2 * max(lines.values()) if lines and top is None else top
+    rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
+    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_phase(portrait, section=None, unit="m", path=None):
+    """Draw a phase portrait, `gearfe.portrait.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5, 4), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(*portrait, linewidth=0.4)
+    if section is not None:
+        axes.plot(*np.transpose(section), "k.", markersize=4)
+    axes.set_xlabel(f"displacement [{unit}]")
+    axes.set_ylabel(f"velocity [{unit}/s]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure

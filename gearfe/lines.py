@@ -1,0 +1,100 @@
+"""Lines of a spectrum: where a faulty gear shows, and how much is found there."""
+
+import math
+
+import numpy as np
+
+BINS = 2  # on either side of an expected frequency in which a line is looked for
+
+
+def expected_lines(mesh_frequency, fault_frequency=None, carrier_frequency=None, count=3, *, harmonics=1):
+    """Frequencies at which a faulty gear shows in a spectrum.
+
+    Where ``f_m`` is a multiple of ``f_fault`` (S0: 280 = 7 x 40 Hz, S4: 480 = 6 x 80 Hz), harmonics of the fault fall on
+    sidebands and both names have the same frequency.
+
+    Parameters
+    ----------
+    mesh_frequency : float
+        f_m [Hz]; of a planetary set ``z_ring f_carrier``.
+    fault_frequency : float, optional
+        f_fault [Hz]: how often the damaged tooth meshes; for one sun tooth ``planets f_m / z_sun``.
+    carrier_frequency : float, optional
+        f_carrier [Hz].
+    count : int
+        Sidebands on each side and harmonics of the fault.
+    harmonics : int
+        Of the mesh.
+
+    Returns
+    -------
+    dict of str to float
+        ``f_m``, ``2 f_m``, ``f_m - f_fault``, ``f_m + 2 f_fault``, ``f_fault``, ``f_m - f_carrier``, ... [Hz], those above 0.
+
+    Examples
+    --------
+    S0: sun 1000, carrier 200 rpm, z_sun 21, three planets.
+
+    >>> expected_lines(280.0, 40.0, count=1)
+    {'f_m': 280.0, 'f_m - f_fault': 240.0, 'f_m + f_fault': 320.0, 'f_fault': 40.0}
+    """
+    spacings = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
+    for name, value in {"f_m": mesh_frequency, **spacings}.items():
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"{name} = {value} Hz, but give a positive number")
+    if count < 0 or harmonics < 1:
+        raise ValueError(f"count = {count}, harmonics = {harmonics}: give count >= 0, harmonics >= 1")
+    lines = {}
+    for n in range(1, harmonics + 1):
+        mesh = _times(n, "f_m")
+        lines[mesh] = n * mesh_frequency
+        for name, spacing in spacings.items():
+            for k in range(1, count + 1 if spacing else 0):
+                lines[f"{mesh} - {_times(k, name)}"] = n * mesh_frequency - k * spacing
+                lines[f"{mesh} + {_times(k, name)}"] = n * mesh_frequency + k * spacing
+    for name, spacing in spacings.items():
+        lines |= {_times(k, name): k * spacing for k in range(1, count + 1 if spacing else 0)}
+    return {name: value for name, value in lines.items() if value > 0}
+
+
+def _times(n, name):
+    return name if n == 1 else f"{n} {name}"
+
+
+def find_lines(found, lines, tolerance=None):
+    """Largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
+
+    Parameters
+    ----------
+    found : Spectrum
+    lines : dict of str to float
+        See `expected_lines`.
+    tolerance : float, optional
+        How far from the expected frequency a line may be [Hz]; default two bins. A measured speed wanders: S1 finds 39.8 for
+        40 Hz.
+
+    Returns
+    -------
+    dict of str to (float, float)
+        Frequency and amplitude of the largest bin within the tolerance.
+
+    Raises
+    ------
+    ValueError
+        If a line lies outside the spectrum or the tolerance holds no bin.
+    """
+    tolerance = BINS * found.resolution if tolerance is None else tolerance
+    out = {}
+    for name, expected in lines.items():
+        if expected > found.frequency[-1] + 1e-6 * found.resolution:
+            raise ValueError(
+                f"line {name} at {expected:g} lies above {found.name}, which ends at {found.frequency[-1]:g} {found.axis}"
+            )
+        others = [other for other in lines.values() if abs(other - expected) > found.resolution]
+        low = max((other for other in others if other < expected), default=-math.inf)
+        high = min((other for other in others if other > expected), default=math.inf)
+        span = max(expected - tolerance, (low + expected) / 2), min(expected + tolerance, (expected + high) / 2)
+        frequency, values = found.within(*span)
+        top = int(np.argmax(values))
+        out[name] = float(frequency[top]), float(values[top])
+    return out
