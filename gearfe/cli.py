@@ -2,12 +2,14 @@
 
 import argparse
 import contextlib
+import os
 import sys
 import warnings
 
 
 def main(argv=None):
     """Run the command line; returns the exit code."""
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
     parser = argparse.ArgumentParser(
         prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods."
     )
@@ -158,7 +160,6 @@ def scenes(arguments):
 def info(arguments):
     """``gearfe info``."""
     import importlib.metadata
-    import os
     import platform
     import shutil
 

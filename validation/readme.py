@@ -7,7 +7,11 @@ import re
 import tempfile
 from pathlib import Path
 
-import gearfe as gf
+from . import machine  # first: it sets the number of threads
+
+import gearfe as gf  # isort: skip
+
+assert machine
 
 README = Path(__file__).parents[1] / "README.md"
 PROGRAM = re.compile(r"```python\n(.*?)```", re.S)

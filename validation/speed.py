@@ -100,9 +100,9 @@ def _page(rows, truth, per_phase, per_load):
         lines.append(f"| {bold}{name}{bold} | {size} | {seconds:.4f} | {100 * error.mean():.3f} % | {100 * error.max():.3f} % |")
     lines += [
         "",
-        "Bold: the default resolutions; `ritz` is the default method. That `ritz` settles 0.03 % away from the reference is mostly",
-        "a bias of the latter: its hat pressures are as wide as its own edges and miss about 0.5 % of the local coefficient at any",
-        "refinement; with hats twice as wide (`gearfe.fe.SPAN`) the two come together.",
+        "Bold: the default resolutions; `ritz` is the default method. That `ritz` settles 0.03 % away from the reference is",
+        "mostly a bias of the latter: its hat pressures are as wide as its own edges and miss about 0.5 % of the local",
+        "coefficient at any refinement; with hats twice as wide (`gearfe.fe.SPAN`) the two come together.",
         f"Each further phase of `ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms,",
         f"that is {1e3 * per_load / 64:.2f} ms per phase and load.",
         "",
