@@ -14,7 +14,8 @@ TABLES = reference.load()
 
 def rows(name):
     return [
-        pytest.param(row, TABLES[name], id=str({k: v for k, v in row.items() if k != "value"})) for row in TABLES[name]["rows"]
+        pytest.param(row, TABLES[name], id=str(row.get("name", {k: v for k, v in row.items() if k != "value"})))
+        for row in TABLES[name]["rows"]
     ]
 
 
@@ -51,6 +52,19 @@ def test_beam_code_with_its_conventions():
     got = reference.beam_code()
     for row in TABLES["beam_code"]["rows"]:
         assert_allclose(got[row["quantity"]], row["value"], rtol=TABLES["beam_code"]["tolerance"], err_msg=row["quantity"])
+
+
+@pytest.mark.parametrize(("row", "table"), rows("formulations"))
+def test_errors_of_the_textbook(row, table):
+    for zone, errors in zip(("single", "double"), reference.formulation(row, teeth=5), strict=True):
+        assert_allclose([errors.min(), errors.max()], row[zone], atol=table["tolerance"], err_msg=f"{zone}: {table['source']}")
+
+
+@pytest.mark.parametrize(("row", "table"), rows("load_trend"))
+def test_error_of_the_textbook_moves_with_the_load(row, table):
+    composed, whole = reference.load_trend(row["line_load"])
+    assert_allclose(composed, row["value"], atol=table["tolerance"], err_msg=table["source"])
+    assert 1.0 < whole - composed < 2.5, "the source's own truth is stiffer than the whole contact"
 
 
 def test_iso_stiffness():
