@@ -22,8 +22,8 @@ from .stiffness import _materials
 
 STEP = 0.4  # longest cell along the width [mm]
 FINEST = 1.5  # shortest, in Hertz half widths: a load finer than it is wide is no line
-MOST = 60  # Newton steps, the second half of them with exact contact problems
-SETTLED = 1e-9  # change of a cell's load in the last step, of the whole load
+MOST = 60  # steps, the second half of them with exact contact problems
+SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
 FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 
 
@@ -170,8 +170,8 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
     """Share a load over cells of contact lines that can push but not pull.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
-    (`halfspace.line_kernel`). Newton on its width and an active set together; if that does not settle, an exact contact problem
-    (`sharing.share`) in every Newton step.
+    (`halfspace.line_kernel`). The strips' widths follow from the loads of the step before (each step gains about a digit),
+    with an active set; if that does not settle, an exact contact problem (`sharing.share`) in every step.
 
     Parameters
     ----------
@@ -219,18 +219,15 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
     for attempt in range(MOST):
         carried = np.maximum(force, FLOOR * load)
         x = strip(half_width(carried / length, radius, modulus))
-        total, offset = matrix.copy(), gap.copy()
+        total = matrix.copy()
         for at in members:
-            local, slope = line_kernel(ends[0][at], ends[1][at], x[at])
-            total[np.ix_(at, at)] += kernel * local
-            total[at, at] += kernel * slope
-            offset[at] -= kernel * slope * carried[at]
+            total[np.ix_(at, at)] += kernel * line_kernel(ends[0][at], ends[1][at], x[at])
         if attempt < MOST // 2:
-            new, approach = _free(total, offset, load, active)
-            rests = total @ np.maximum(new, 0.0) + offset
+            new, approach = _free(total, gap, load, active)
+            rests = total @ np.maximum(new, 0.0) + gap
             wanted = np.where(active, new > 0, rests < approach * (1 - 1e-12))
         else:
-            new, approach = share(total, offset, load)
+            new, approach = share(total, gap, load)
             wanted = active = new > 0
         settled = (wanted == active).all() and np.abs(new - force).max() < SETTLED * load
         active, force = wanted, np.maximum(new, 0.0)
