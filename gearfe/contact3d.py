@@ -14,15 +14,16 @@ from scipy.linalg import cho_factor, cho_solve
 from geometry.pit import check_pits
 
 from .energy.halfspace import line_kernel, strip
-from .energy.ritz3d import flexibility3d
+from .energy.ritz3d import axial_degree, flexibility3d
 from .hertz import contact_modulus, half_width, peak_pressure
 from .lines3d import bands_of, cells_of, lines_of
 from .sharing import share
-from .stiffness import _materials
 
 STEP = 0.4  # longest cell along the width [mm]
 FINEST = 1.5  # shortest, in Hertz half widths: a load finer than it is wide is no line
 MOST = 60  # steps, the second half of them with exact contact problems
+WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
+SMOOTH = 8.0  # the width of the strip follows the line load's mean over so many half widths: it knows no sharper peaks
 SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
 FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 
@@ -33,7 +34,8 @@ class Contact3D:
 
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
     along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
-    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines.
+    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `error` (phases,) estimated
+    discretisation error of k [N/m], or None.
     """
 
     phase: np.ndarray
@@ -42,10 +44,24 @@ class Contact3D:
     order: np.ndarray
     load: np.ndarray
     cells: tuple
+    error: np.ndarray | None = None
 
 
 def pair_stiffness3d(
-    pair, force, material, phases=32, *, pits=((), ()), cracks=((), ()), face="helical", groove=0.0, step=STEP, **options
+    pair,
+    force,
+    material,
+    phases=32,
+    *,
+    pits=((), ()),
+    cracks=((), ()),
+    face="helical",
+    groove=0.0,
+    step=STEP,
+    order=3,
+    axial=None,
+    refine=1.0,
+    error=False,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -73,8 +89,11 @@ def pair_stiffness3d(
         Between the halves [mm].
     step : float
         Longest cell along the width [mm].
-    **options
-        `order`, `axial`, `refine` of `flexibility3d`.
+    order, axial, refine : int, int, float
+        Of `flexibility3d`.
+    error : bool
+        Estimate the discretisation error of every k: its difference from that of a section order less by 1 and an axial degree
+        less by 2, or the mean of those over the phases if that is larger.
 
     Returns
     -------
@@ -92,18 +111,30 @@ def pair_stiffness3d(
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
-    materials = _materials(material)
+    materials = material if isinstance(material, tuple) else (material, material)
     for gear, found in zip((pair.gear_1, pair.gear_2), pits, strict=True):
         check_pits(gear, found)
     bands = bands_of(pair, face, groove)
+    lines = [lines_of(pair, p, pits, bands, abs(pair.gear_1.beta_b)) for p in phase]
+
+    def solve(order, less):
+        bodies = []
+        for (gear, offset), own, found in zip(_gears(pair, face, groove), materials, cracks, strict=True):
+            degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
+            options = {"neighbours": max(1, _reach(lines)), "order": order, "axial": degree, "refine": refine}
+            bodies.append((flexibility3d(gear, own, tuple(found), **options), offset))
+        return _solved(pair, force, materials, phase, lines, bodies, bands, step)
+
+    solved = solve(order, 0)
+    if error:
+        away = np.abs(solve(order - 1, 2).k - solved.k)
+        solved = replace(solved, error=np.maximum(away, away.mean()))
+    return solved
+
+
+def _solved(pair, force, materials, phase, lines, bodies, bands, step):
     beta_b = abs(pair.gear_1.beta_b)
-    lines = [lines_of(pair, p, pits, bands, beta_b) for p in phase]
     orders = np.array(sorted({order for found in lines for _, order, _, _ in found}))
-    gears = _gears(pair, face, groove)
-    bodies = [
-        (flexibility3d(gear, own, tuple(found), neighbours=max(1, _reach(lines)), **options), offset)
-        for (gear, offset), own, found in zip(gears, materials, cracks, strict=True)
-    ]
     approach, load, cells = np.zeros(phase.size), np.zeros((phase.size, orders.size)), []
     for i, found in enumerate(lines):
         finest = FINEST * _mean_half_width(pair, found, force, materials, beta_b)
@@ -170,8 +201,9 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
     """Share a load over cells of contact lines that can push but not pull.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
-    (`halfspace.line_kernel`). The strips' widths follow from the loads of the step before (each step gains about a digit),
-    with an active set; if that does not settle, an exact contact problem (`sharing.share`) in every step.
+    (`halfspace.line_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the
+    load at an end of contact converges with the cells (each step gains a digit or more; what is left after `WIDTHS` steps is
+    let be), with an active set; if that does not settle, an exact contact problem (`sharing.share`) in every step.
 
     Parameters
     ----------
@@ -215,10 +247,12 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
     length = ends[1] - ends[0]
     members = [np.flatnonzero(line == number) for number in np.unique(line)]
     force = load * length / length.sum()
-    active = np.ones(gap.size, dtype=bool)
+    mean = _smoother(ends, line, SMOOTH * half_width(load / length.sum(), radius.mean(), modulus))
+    active, x = np.ones(gap.size, dtype=bool), np.ones(gap.size)
     for attempt in range(MOST):
-        carried = np.maximum(force, FLOOR * load)
-        x = strip(half_width(carried / length, radius, modulus))
+        if attempt < WIDTHS:
+            wide = strip(half_width(np.maximum(mean @ force, FLOOR * load / length), radius, modulus))
+            x = wide if attempt < WIDTHS // 2 else np.sqrt(x * wide)
         total = matrix.copy()
         for at in members:
             total[np.ix_(at, at)] += kernel * line_kernel(ends[0][at], ends[1][at], x[at])
@@ -236,6 +270,14 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
         if not active.any():
             active[:] = True
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
+
+
+def _smoother(ends, line, reach):
+    """Matrix ``(n, n)`` from the cells' forces to mean line loads over `reach` [mm] on either side, within their lines."""
+    middle = (ends[0] + ends[1]) / 2
+    over = np.minimum(ends[1], middle[:, None] + reach) - np.maximum(ends[0], middle[:, None] - reach)
+    over = np.where(line[:, None] == line, np.maximum(over, 0.0), 0.0)
+    return over / over.sum(axis=1, keepdims=True) / (ends[1] - ends[0])
 
 
 def _free(total, offset, load, active):

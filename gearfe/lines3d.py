@@ -5,9 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.outline import spaced
 from geometry.pit import crossing
 
 from .energy.slices import FACES
+
+END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
+GROWTH = 0.6  # of their length per length
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,11 +95,12 @@ def _left(pair, order, roll, slope, pits, band, limits):
 
 
 def cells_of(pair, found, bands, slope, step):
-    """`Cells` of the lines of one phase."""
+    """`Cells` of the lines of one phase, at most `step` [mm] along the width."""
     rows = []
     for half, order, roll, left in found:
         for a, b in left:
-            edge = np.linspace(a, b, max(1, math.ceil((b - a) / step - 1e-9)) + 1)
+            size = END * step
+            edge = spaced(a, b, step, [(a, a, size), (b, b, size)], 1, GROWTH)
             middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)
             first, last = bands[half]
             z = first + math.copysign(1, last - first) * middle

@@ -25,7 +25,7 @@ HAT = 0.4  # half their width [m_n]
 OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.sector.SIZES`
-SIZES = {"flank": 0.35, "corner": 0.1, "kink": 0.2, "fillet": 0.5, "root": 1.0, "side": 0.7, "crack": 0.5, "crack tip": 0.03}
+SIZES = {"flank": 0.28, "corner": 0.07, "kink": 0.2, "fillet": 0.4, "root": 1.0, "side": 0.7, "crack": 0.5, "crack tip": 0.01}
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +115,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     order : int
         Of the polynomials in the section, 2 to 8.
     axial : int, optional
-        Degree of the polynomials along the width, 0 or at least 3; default 0.8 per normal module of width, at least 8. 0 on a
-        spur gear is plane strain.
+        Degree of the polynomials along the width, 0 or at least 3; default `axial_degree`. 0 on a spur gear is plane strain.
     refine : float
         Divides the edge lengths of the triangles.
 
@@ -132,7 +131,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     width = float(gear.b if width is None else width)
     if not (math.isfinite(width) and width > 0):
         raise ValueError(f"width = {width} mm, but a gear needs a positive face width")
-    axial = max(8, math.ceil(0.8 * width / gear.m_n)) if axial is None else axial
+    axial = axial_degree(width, gear.m_n) if axial is None else axial
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
@@ -148,6 +147,11 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     for tooth in {crack.tooth % gear.z for crack in cracks}:
         panels[tooth] = _panel(gear, material, tuple(c for c in cracks if c.tooth % gear.z == tooth), *options)
     return _joined(gear, material, panels, one, *options, healthy)
+
+
+def axial_degree(width, m_n):
+    """Degree along a `width` [mm] that goes with cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
+    return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
 @lru_cache(maxsize=16)
