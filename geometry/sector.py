@@ -69,7 +69,7 @@ class Sector:
         return out
 
 
-def sector(gear, cracks=(), *, refine=1.0):
+def sector(gear, cracks=(), *, refine=1.0, sizes=None):
     """Sector of `gear` with the cracks of its tooth.
 
     Parameters
@@ -79,6 +79,8 @@ def sector(gear, cracks=(), *, refine=1.0):
         All of one tooth.
     refine : float
         Divides the edge lengths.
+    sizes : dict, optional
+        Edge lengths [m_n] in place of those of `SIZES`.
 
     Returns
     -------
@@ -94,15 +96,15 @@ def sector(gear, cracks=(), *, refine=1.0):
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
     for finer in (1.0, 1.4, 2.0, 2.8):
-        made = _attempt(gear, cracks, refine, finer)
+        made = _attempt(gear, cracks, SIZES | (sizes or {}), refine, finer)
         if made is not None:
             return made
     raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
 
 
-def _attempt(gear, cracks, refine, finer):
+def _attempt(gear, cracks, sizes, refine, finer):
     """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
-    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in SIZES.items()}
+    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
     size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
     pieces = _pieces(gear, size, cracks)
     first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])

@@ -33,9 +33,9 @@ def table(order):
     Returns
     -------
     namespace
-        `count` nodes, `inside` how many of them lie inside; quadrature `weight` (q,); at its points `slope` (2, count, q) by
-        the reference coordinates, the linear map's `corner` (3, q), and the blended bulges `bulge` (3, q, BULGE) and their
-        derivatives `bulge_slope` (2, 3, q, BULGE) by the values at `bulge_points`.
+        `count` nodes, `inside` how many of them lie inside; quadrature `weight` (q,); at its points `value` (count, q), `slope`
+        (2, count, q) by the reference coordinates, the linear map's `corner` (3, q), and the blended bulges `bulge`
+        (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by the values at `bulge_points`.
     """
     line = (lobatto(order) + 1) / 2
     ends = np.eye(3)
@@ -49,7 +49,7 @@ def table(order):
     y = np.repeat(gauss, gauss.size)
     weight = np.outer((1 - gauss) * gauss_weight, gauss_weight).ravel()
     change = np.linalg.inv(_modes(nodes[1], nodes[2], order)[0])
-    slope = np.array([change.T @ part.T for part in _modes(x, y, order)[1:]])
+    value, *slope = (change.T @ part.T for part in _modes(x, y, order))
     corner = np.array([1 - x - y, x, y])
     bulge_points = legendre.leggauss(BULGE)[0]
     to_modes = np.linalg.inv(legendre.legvander(bulge_points, BULGE - 1))
@@ -57,12 +57,12 @@ def table(order):
     gradient = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])  # of the barycentric coordinates
     for a, b in ENDS:
         s = corner[b] - corner[a]
-        value = legendre.legvander(s, BULGE - 1) @ to_modes
+        height = legendre.legvander(s, BULGE - 1) @ to_modes
         derivative = legendre.legvander(s, BULGE - 2) @ legendre.legder(np.eye(BULGE)) @ to_modes
         product = 4 * corner[a] * corner[b]
-        bulge.append(product[:, None] * value)
+        bulge.append(product[:, None] * height)
         along = [
-            4 * (gradient[a, d] * corner[b] + gradient[b, d] * corner[a])[:, None] * value
+            4 * (gradient[a, d] * corner[b] + gradient[b, d] * corner[a])[:, None] * height
             + (product * (gradient[b, d] - gradient[a, d]))[:, None] * derivative
             for d in range(2)
         ]
@@ -71,7 +71,8 @@ def table(order):
         count=nodes.shape[1],
         inside=inside.shape[1],
         weight=weight,
-        slope=slope,
+        value=value,
+        slope=np.array(slope),
         corner=corner,
         corner_slope=gradient,
         bulge=np.array(bulge),

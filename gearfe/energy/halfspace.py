@@ -1,0 +1,146 @@
+"""The half-space under patches and lines of load (Boussinesq): the singular part of a loaded flank in three dimensions."""
+
+import math
+
+import numpy as np
+from numpy.polynomial import legendre
+
+FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
+
+
+def half_space(material):
+    """Coefficient k [mm**2 / N]: a force F moves the surface at distance R along itself by ``k F / R`` (Boussinesq).
+
+    ``k = (1 - nu**2) / (pi E)`` (K. L. Johnson, Contact Mechanics, 1985, eq. 3.22b).
+    """
+    return (1 - material.nu**2) / (math.pi * material.E)
+
+
+def modes(z, width, degree):
+    """Legendre polynomials ``(n, degree + 1)`` at `z` [mm], orthonormal over ``0 <= z <= width`` [1/sqrt(mm)]."""
+    values = legendre.legvander(2 * np.asarray(z, dtype=float) / width - 1, degree)
+    return values * np.sqrt((2 * np.arange(degree + 1) + 1) / width)
+
+
+def fourth_integral(x, c):
+    """Fourth antiderivative of ``1 / sqrt(x**2 + c**2)`` over x, c > 0."""
+    r = np.hypot(x, c)
+    return (x**3 / 6 - c**2 * x / 4) * np.arcsinh(x / c) - 11 / 36 * r**3 + 5 / 12 * c**2 * r
+
+
+def _masses(knots):
+    start, top, stop = knots
+    height = 2 / (stop - start)
+    return (start, height / (top - start)), (top, -height / (top - start) - height / (stop - top)), (stop, height / (stop - top))
+
+
+def hat_points(knots, count):
+    """Gauss points and weights ``(n, 2 * count)`` of hats of unit area on `knots` ``(3, n)``."""
+    gauss, weight = legendre.leggauss(count)
+    start, top, stop = knots[:, :, None]
+    up = (1 + gauss) / 2
+    height = 2 / (stop - start)
+    points = np.hstack([start + (top - start) * up, stop - (stop - top) * up])
+    return points, np.hstack([(top - start) * height * up * weight / 2, (stop - top) * height * up * weight / 2])
+
+
+def hat_distance(knots, shift, c):
+    """Mean of ``1 / R`` over pairs of hats of unit area, ``R**2 = (s - s' + shift)**2 + c**2``.
+
+    A hat has three point masses as second derivative: the double integral is nine values of `fourth_integral`; where c is
+    large against the hats these would cancel, and Gauss points do.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (3, n)
+        Start, top and end of the hats [mm].
+    shift : ndarray, shape (n, n, t)
+        [mm].
+    c : ndarray, shape (t,)
+        Positive [mm].
+
+    Returns
+    -------
+    ndarray, shape (n, n, t)
+        [1/mm].
+    """
+    out = np.zeros(shift.shape)
+    far = c > FAR * (knots[2] - knots[0]).max()
+    near = ~far
+    for p, mass_p in _masses(knots):
+        for q, mass_q in _masses(knots):
+            x = (p[:, None] - q)[..., None] + shift[..., near]
+            out[..., near] += (mass_p[:, None] * mass_q)[..., None] * fourth_integral(x, c[near])
+    points, weight = hat_points(knots, 4)
+    apart = points[:, None, :, None] - points[None, :, None, :]
+    both = weight[:, None, :, None] * weight[None, :, None, :]
+    for k in np.flatnonzero(far):
+        out[..., k] = (both / np.hypot(apart + shift[..., k, None, None], c[k])).sum(axis=(2, 3))
+    return out
+
+
+def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
+    """Mean of ``1 / R`` over patches: hats across the flank times orthonormal polynomials along the width.
+
+    With t = z - z' the flat distance is ``R**2 = (s - s' - slope t)**2 + (stretch t)**2``: the lines of contact of an involute
+    helicoid, which is developable, are the lines ``ds = slope dz``, and `stretch` is their length per width.
+
+    Parameters
+    ----------
+    knots : ndarray, shape (3, n)
+        Start, top and end of the hats along the profile arc [mm].
+    width : float
+        [mm].
+    degree : int
+        Of the polynomials, see `modes`.
+    slope : ndarray, shape (n, n), or float
+        [-].
+    stretch : float
+        ``1 / cos(beta_b)``.
+
+    Returns
+    -------
+    ndarray, shape (n, degree + 1, n, degree + 1)
+    """
+    fine = min((knots[2] - knots[0]).min(), width) * 1e-9  # the kernel rises like the logarithm of t
+    ends = np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, 61))
+    gauss, weight = legendre.leggauss(16)
+    t = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * gauss).ravel()
+    weight = (np.diff(ends)[:, None] / 2 * weight).ravel()
+    gauss, inner = legendre.leggauss(degree + 1)
+    left = width - t
+    z = left[:, None] * (1 + gauss) / 2
+    ahead = modes(z + t[:, None], width, degree)
+    behind = modes(z, width, degree)
+    overlap = np.einsum("tg,tga,tgb->tab", left[:, None] / 2 * inner * weight[:, None], ahead, behind, optimize=True)
+    slope = np.broadcast_to(slope, (knots.shape[1],) * 2)[..., None]
+    out = np.einsum("ijt,tab->iajb", hat_distance(knots, -slope * t, stretch * t), overlap, optimize=True)
+    return out + np.einsum("ijt,tab->ibja", hat_distance(knots, slope * t, stretch * t), overlap, optimize=True)
+
+
+def strip(half_width):
+    """Distance x [mm] at which a line acts as Hertz's strip does on its middle: ``-ln x = ln(2 / a) + 1/2``, as in the plane."""
+    return half_width / 2 * math.exp(-0.5)
+
+
+def line_kernel(start, stop, x):
+    """Mean of ``1 / sqrt((l - l')**2 + (x**2 + x'**2) / 2)`` over pairs of cells of one line ``(n, n)`` [1/mm].
+
+    It is positive definite whatever the x: a sum of ``exp(-t (l - l')**2) exp(-t x**2 / 2) exp(-t x'**2 / 2)`` over t > 0.
+
+    Parameters
+    ----------
+    start, stop : ndarray, shape (n,)
+        Ends of the cells [mm].
+    x : ndarray, shape (n,)
+        Of `strip` [mm].
+    """
+    least = np.sqrt((x[:, None] ** 2 + x**2) / 2)
+
+    def twice(ends, others):
+        apart = ends[:, None] - others
+        return apart * np.arcsinh(apart / least) - np.hypot(apart, least)
+
+    across = twice(stop, start)
+    kernel = across + across.T - twice(start, start) - twice(stop, stop)
+    return kernel / np.outer(stop - start, stop - start)
