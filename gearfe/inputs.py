@@ -13,10 +13,14 @@ from geometry.pit import Pit
 
 from .energy import published, textbook
 from .energy.plain_sum import plain_sum
+from .energy.slices import FACES
 from .material import Material
 
 CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
-METHODS = ("auto", "ritz", "fe", "coupled", *CLOSED)
+METHODS = ("auto", "ritz", "ritz3d", "fe", "coupled", *CLOSED)
+NO_VARIANTS = (
+    *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
+)
 
 
 def two_materials(material):
@@ -43,24 +47,41 @@ def phase_array(phases, span, pair):
     return phases
 
 
-def refuse(method, pair, cracks, pits, teeth, variants):
+def choose(method, pair, pits, face, teeth):
+    """The method that ``auto`` stands for, and why."""
+    if method != "auto":
+        return method, "asked for"
+    if teeth is not None:
+        return "fe", "teeth are left out"
+    if any(pits):
+        return "ritz3d", "pits change along the width"
+    if face in ("helical", "herringbone") or (face is None and pair.gear_1.beta):
+        return "ritz3d", "contact lines run across helical teeth"
+    return "ritz", "spur gears, nothing changes along the width: plane strain"
+
+
+def refuse(method, pair, cracks, pits, teeth, variants, face):
     """Raise ValueError for what a method does not model."""
+    if face not in (None, *FACES):
+        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
+    if method in ("ritz", "fe", "coupled") and face not in (None, "spur"):
+        raise ValueError(
+            f"face = {face!r} with method = {method!r}, a transverse section: use method = 'ritz3d' or a closed form"
+        )
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
     if ring and (method == "coupled" or (method in CLOSED and (variants or {}).get("foundation") != "none")):
         raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")
     if damaged and method == "coupled":
         raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
-    if any(pits) and method not in CLOSED:
-        raise ValueError(f"pits with method = {method!r}: in two dimensions only 'textbook' and 'published' model them")
+    if any(pits) and method not in (*CLOSED, "ritz3d"):
+        raise ValueError(f"pits with method = {method!r}, a transverse section: use 'ritz3d', 'textbook' or 'published'")
     if teeth is not None and method != "fe":
         raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
     if variants and method not in CLOSED:
         raise ValueError(f"variants = {variants!r} with method = {method!r}: only {' and '.join(CLOSED)} have variants")
     if variants:
         known = [*signature(plain_sum).parameters, *signature(CLOSED[method].components).parameters]
-        known = sorted(
-            set(known) - {"pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants"}
-        )
+        known = sorted(set(known) - set(NO_VARIANTS))
         for name in variants:
             if name not in known:
                 raise ValueError(f"variants: {name!r} is none of method = {method!r}; it has {', '.join(known)}")

@@ -185,7 +185,7 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0):
     import pyvista
 
     pair, materials = scene_pair.pair, scene_pair.materials
-    curve = mesh_stiffness(pair, scene_pair.force, materials, phases=[phase], refine=refine)
+    curve = mesh_stiffness(pair, scene_pair.force, materials, method="ritz", phases=[phase])
     found = pair.contacts([phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]

@@ -17,8 +17,9 @@ from .contact import Mesh
 from .curve import StiffnessCurve
 from .energy import coupled, ritz
 from .energy.plain_sum import plain_sum
-from .inputs import CLOSED, METHODS, by_gear, phase_array, refuse, two_materials, warn_if_unseen
+from .inputs import CLOSED, METHODS, by_gear, choose, phase_array, refuse, two_materials, warn_if_unseen
 from .material import check_state
+from .wide import wide_curve
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
@@ -39,14 +40,15 @@ def mesh_stiffness(
     order=4,
     teeth=None,
     variants=None,
+    face=None,
+    groove=0.0,
     error=False,
     cache=True,
 ):
     """Mesh stiffness of a gear pair over one mesh cycle.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
-    length on it, bores held. Spur gears; of helical gears the transverse section is taken (as a spur gear of the same
-    width).
+    length on it, bores held.
 
     Parameters
     ----------
@@ -55,20 +57,23 @@ def mesh_stiffness(
         Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
-    method : {"auto", "ritz", "fe", "coupled", "textbook", "published"}
-        ``ritz`` (and ``auto``): the converged energy model, milliseconds (`gearfe.energy.ritz`). ``fe``: finite elements of
-        whole gears, the independent reference (`gearfe.fe`). ``coupled``: closed forms repaired by known means, external
-        healthy gears (`gearfe.energy.coupled`). All three with line contact, neighbour coupling and load sharing.
-        ``textbook``, ``published``: beam energies and a plain sum of the pairs (`gearfe.energy.plain_sum`).
+    method : {"auto", "ritz", "ritz3d", "fe", "coupled", "textbook", "published"}
+        ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz`). ``ritz3d``: the same
+        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact, contact on the
+        path of contact only (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
+        ``meta["why"]`` says why. ``fe``: finite elements of whole sections, the independent reference (`gearfe.fe`).
+        ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.coupled`). All with line
+        contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
+        (`gearfe.energy.plain_sum`).
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves.
     span : {"cycle", "tooth"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
         after it (where the damaged tooth is).
     damage : dict, optional
-        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: ``ritz``, ``fe`` and the plain
-        sums; pits: the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses together are kept apart;
-        ``meta["crack_closed_phases"]`` says where.
+        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: ``ritz``, ``ritz3d``, ``fe``
+        and the plain sums; pits: ``ritz3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses
+        together are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (``ritz`` and ``fe``;
         the closed forms know no contact there).
@@ -82,7 +87,12 @@ def mesh_stiffness(
         For ``fe``: only so many teeth on a plain rim; default all.
     variants : dict, optional
         For ``textbook`` and ``published``: options of `gearfe.energy.plain_sum.plain_sum` and of the formulas' ``components``
-        (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``face``, ``groove``, ``lost``).
+        (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
+    face : {"spur", "helical", "herringbone"}, optional
+        For ``ritz3d`` and the plain sums: how the teeth run. Default: ``helical`` for gears with a helix angle in ``ritz3d``,
+        otherwise ``spur`` (of helical gears the transverse section, as a spur gear of the same width).
+    groove : float
+        Width of a herringbone pair's relief groove [mm], part of b.
     error : bool
         For ``ritz`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
     cache : bool
@@ -113,17 +123,20 @@ def mesh_stiffness(
     check_state(state)
     phase = phase_array(phases, span, pair)
     cracks, pits = by_gear(pair, damage)
-    if method == "auto":
-        method = "ritz" if teeth is None else "fe"
-    refuse(method, pair, cracks, pits, teeth, variants)
+    method, why = choose(method, pair, pits, face, teeth)
+    refuse(method, pair, cracks, pits, teeth, variants, face)
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
+        options |= {"face": face or "spur", "groove": groove}
         solve, details = plain_sum(pair, materials, phase, CLOSED[method], cracks=cracks, pits=pits, **options)
         details["outside"] = [asdict(v) for v in details["outside"]]
     elif method == "coupled":
         options = {"state": state}
         solve, details = _coupled(pair, materials, phase, state)
+    elif method == "ritz3d":
+        options = {"face": face or ("helical" if pair.gear_1.beta else "spur"), "groove": groove, "refine": float(refine)}
+        solve, details = None, {"extended": False}
     else:
         options = {"extended": bool(extended), **numeric}
         case = (pair, materials, phase, extended, cracks, method, cache)
@@ -133,6 +146,11 @@ def mesh_stiffness(
             name: [asdict(replace(d, tooth=sense * d.tooth)) for found in (cracks, pits) for d in found[i]]  # numbered by pair
             for i, (name, sense) in enumerate((("pinion", 1), ("wheel", -1)))
         }
+    options["why"] = why
+    if method == "ritz3d":
+        meta = _meta(pair, 0.0, materials, method, options | details)
+        curves = [wide_curve(pair, value, materials, phase, cracks, pits, meta, error) for value in forces.tolist()]
+        return curves if np.ndim(force) else curves[0]
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()
     ]
