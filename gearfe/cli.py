@@ -16,7 +16,9 @@ def main(argv=None):
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
-    verb.add_argument("--method", default="ritz", help="ritz, fe, coupled, textbook or published (default: ritz)")
+    verb.add_argument(
+        "--method", default="auto", help="ritz, ritz3d, fe, coupled, textbook or published (default: ritz or ritz3d)"
+    )
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
     verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (ritz, fe)")
@@ -58,6 +60,8 @@ def _verb(verbs, name, run, text):
 def _scene_arguments(verb, *, phases=True):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
     verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
+    if phases:
+        verb.add_argument("--case", metavar="NAME", help="case of damage (see 'gearfe scenes'; default: healthy)")
     verb.add_argument(
         "--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)"
     )
@@ -99,11 +103,16 @@ def stiffness(arguments):
     force = chosen.force if arguments.force is None else arguments.force
     _print_scene(scene)
     with _working(f"stiffness by {arguments.method}"):
+        run = chosen.case(arguments.case) | {"force": force, "span": "tooth" if arguments.case else "cycle"}
+        if arguments.method in ("ritz", "fe", "coupled"):
+            run["face"] = None
         curve = mesh_stiffness(
-            chosen.pair, force, chosen.materials, method=arguments.method, phases=arguments.phases,
+            **run, method=arguments.method, phases=arguments.phases,
             extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error,
         )  # fmt: skip
-    print(f"{arguments.method}, {force:g} N along the line of action, width {curve.meta['width_mm']:g} mm:")
+    print(
+        f"{curve.meta['method']} ({curve.meta['why']}), {force:g} N along the line of action, width {curve.meta['width_mm']:g} mm:"
+    )
     doubt = curve.zone_errors()
     for zone, value in curve.zones().items():
         print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))
@@ -123,11 +132,12 @@ def compare(arguments):
     scene = load_scene(arguments.scene)
     _print_scene(scene)
     with _working("finite elements and energy methods"):
-        result = run(scene, arguments.pair, models=arguments.model, phases=arguments.phases, refine=arguments.refine)
+        options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
+        result = run(scene, arguments.pair, case=arguments.case, **options)
     meta = result.reference.meta
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
     print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")
-    print("errors are against fe; the estimate is fe's own discretisation error\n")
+    print(f"errors are against {meta['method']}; the estimate is its own discretisation error\n")
     print(result.table())
     if arguments.plot:
         from .render import plot_curves
@@ -153,7 +163,8 @@ def scenes(arguments):
 
     for name in scene_names():
         scene = load_scene(name)
-        print(f"{name}: pairs {', '.join(scene.pairs)}")
+        cases = {case for pair in scene.pairs.values() for case in pair.damage}
+        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
         _print_scene(scene)
 
 

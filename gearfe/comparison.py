@@ -3,11 +3,12 @@
 import time
 from dataclasses import dataclass
 
+from geometry.pit import Pit
+
 from .own_model import own_curve, own_models
 from .stiffness import mesh_stiffness
 
-FORMULATIONS = ("ritz", "coupled", "textbook", "published")
-RING = ("ritz",)  # those that know rings
+FORMULATIONS = ("ritz", "coupled", "textbook", "published")  # of spur gears
 ZONES = ("single", "double", "triple", "mean", "max")
 
 
@@ -54,41 +55,54 @@ class Comparison:
         return "\n".join(lines)
 
 
-def compare(scene, pair=None, *, models=(), phases=64, refine=1.0):
-    """Compare every built-in formulation, and models of your own, with finite elements on one pair of `scene`.
+def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
+    """Compare every formulation that models it with the reference, on one pair of `scene`, healthy or damaged.
 
-    Of ring pairs there are no built-in formulations.
+    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`.
 
     Parameters
     ----------
     scene : Scene
     pair : str, optional
         Name of the pair; default the first.
+    case : str, optional
+        Name of a case of damage: the phases then are those of the damaged tooth's whole engagement.
     models : sequence or dict of str to model
         Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair, or files
         with stated units (see `gearfe.own_model` and `gearfe.model_file.read_model`).
     phases : int or array
         As in `mesh_stiffness`.
     refine : float
-        Resolution of the finite elements.
+        Resolution of the reference.
 
     Returns
     -------
     Comparison
     """
     chosen = scene.pair(pair)
+    methods = _methods(chosen, case)
     own = own_models(models, taken=("fe", *FORMULATIONS))
-    case = {"pair": chosen.pair, "force": chosen.force, "material": chosen.materials, "phases": phases}
-    mesh_stiffness(**(case | {"phases": 1}))  # imports what the methods load lazily, so that the seconds are those of the work
+    run = chosen.case(case) | {"phases": phases, "span": "tooth" if case else "cycle"}
+    mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
     curves, seconds = {}, {}
-    for method in ("fe", *(RING if chosen.pair.gear_2.internal else FORMULATIONS)):
+    for method in methods:
         started = time.perf_counter()
-        options = {"refine": refine} if method == "fe" else {}
-        curves[method] = mesh_stiffness(**case, method=method, cache=False, **options)
+        options = {"refine": refine} if method == methods[0] else {}
+        face = None if method in ("fe", "ritz", "coupled") else chosen.face
+        curves[method] = mesh_stiffness(**(run | {"face": face}), method=method, cache=False, **options)
         seconds[method] = time.perf_counter() - started
-    curves["fe"] = mesh_stiffness(**case, method="fe", refine=refine, error=True)
+    curves[methods[0]] = mesh_stiffness(**run, method=methods[0], refine=refine, error=True)
     for name, model in own.items():
         started = time.perf_counter()
-        curves[name] = own_curve(name, model, chosen.pair, curves["fe"])
+        curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
     return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
+
+
+def _methods(chosen, case):
+    """Reference and formulations for a pair of a scene."""
+    damage = [one for found in chosen.case(case).get("damage", {}).values() for one in found]
+    closed = () if chosen.pair.gear_2.internal else ("textbook", "published")
+    if chosen.face in ("helical", "herringbone") or any(isinstance(one, Pit) for one in damage):
+        return ("ritz3d", *closed)
+    return ("fe", "ritz", *(("coupled",) if closed and not damage else ()), *closed)

@@ -2,17 +2,20 @@
 
 import math
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
 
+from geometry.damage import Crack
 from geometry.gear import Gear
 from geometry.pair import GearPair
+from geometry.pit import pit_row
 
 from .material import Material
 
 REQUIRED = object()
 NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
+TWO, TRUTH = "two numbers", "true or false"
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
 TABLES = {
     "material": {"E_MPa": (NUMBER, REQUIRED), "nu": (NUMBER, REQUIRED)},
@@ -31,18 +34,68 @@ TABLES = {
         "dedendum": (NUMBER, 1.25),
         "tip_radius": (NUMBER, 0.38),
     },
-    "pair": {"gear_1": (TEXT, REQUIRED), "gear_2": (TEXT, REQUIRED), "force_N": (NUMBER, REQUIRED), "a_mm": (NUMBER, None)},
+    "pair": {
+        "gear_1": (TEXT, REQUIRED),
+        "gear_2": (TEXT, REQUIRED),
+        "force_N": (NUMBER, REQUIRED),
+        "a_mm": (NUMBER, None),
+        "face": (TEXT, None),
+        "groove_mm": (NUMBER, 0.0),
+    },
+}
+DAMAGE = {
+    "crack": {
+        "case": (TEXT, REQUIRED),
+        "gear": (TEXT, REQUIRED),
+        "level": (NUMBER, None),
+        "length_mm": (NUMBER, None),
+        "angle_deg": (NUMBER, 45.0),
+        "start": (TEXT, "30deg"),
+        "turning": (TRUTH, False),
+        "tooth": (WHOLE, 0),
+    },
+    "pits": {
+        "case": (TEXT, REQUIRED),
+        "gear": (TEXT, REQUIRED),
+        "radius_mm": (NUMBER, REQUIRED),
+        "count": (WHOLE, 1),
+        "first_mm": (NUMBER, REQUIRED),
+        "last_mm": (NUMBER, None),
+        "axes_mm": (TWO, REQUIRED),
+        "depth_mm": (NUMBER, REQUIRED),
+        "angle_deg": (NUMBER, 0.0),
+        "tooth": (WHOLE, 0),
+    },
 }
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED)}
 
 
 @dataclass(frozen=True, slots=True)
 class ScenePair:
-    """A gear pair of a scene with its materials and its force along the line of action [N]."""
+    """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
+
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage.
+    """
 
     pair: GearPair
     materials: tuple
     force: float
+    face: str | None = None
+    groove: float = 0.0
+    damage: dict = field(default_factory=dict)
+
+    def case(self, name=None):
+        """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case of this pair.
+        """
+        if name is not None and name not in self.damage:
+            raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
+        out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
+        return out if name is None else out | {"damage": self.damage[name]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +153,8 @@ def load_scene(name_or_path):
 
 def _scene(file, data):
     tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
-    top = _table(file, "top level", data, TOP, extra=(*TABLES, "assumption"))
+    damage = {kind: data.pop(kind, []) for kind in DAMAGE}
+    top = _table(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "assumption"))
     for name in ("gear", "pair", "material"):
         if not isinstance(tables[name], dict) or not tables[name]:
             raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
@@ -125,9 +179,38 @@ def _scene(file, data):
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
         if not row["force_N"] > 0:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
-        pairs[name] = ScenePair(made, used, float(row["force_N"]))
+        found = _cases(file, damage, gears, row)
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
     notes = tuple(_table(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
     return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]))
+
+
+def _cases(file, damage, gears, pair):
+    """Damage of a pair by case, from the scene's [[crack]] and [[pits]] tables."""
+    out = {}
+    for kind, tables in damage.items():
+        if not isinstance(tables, list):
+            raise ValueError(f"{file}: damage is written as [[{kind}]] tables")
+        for i, table in enumerate(tables):
+            where = f"{kind} {i + 1}"
+            row = _table(file, where, table, DAMAGE[kind])
+            _known(file, where, "gear", row["gear"], gears, "gear")
+            made = _made(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
+            for side, key in (("pinion", "gear_1"), ("wheel", "gear_2")):
+                if pair[key] == row["gear"]:
+                    out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
+    return out
+
+
+def _crack(row):
+    numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
+    return [Crack(**numbers, **{key: row[key] for key in ("start", "turning", "tooth")})]
+
+
+def _pits(row):
+    numbers = {"radius": row["radius_mm"], "axes": tuple(row["axes_mm"]), "depth": row["depth_mm"], "tooth": row["tooth"]}
+    last = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
+    return list(pit_row(row["count"], row["first_mm"], last, angle=math.radians(row["angle_deg"]), **numbers))
 
 
 def _gear(row):
@@ -168,6 +251,10 @@ def _unit(key):
 def _fits(value, kind):
     if kind == TEXT:
         return isinstance(value, str)
+    if kind == TRUTH:
+        return isinstance(value, bool)
+    if kind == TWO:
+        return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
     if kind == TEXTS:
         return isinstance(value, list) and all(isinstance(v, str) for v in value)
     if isinstance(value, bool):
