@@ -16,9 +16,7 @@ def main(argv=None):
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
-    verb.add_argument(
-        "--method", default="auto", help="ritz, ritz3d, fe, coupled, textbook or published (default: ritz or ritz3d)"
-    )
+    verb.add_argument("--method", default="auto", help="ritz, ritz3d, fe, coupled, textbook, published (default: ritz or ritz3d)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
     verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (ritz, fe)")
@@ -110,9 +108,8 @@ def stiffness(arguments):
             **run, method=arguments.method, phases=arguments.phases,
             extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error,
         )  # fmt: skip
-    print(
-        f"{curve.meta['method']} ({curve.meta['why']}), {force:g} N along the line of action, width {curve.meta['width_mm']:g} mm:"
-    )
+    meta = curve.meta
+    print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
     doubt = curve.zone_errors()
     for zone, value in curve.zones().items():
         print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))

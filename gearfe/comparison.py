@@ -1,6 +1,7 @@
 """How far analytical stiffness is from finite elements: tables of error by zone, with what each value cost."""
 
 import time
+import warnings
 from dataclasses import dataclass
 
 from geometry.pit import Pit
@@ -78,6 +79,7 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
     Returns
     -------
     Comparison
+        Without the formulations that have no value for this damage; a warning says why.
     """
     chosen = scene.pair(pair)
     methods = _methods(chosen, case)
@@ -89,7 +91,13 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
         started = time.perf_counter()
         options = {"refine": refine} if method == methods[0] else {}
         face = None if method in ("fe", "ritz", "coupled") else chosen.face
-        curves[method] = mesh_stiffness(**(run | {"face": face}), method=method, cache=False, **options)
+        try:
+            curves[method] = mesh_stiffness(**(run | {"face": face}), method=method, cache=False, **options)
+        except ValueError as error:
+            if method == methods[0]:
+                raise
+            warnings.warn(f"{method} has no value here: {error}", stacklevel=2)
+            continue
         seconds[method] = time.perf_counter() - started
     curves[methods[0]] = mesh_stiffness(**run, method=methods[0], refine=refine, error=True)
     for name, model in own.items():

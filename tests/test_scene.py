@@ -14,7 +14,20 @@ def test_built_in_scene():
     assert (scene.gears["sun"].z, scene.gears["planet"].z) == (21, 31)
     assert scene.pair().pair.eps_alpha == pytest.approx(1.6149, rel=1e-4)
     assert len(scene.assumptions) >= 4
-    assert any("pits" in item for item in scene.later)
+    assert [len(scene.pair().damage[case]["pinion"]) for case in ("mild", "moderate", "severe")] == [5, 10, 15]
+    assert scene.pair().case("mild")["damage"]["pinion"][0].radius == 21.0
+    with pytest.raises(ValueError, match="it has mild, moderate, severe"):
+        scene.pair().case("broken")
+
+
+@pytest.mark.parametrize(("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 4)])
+def test_the_other_machines(name, cases):
+    pair = gf.load_scene(name).pair()
+    assert len(pair.damage) == cases
+    for case in pair.damage:
+        run = pair.case(case) | {"face": None}
+        curve = gf.mesh_stiffness(**run, method="textbook", variants={"crack_model": "straight"}, phases=4)
+        assert (curve.k > 0).all()
 
 
 @pytest.mark.parametrize(
@@ -47,7 +60,7 @@ def test_errors_name_file_table_and_key(tmp_path, old, new, message):
 
 
 def test_unknown_scene_and_pair():
-    with pytest.raises(ValueError, match="built in are compound_planetary, planetary_pitting"):
+    with pytest.raises(ValueError, match="built in are compound_planetary, helical_pitting, herringbone, planetary_pitting"):
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")
