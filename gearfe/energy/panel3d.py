@@ -11,6 +11,7 @@ same space in any basis; the orthonormal Legendre polynomials make M the identit
 """
 
 import math
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,7 +24,8 @@ from geometry.triangle import BULGE, jacobians, lagrange, table
 from .halfspace import modes
 from .panel import Panel, _numbering
 
-LEAF = 4  # triangles eliminated together first
+LEAF = 2  # triangles eliminated together first
+CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
 
 
 def panel3d(gear, sector, material, knots, width, *, order, degree):
@@ -173,7 +175,7 @@ def _body(sector, numbers, order, load, sides, held):
 def _front(body, own):
     """What a set of triangles is to the rest: numbers of the nodes and loads still coupled, and the matrix between them.
 
-    Triangles are halved by place until few are left; what only the set touches is eliminated. The loads are carried along as
+    Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
     unknowns that stay: at the end their block is minus the displacements under each other.
     """
     parts = ()
@@ -182,9 +184,7 @@ def _front(body, own):
         loads = body.load[ids[np.isin(body.owner[ids], own)]].any(axis=(0, 1))
         ids = np.append(ids, body.first_load + np.flatnonzero(loads))
     else:
-        axis = np.argmax(np.ptp(body.centre[:, own], axis=1))
-        order = own[np.argsort(body.centre[axis, own], kind="stable")]
-        parts = [_front(body, half) for half in (order[: own.size // 2], order[own.size // 2 :])]
+        parts = [_front(body, half) for half in _halves(body, own)]
         ids = np.union1d(parts[0][0], parts[1][0])
     ids = ids[body.there[ids]]
     used = np.bincount(body.numbers[:, own].ravel(), minlength=body.size.size)
@@ -193,13 +193,31 @@ def _front(body, own):
     matrix = np.zeros((body.size[ids].sum(),) * 2) if parts else _leaf(body, own, ids)
     for others, part in parts:
         at = _places(body, ids, others)
-        matrix[np.ix_(at, at)] += part
+        ends = [0, *(np.flatnonzero(np.diff(at) != 1) + 1).tolist(), at.size]
+        runs = [(slice(a, b), slice(at[a], at[b - 1] + 1)) for a, b in pairwise(ends)]  # faster than index arrays
+        for source, rows in runs:
+            for across, columns in runs:
+                matrix[rows, columns] += part[source, across]
     first = body.size[ids[: gone.sum()]].sum()
     if first:
         lower = cholesky(matrix[:first, :first], lower=True, check_finite=False)
         across = solve_triangular(lower, matrix[:first, first:], lower=True, check_finite=False)
-        matrix = matrix[first:, first:] - across.T @ across
+        matrix = matrix[first:, first:]
+        matrix -= across.T @ across
     return ids[gone.sum() :], matrix
+
+
+def _halves(body, own):
+    """Two parts of a set of triangles, on both sides of the straight cut through the fewest nodes."""
+    fewest, halves = np.inf, None
+    for turn in np.arange(CUTS) * math.pi / CUTS:
+        order = own[np.argsort(np.array([math.cos(turn), math.sin(turn)]) @ body.centre[:, own], kind="stable")]
+        for part in PARTS:
+            here = max(1, round(part * own.size))
+            cut = np.intersect1d(body.numbers[:, order[:here]], body.numbers[:, order[here:]]).size
+            if cut < fewest:
+                fewest, halves = cut, (order[:here], order[here:])
+    return halves
 
 
 def _places(body, ids, wanted):
