@@ -195,14 +195,15 @@ def influence(mesh, material, patches, *, solver=None, keep=False):
     load = np.hstack([patch_loads(mesh, patches, tooth) for tooth in patches.teeth])
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     solve = factor(assemble(mesh.points, mesh.cells, material, free), made)
-    moved = solve(np.asfortranarray(load[rows]))
-    if not np.isfinite(moved).all():
-        raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
-    matrix = load[rows].T @ moved
-    shape = len(patches.teeth), len(patches.arcs), patches.modes
     whole = None
     if keep:
-        whole = np.zeros((3 * mesh.points.shape[1], moved.shape[1]))
-        whole[rows] = moved
-        whole = whole.reshape(-1, 3, moved.shape[1]).transpose(1, 0, 2)
+        whole = np.zeros(load.shape)
+        whole[rows] = solve(load[rows])
+        matrix = load.T @ whole
+        whole = whole.reshape(-1, 3, load.shape[1]).transpose(1, 0, 2)
+    else:
+        matrix = solve.gram(load[rows])
+    if not np.isfinite(matrix).all():
+        raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
+    shape = len(patches.teeth), len(patches.arcs), patches.modes
     return Influence(matrix.reshape(*shape, *shape), patches, rows.size, made, whole)

@@ -116,7 +116,8 @@ def factor(matrix, plan_=None):
     Returns
     -------
     callable
-        From right-hand sides ``(n,)`` or ``(n, k)`` to solutions of the same shape.
+        From right-hand sides ``(n,)`` or ``(n, k)`` to solutions of the same shape. Its attribute ``gram`` maps right-hand sides
+        F ``(n, k)`` to ``F' K^-1 F``, where the solver can by half a solution: with ``K = L L'`` it is that of ``L^-1 F``.
 
     Raises
     ------
@@ -126,9 +127,12 @@ def factor(matrix, plan_=None):
     made = plan_ or plan(matrix.shape[0])
     lower = csc_matrix(tril(matrix, format="csc"), dtype=float)
     lower.sum_duplicates()
-    if lower.shape[0] != lower.shape[1] or not (lower.diagonal() > 0).all():
+    if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    return {"cholmod": _cholmod, "pardiso": _pardiso, "superlu": _superlu}[made.solver](lower)
+    solve = {"cholmod": _cholmod, "pardiso": _pardiso, "superlu": _superlu}[made.solver](lower)
+    if not hasattr(solve, "gram"):
+        solve.gram = lambda rhs: rhs.T @ solve(rhs)
+    return solve
 
 
 def _cholmod(lower):
@@ -145,18 +149,26 @@ def _pardiso(lower):
     from pypardiso import PyPardisoSolver
     from pypardiso.pardiso_wrapper import PyPardisoError
 
-    solver = PyPardisoSolver(mtype=2)
+    solver = PyPardisoSolver(mtype=2, size_limit_storage=0)
     # the lower triangle by columns is the upper one by rows, which PARDISO wants
     upper = csr_matrix((lower.data, lower.indices, lower.indptr), shape=lower.shape)
-    solver.size_limit_storage = 0
     try:
         solver.factorize(upper)
     except PyPardisoError as error:
         raise RuntimeError(f"PARDISO failed ({error}): the body is not held, or memory is short") from error
 
-    def solve(rhs):
-        return solver.solve(upper, np.asarray(rhs, dtype=float))
+    def half(rhs, phase):
+        solver.set_phase(phase)
+        return solver._call_pardiso(upper, np.asfortranarray(rhs, dtype=float))
 
+    def solve(rhs):
+        return half(half(rhs, 331), 333)  # phase 33 would refine the solution, at five times the cost
+
+    def gram(rhs):
+        moved = half(rhs, 331)
+        return moved.T @ moved
+
+    solve.gram = gram
     weakref.finalize(solve, solver.free_memory, everything=True)  # PARDISO keeps its factor until told
     return solve
 

@@ -121,6 +121,7 @@ def test_influence_is_symmetric_positive_and_solvers_agree(helical, steel):
     assert first.matrix[0, 1, 0, 1, 1, 0] < first.matrix[0, 1, 0, 0, 1, 0]
     assert first.dofs == 3 * (mesh.points.shape[1] - mesh.held.size)
     assert np.all(first.moved[:, mesh.held] == 0)
+    assert_allclose(influence(mesh, steel, found).matrix, first.matrix, atol=1e-10 * abs(matrix).max())
     other = influence(mesh, steel, found, solver="superlu")
     assert_allclose(other.matrix, first.matrix, atol=1e-10 * abs(matrix).max())
 
@@ -235,20 +236,20 @@ def test_convergence_order(steel):
     print("dofs", dofs, "steps of the line load", first[:, 0] / values[2][:, 0], second[:, 0] / values[2][:, 0], "order", order)
     assert (second[:, 0] > 0).all(), "displacements approach from below"
     assert (np.abs(second) < 0.7 * np.abs(first)).all()
-    assert np.abs(second / values[2]).max() < 3e-3
+    assert np.abs(second / values[2][:, :1]).max() < 2e-3
 
 
 @pytest.mark.slow
 def test_plane_strain_is_too_stiff_by_the_known_gap(steel):
     """Free end faces make a tooth softer than in plane strain, by less the wider it is."""
-    gaps = []
+    gaps, sizes = [], COARSE | {"root": 0.4}
     for width in (5, 10, 20):
         gear = replace(WIDE, b=2.0 * width)
         found = patches(gear, count=1)
         thin = replace(WIDE, b=2.0)
-        plane = plane_strain(mesh_of(thin, found, layer=2.0), found, steel).item()
+        plane = plane_strain(mesh_of(thin, found, layer=2.0, sizes=sizes), found, steel).item()
         ends = [(z, z, 0.7) for z in (0.0, gear.b)]
-        mesh = mesh_of(gear, found, layer=max(3.0, gear.b / 12), fine=ends)
+        mesh = mesh_of(gear, found, layer=max(3.0, gear.b / 12), fine=ends, sizes=sizes)
         gaps.append(influence(mesh, steel, found).matrix.item() * gear.b / plane - 1)
     print("flexibility over plane strain", gaps)
     assert 0.035 < gaps[0] < 0.065

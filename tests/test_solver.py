@@ -17,6 +17,7 @@ def test_solvers_agree_with_the_known_solution(name):
     for matrix in (GRID, tril(GRID)):
         solve = solver.factor(matrix, solver.plan(GRID.shape[0], solver=name))
         assert_allclose(solve(GRID @ want), want, rtol=1e-10, atol=1e-11, err_msg="only the lower triangle is read")
+        assert_allclose(solve.gram(GRID @ want), want.T @ GRID @ want, rtol=1e-10, atol=1e-8)
         assert_allclose(solve(GRID @ want[:, 0]), want[:, 0], rtol=1e-10, atol=1e-11)
 
 
