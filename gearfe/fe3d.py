@@ -171,7 +171,7 @@ def _points(ends, cuts, count):
     return interval, local, place, (half * weight).ravel()
 
 
-def influence(mesh, material, patches, *, solver=None, keep=False):
+def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
     """Influence matrix between all patches.
 
     Parameters
@@ -184,6 +184,8 @@ def influence(mesh, material, patches, *, solver=None, keep=False):
         See `gearfe.solver.plan`.
     keep : bool
         Whether to return the displacements too.
+    tell : callable, optional
+        Gets the `gearfe.solver.Plan`, with the expected memory, before anything costly starts.
 
     Returns
     -------
@@ -192,6 +194,8 @@ def influence(mesh, material, patches, *, solver=None, keep=False):
     patches.check(mesh.gear)
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     made = plan(3 * free.size, solver=solver)
+    if tell:
+        tell(made)
     load = np.hstack([patch_loads(mesh, patches, tooth) for tooth in patches.teeth])
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     solve = factor(assemble(mesh.points, mesh.cells, material, free), made)

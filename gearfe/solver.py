@@ -169,7 +169,7 @@ def _pardiso(lower):
         return moved.T @ moved
 
     solve.gram = gram
-    weakref.finalize(solve, solver.free_memory, everything=True)  # PARDISO keeps its factor until told
+    weakref.finalize(half, solver.free_memory, everything=True)  # PARDISO keeps its factor until told; `gram` may outlive `solve`
     return solve
 
 

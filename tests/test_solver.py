@@ -1,5 +1,7 @@
 """The solver ladder: every installed solver agrees, and what cannot be is refused beforehand."""
 
+import gc
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -19,6 +21,14 @@ def test_solvers_agree_with_the_known_solution(name):
         assert_allclose(solve(GRID @ want), want, rtol=1e-10, atol=1e-11, err_msg="only the lower triangle is read")
         assert_allclose(solve.gram(GRID @ want), want.T @ GRID @ want, rtol=1e-10, atol=1e-8)
         assert_allclose(solve(GRID @ want[:, 0]), want[:, 0], rtol=1e-10, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", solver.available())
+def test_the_factor_lives_as_long_as_it_is_used(name):
+    gram = solver.factor(GRID, solver.plan(GRID.shape[0], solver=name)).gram
+    gc.collect()
+    want = np.ones((GRID.shape[0], 2))
+    assert_allclose(gram(GRID @ want), want.T @ GRID @ want, rtol=1e-10)
 
 
 @pytest.mark.parametrize("name", solver.available())
