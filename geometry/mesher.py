@@ -252,6 +252,8 @@ def _boundary_edge(facets, doubles, a, b):
 def quadrangulate(points, lines, surfaces, algorithm=8):
     """Quads between given nodes: every line keeps its three, in between gmsh adds what it needs.
 
+    `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if some are left.
+
     Parameters
     ----------
     points : ndarray, shape (2, n)
@@ -260,23 +262,16 @@ def quadrangulate(points, lines, surfaces, algorithm=8):
         Start, middle and end node of each line; the middle may lie a little off the chord.
     surfaces : list of list of list of int
         Loops of each surface, the outer first: numbers of lines from 1, negative backwards.
-    algorithm : int
-        Of gmsh's triangles before they are joined.
 
     Returns
     -------
     points, quads : ndarray, shape (2, n + added) and (4, m)
     label : ndarray, shape (m,)
         Surface of each quad.
-
-    Raises
-    ------
-    RuntimeError
-        If gmsh leaves a triangle or drops one of the given nodes.
     """
     with gmsh_session() as gmsh:
         geo, mesh = gmsh.model.geo, gmsh.model.mesh
-        tags = {int(n): geo.addPoint(*points[:, n], 0.0) for n in np.unique(lines[:, [0, 2]])}
+        tags = {int(n): geo.addPoint(*points[:, n], 0.0) for n in np.unique(lines[:, ::2])}
         curves = [geo.addLine(tags[int(a)], tags[int(c)]) for a, _, c in lines]
         faces = [
             geo.addPlaneSurface([geo.addCurveLoop([int(np.sign(i)) * curves[abs(i) - 1] for i in loop]) for loop in loops])
@@ -297,9 +292,9 @@ def quadrangulate(points, lines, surfaces, algorithm=8):
             place[int(mesh.getNodes(0, tag)[0][0])] = node
         for curve, middle in zip(curves, lines[:, 1], strict=True):
             place[mesh.getNodes(1, curve)[0].astype(int)] = middle
-        found = found.astype(int)
         kinds = {int(kind) for face in faces for kind in mesh.getElements(2, face)[0]}
         cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
+    found = found.astype(int)
     known = place[found] >= 0
     if kinds != {3} or not np.array_equal(np.sort(place[found[known]]), np.unique(lines)):
         raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")

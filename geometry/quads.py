@@ -133,7 +133,7 @@ def _attempt(gear, teeth, cracks, patches, size, algorithm):
         body[at:at] = [-i for i in line[::-1]]
         cuts.append(cut)
     loops = [bore, body] if gear.internal else [body, bore]
-    made = quadrangulate(draft.nodes(), np.array(draft.lines), [loops, *tops], algorithm)
+    made = quadrangulate(np.array(draft.points).T, np.array(draft.lines), [loops, *tops], algorithm)
     return _finish(gear, draft, made, bore, flanks, cuts)
 
 
@@ -142,9 +142,6 @@ class _Draft:
 
     def __init__(self):
         self.points, self.lines, self.middles = [], [], {}
-
-    def nodes(self):
-        return np.array(self.points).T
 
     def add(self, points, *, closed=False, first=None, last=None):
         """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
