@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from .lines import find_lines
+from .spectral_lines import find_lines
 from .signals import spectrum
 
 SOURCES = {

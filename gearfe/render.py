@@ -253,7 +253,7 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     ----------
     spectra : dict of str to gearfe.signals.Spectrum
     lines : dict of str to float, optional
-        See `gearfe.lines.expected_lines`.
+        See `gearfe.spectral_lines.expected_lines`.
     path : path, optional
     top : float, optional
         Largest frequency or order; default 1.2 times the last line.

@@ -247,3 +247,57 @@ def _boundary_edge(facets, doubles, a, b):
             if (min(p, q), max(p, q)) in facets:
                 return facets[min(p, q), max(p, q)]
     raise RuntimeError("gmsh changed the outline: an edge of it is missing from the mesh; change the resolution")
+
+
+def quadrangulate(points, lines, surfaces, algorithm=8):
+    """Quads between given nodes: every line keeps its three, in between gmsh adds what it needs.
+
+    `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if some are left.
+
+    Parameters
+    ----------
+    points : ndarray, shape (2, n)
+        Nodes of the lines [mm].
+    lines : ndarray, shape (k, 3)
+        Start, middle and end node of each line; the middle may lie a little off the chord.
+    surfaces : list of list of list of int
+        Loops of each surface, the outer first: numbers of lines from 1, negative backwards.
+
+    Returns
+    -------
+    points, quads : ndarray, shape (2, n + added) and (4, m)
+    label : ndarray, shape (m,)
+        Surface of each quad.
+    """
+    with gmsh_session() as gmsh:
+        geo, mesh = gmsh.model.geo, gmsh.model.mesh
+        tags = {int(n): geo.addPoint(*points[:, n], 0.0) for n in np.unique(lines[:, ::2])}
+        curves = [geo.addLine(tags[int(a)], tags[int(c)]) for a, _, c in lines]
+        faces = [
+            geo.addPlaneSurface([geo.addCurveLoop([int(np.sign(i)) * curves[abs(i) - 1] for i in loop]) for loop in loops])
+            for loops in surfaces
+        ]
+        geo.synchronize()
+        legs = np.hypot(*np.diff(points[:, lines], axis=2))
+        for curve, (first, second) in zip(curves, legs, strict=True):
+            mesh.setTransfiniteCurve(curve, 3, "Progression", second / first)
+        for face in faces:
+            mesh.setRecombine(2, face)
+        for name, value in (("Algorithm", algorithm), ("RecombinationAlgorithm", 3), ("MeshSizeFromPoints", 0)):
+            gmsh.option.setNumber(f"Mesh.{name}", value)
+        mesh.generate(2)
+        found, coords, _ = mesh.getNodes()
+        place = np.full(int(found.max()) + 1, -1)
+        for node, tag in tags.items():
+            place[int(mesh.getNodes(0, tag)[0][0])] = node
+        for curve, middle in zip(curves, lines[:, 1], strict=True):
+            place[mesh.getNodes(1, curve)[0].astype(int)] = middle
+        kinds = {int(kind) for face in faces for kind in mesh.getElements(2, face)[0]}
+        cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
+    found = found.astype(int)
+    known = place[found] >= 0
+    if kinds != {3} or not np.array_equal(np.sort(place[found[known]]), np.unique(lines)):
+        raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")
+    place[found[~known]] = points.shape[1] + np.arange((~known).sum())
+    points = np.hstack([points, coords.reshape(-1, 3)[~known, :2].T])
+    return points, place[np.concatenate(cells)].T, np.repeat(np.arange(len(cells)), [len(c) for c in cells])

@@ -1,0 +1,184 @@
+"""Sparse symmetric positive definite systems: the best solver installed, and a refusal beforehand of what does not fit."""
+
+import importlib.util
+import math
+import os
+import weakref
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_matrix, csr_matrix, tril
+from scipy.sparse.linalg import splu
+
+SOLVERS = {"cholmod": "sksparse", "pardiso": "pypardiso", "superlu": "scipy"}  # in the order of preference, by package
+SUPERLU_LIMIT = 40_000  # unknowns: above, its fill makes it slower by an order of magnitude and its memory a gamble
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a factorisation will take.
+
+    `solver` is its name, `unknowns` their number, `memory` the expected and `free` the available memory [bytes].
+    """
+
+    solver: str
+    unknowns: int
+    memory: float
+    free: float
+
+    def __str__(self):
+        return f"{self.solver}, {self.unknowns} unknowns, about {self.memory / 1e9:.2g} GB of {self.free / 1e9:.3g} GB free"
+
+
+def available():
+    """Names of the solvers installed, the best first."""
+    return [name for name, package in SOLVERS.items() if importlib.util.find_spec(package)]
+
+
+def free_memory():
+    """Memory [bytes] that can be had without swapping."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            for line in lines:
+                if line.startswith("MemAvailable"):
+                    return 1024.0 * int(line.split()[1])
+    except OSError:
+        pass
+    return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) if hasattr(os, "sysconf") else math.inf
+
+
+def plan(unknowns, *, solver=None, free=None):
+    """Choose a solver for a three-dimensional body and see whether it fits.
+
+    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers.
+
+    Parameters
+    ----------
+    unknowns : int
+    solver : {"cholmod", "pardiso", "superlu"}, optional
+        Default: the best that is installed.
+    free : float, optional
+        Memory [bytes] that may be used; default `free_memory`.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError
+        If the solver is not known or not installed.
+    RuntimeError
+        If the system does not fit; the message has the numbers.
+
+    References
+    ----------
+    A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, Prentice-Hall, 1981, ch. 8.
+    """
+    found = available()
+    if solver is not None and solver not in found:
+        raise ValueError(f"solver = {solver!r}, but this machine has {', '.join(found)}")
+    name = solver or found[0]
+    free = free_memory() if free is None else float(free)
+    made = Plan(name, int(unknowns), expected_memory(unknowns, name), free)
+    if name == "superlu" and unknowns > SUPERLU_LIMIT:
+        raise RuntimeError(
+            f"{unknowns} unknowns are too many for SuperLU (limit {SUPERLU_LIMIT}, about {made.memory / 1e9:.2g} GB): install "
+            "pypardiso (pip install 'gearfe[fast]') or scikit-sparse, or coarsen the mesh"
+        )
+    if made.memory > free:
+        raise RuntimeError(
+            f"{unknowns} unknowns need about {made.memory / 1e9:.3g} GB with {name}, but {free / 1e9:.3g} GB are free: "
+            "coarsen the mesh"
+        )
+    return made
+
+
+def expected_memory(unknowns, solver):
+    """Expected memory [bytes] of matrix and factor; the constants are measured on gears of 20-node hexahedra."""
+    matrix, factor = MEMORY[solver]
+    return matrix * unknowns + factor * unknowns ** (4 / 3)
+
+
+MEMORY = {"cholmod": (3600.0, 240.0), "pardiso": (2400.0, 200.0), "superlu": (4800.0, 450.0)}  # [bytes], see expected_memory
+
+
+def factor(matrix, plan_=None):
+    """Factor a symmetric positive definite matrix.
+
+    Parameters
+    ----------
+    matrix : sparse matrix, shape (n, n)
+        Only its lower triangle is read.
+    plan_ : Plan, optional
+        Default: `plan` of its size.
+
+    Returns
+    -------
+    callable
+        From right-hand sides ``(n,)`` or ``(n, k)`` to solutions of the same shape. Its attribute ``gram`` maps right-hand sides
+        F ``(n, k)`` to ``F' K^-1 F``, where the solver can by half a solution: with ``K = L L'`` it is that of ``L^-1 F``.
+
+    Raises
+    ------
+    RuntimeError
+        If it does not fit, or is not positive definite: the body is not held.
+    """
+    made = plan_ or plan(matrix.shape[0])
+    lower = csc_matrix(tril(matrix, format="csc"), dtype=float)
+    lower.sum_duplicates()
+    if not (lower.diagonal() > 0).all():
+        raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
+    solve = {"cholmod": _cholmod, "pardiso": _pardiso, "superlu": _superlu}[made.solver](lower)
+    if not hasattr(solve, "gram"):
+        solve.gram = lambda rhs: rhs.T @ solve(rhs)
+    return solve
+
+
+def _cholmod(lower):
+    from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+
+    try:
+        factored = cholesky(_full(lower), mode="supernodal", ordering_method="metis")
+    except CholmodNotPositiveDefiniteError as error:
+        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
+    return lambda rhs: factored(np.ascontiguousarray(rhs))
+
+
+def _pardiso(lower):
+    from pypardiso import PyPardisoSolver
+    from pypardiso.pardiso_wrapper import PyPardisoError
+
+    solver = PyPardisoSolver(mtype=2, size_limit_storage=0)
+    # the lower triangle by columns is the upper one by rows, which PARDISO wants
+    upper = csr_matrix((lower.data, lower.indices, lower.indptr), shape=lower.shape)
+    try:
+        solver.factorize(upper)
+    except PyPardisoError as error:
+        raise RuntimeError(f"PARDISO failed ({error}): the body is not held, or memory is short") from error
+
+    def half(rhs, phase):
+        solver.set_phase(phase)
+        return solver._call_pardiso(upper, np.asfortranarray(rhs, dtype=float))
+
+    def solve(rhs):
+        return half(half(rhs, 331), 333)  # phase 33 would refine the solution, at five times the cost
+
+    def gram(rhs):
+        moved = half(rhs, 331)
+        return moved.T @ moved
+
+    solve.gram = gram
+    weakref.finalize(half, solver.free_memory, everything=True)  # PARDISO keeps its factor until told; `gram` may outlive `solve`
+    return solve
+
+
+def _superlu(lower):
+    factored = splu(_full(lower), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    if (factored.U.diagonal() <= 0).any():
+        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held")
+    return lambda rhs: factored.solve(np.asarray(rhs, dtype=float))
+
+
+def _full(lower):
+    return csc_matrix(lower + tril(lower, -1).T)
