@@ -31,15 +31,14 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _cubic(cells, place, count, at):
     cell = min(int(at), count - 1)
-    u = at - cell
-    c = cells[place + cell]
-    return c[0] + u * (c[1] + u * (c[2] + u * c[3]))
+    u, row = at - cell, place + cell
+    return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _lookup(flat, t, k, e, rate, weight, load):
     """Fill in what acts at time t."""
     for i in range(k.size):
@@ -71,7 +70,7 @@ def _lookup(flat, t, k, e, rate, weight, load):
             load[j] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _force(x, v, k, law, i):
     """`gearfe.contact_law.force` of one mesh."""
     back, slack = False, law[4, i]
@@ -91,7 +90,7 @@ def _force(x, v, k, law, i):
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _forces(out, x, now, laws, linear, rub_mesh, m, rates):
     """Forces of the meshes and friction rows beyond the linear part, loads; sides of contact into ``now[5]``."""
     k, e, rate, weight, load, side, total = now
@@ -107,7 +106,7 @@ def _forces(out, x, now, laws, linear, rub_mesh, m, rates):
         out[m + rub_mesh.size + j] = load[j]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _add(out, columns, x):
     """``out += columns.T @ x``, along memory."""
     for j in range(x.size):
@@ -116,7 +115,7 @@ def _add(out, columns, x):
             out[i] += columns[j, i] * value
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _changed(side, seen, laws):
     for i in range(side.size):  # noqa: SIM110 (numba has no generators here)
         if laws[4, i] > 0 and side[i] != seen[i]:
@@ -124,7 +123,7 @@ def _changed(side, seen, laws):
     return False
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start, every, states, counts, m):
     p, f, n2 = P.shape[0], F.shape[2] // 4, z.size
     rates, rub, last = p > m, flat.rub_mesh.size, len(E) - 1
@@ -146,7 +145,7 @@ def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start
             while at % (whole >> level):
                 level += 1
             own = h / (1 << level)
-            t = start + h * step + h * at / whole
+            t = start + h * (step + at / whole)
             if known == t:
                 k[0], e[0], rate[0], weight[0], load[0] = k[2], e[2], rate[2], weight[2], load[2]
             else:
@@ -166,7 +165,7 @@ def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start
                     level += 1
                     counts[1] += 1
                     continue
-            upper = start + h * step + h * (at + (whole >> level)) / whole
+            upper = start + h * (step + (at + (whole >> level)) / whole)
             _lookup(flat, upper, k[2], e[2], rate[2], weight[2], load[2])
             known = upper
             np.dot(Y[level], z, y)
