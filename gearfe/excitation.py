@@ -1,0 +1,127 @@
+"""All stiffnesses, errors and loads of a machine at given times, laid out flat for few array operations per step."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Flat(NamedTuple):
+    """The tables of a machine as arrays.
+
+    `cells` holds the coefficients of all tables one after the other. Of each mesh: place and number of its cycle's cells. Of each
+    damaged tooth: its mesh, number of teeth, first cycle, and start, width, place and number of cells of the change. Of each
+    sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each friction row: mesh, place and number of cells. Of
+    each load: where its knots start and end.
+    """
+
+    cells: np.ndarray
+    frequency: np.ndarray
+    phase: np.ndarray
+    place: np.ndarray
+    count: np.ndarray
+    change_mesh: np.ndarray
+    change: np.ndarray  # (n, 4): teeth, first, start, width
+    change_place: np.ndarray
+    change_count: np.ndarray
+    error_mesh: np.ndarray
+    error: np.ndarray  # (n, 3): amplitude, angular frequency, phase
+    rub_mesh: np.ndarray
+    rub_place: np.ndarray
+    rub_count: np.ndarray
+    knots: np.ndarray  # (n, 2): time, value
+    knot_place: np.ndarray
+
+
+def flatten(machine, times):
+    """`Flat` of a machine; loads that are functions are sampled at `times` and linear between."""
+    cells, place = [], [0]
+
+    def add(one):
+        cells.append(one.cells)
+        place.append(place[-1] + len(one.cells))
+        return place[-2], len(one.cells)
+
+    meshes = machine.meshes
+    cycles = [add(m.cycle) for m in meshes]
+    changes = [(i, z, first, made, *add(made)) for i, m in enumerate(meshes) for z, first, made in m.changes]
+    errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
+    rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
+    knots = [_knots(one, times) for one in machine.loads]
+    whole = np.int64
+    return Flat(
+        np.concatenate(cells) if cells else np.zeros((1, 4)),
+        np.array([m.frequency for m in meshes], dtype=float),
+        np.array([m.phase for m in meshes], dtype=float),
+        np.array([c[0] for c in cycles], dtype=whole),
+        np.array([c[1] for c in cycles], dtype=whole),
+        np.array([c[0] for c in changes], dtype=whole),
+        np.array([(c[1], c[2], c[3].start, c[3].width) for c in changes], dtype=float).reshape(-1, 4),
+        np.array([c[4] for c in changes], dtype=whole),
+        np.array([c[5] for c in changes], dtype=whole),
+        np.array([e[0] for e in errors], dtype=whole),
+        np.array([e[1:] for e in errors], dtype=float).reshape(-1, 3),
+        np.array([r[0] for r in rubs], dtype=whole),
+        np.array([r[1] for r in rubs], dtype=whole),
+        np.array([r[2] for r in rubs], dtype=whole),
+        np.concatenate(knots) if knots else np.zeros((1, 2)),
+        np.cumsum([0, *map(len, knots)]).astype(whole),
+    )
+
+
+def _knots(load, times):
+    if callable(load.value):
+        return np.stack([times, load(times)], axis=1)
+    if np.ndim(load.value) == 0:
+        return np.array([[0.0, float(load.value)]])
+    return np.stack([np.asarray(part, dtype=float) for part in load.value], axis=1)
+
+
+def stiffness(flat, t):
+    """Stiffness of all meshes at times `t` ``(..., m)`` and the running phases."""
+    phase = flat.phase + flat.frequency * np.asarray(t, dtype=float)[..., None]
+    k = _value(flat, phase - np.floor(phase), flat.place, flat.count)
+    for mesh, (z, first, start, width), place, count in zip(
+        flat.change_mesh, flat.change, flat.change_place, flat.change_count, strict=True
+    ):
+        own = phase[..., mesh] - first - start
+        own = (own - z * np.floor(own / z)) / width
+        inside = own < count
+        if inside.any():
+            cell = np.minimum(own, count - 1).astype(np.int64)
+            c, u = flat.cells[place + cell], own - cell
+            change = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+            k[..., mesh] += np.where(inside, change, 0.0)
+    return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
+
+
+def _value(flat, part, place, count):
+    at = part * count
+    cell = np.minimum(at.astype(np.int64), count - 1)
+    c, u = flat.cells[place + cell], at - cell
+    return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+
+
+def errors(flat, t):
+    """Errors [m] of all meshes at times `t` and their rates [m/s], ``(..., m)`` each."""
+    t = np.asarray(t, dtype=float)
+    e, rate = np.zeros((*t.shape, len(flat.phase))), np.zeros((*t.shape, len(flat.phase)))
+    for mesh, (amplitude, omega, angle) in zip(flat.error_mesh, flat.error, strict=True):
+        e[..., mesh] += amplitude * np.sin(omega * t + angle)
+        rate[..., mesh] += amplitude * omega * np.cos(omega * t + angle)
+    return e, rate
+
+
+def rubbing(flat, phase):
+    """Weights of the friction rows at running phases ``(..., m)``: ``(..., rows)``."""
+    part = phase[..., flat.rub_mesh]
+    return _value(flat, part - np.floor(part), flat.rub_place, flat.rub_count)
+
+
+def loads(flat, t):
+    """Values of all loads at times `t` ``(..., loads)``."""
+    t = np.asarray(t, dtype=float)
+    out = np.empty((*t.shape, len(flat.knot_place) - 1))
+    for i, (low, high) in enumerate(zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True)):
+        out[..., i] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
+    return out

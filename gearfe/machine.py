@@ -1,0 +1,229 @@
+"""`Machine`: masses, linear springs, gear meshes and loads as tables; its matrices, modes and state of rest."""
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.linalg import eigh
+
+from .contact_law import force, slopes
+
+RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
+LAW = ("power", "damping", "beta", "backlash", "film", "push")
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
+
+    name: str
+    row: np.ndarray
+    k: float
+    c: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
+
+    A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
+    """
+
+    name: str
+    row: np.ndarray
+    value: object
+
+    def __call__(self, t):
+        """Value at times `t`."""
+        if callable(self.value):
+            return np.broadcast_to(np.asarray(self.value(t), dtype=float), np.shape(t))
+        if np.ndim(self.value) == 0:
+            return np.full(np.shape(t), float(self.value))
+        return np.interp(t, *self.value)
+
+    @property
+    def breaks(self):
+        """Times at which the history bends or jumps [s]."""
+        return np.unique(self.value[0]) if not callable(self.value) and np.ndim(self.value) else np.empty(0)
+
+
+def pulses(base, peak, period, width, count, *, start=0.0, rise=0.1):
+    """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
+
+    Each flank of a pulse takes the part `rise` of its width. For `Load`.
+    """
+    if not 0 < width < period or not 0 < rise <= 0.5:
+        raise ValueError(f"width = {width} s, rise = {rise}: pulses need 0 < width < period and 0 < rise <= 0.5")
+    first = start + period * np.arange(count)[:, None]
+    times = first + width * np.array([0.0, rise, 1 - rise, 1.0])
+    return times.ravel(), np.tile([base, peak, peak, base], count).astype(float)
+
+
+@dataclass(frozen=True, slots=True)
+class Machine:
+    """A machine as tables.
+
+    Its equations, in SI units and a frame in which its bodies vibrate about their places::
+
+        M q'' + C q' + K q + sum over meshes of g F(g @ q - e, ...) = sum of loads
+
+    Parameters
+    ----------
+    dofs : tuple of str
+        Names ``body.direction``; rotations (``theta``, ``tilt_x``, ``tilt_y``) in rad, the others in m.
+    mass : ndarray, shape (n,)
+        Mass [kg] or moment of inertia [kg m2] of each.
+    springs : tuple of Spring
+    meshes : tuple of Mesh
+    loads : tuple of Load
+    notes : dict
+        What had to be assumed, and derived numbers to be printed (phases, frequencies).
+
+    Attributes
+    ----------
+    K, C : ndarray, shape (n, n)
+        Of the springs only.
+    G : ndarray, shape (m, n)
+        Rows of the meshes.
+    law : dict of ndarray, shape (m,)
+        Their contact laws.
+    """
+
+    dofs: tuple
+    mass: np.ndarray
+    springs: tuple
+    meshes: tuple
+    loads: tuple = ()
+    notes: dict = field(default_factory=dict)
+    K: np.ndarray = field(init=False)
+    C: np.ndarray = field(init=False)
+    G: np.ndarray = field(init=False)
+    law: dict = field(init=False)
+
+    def __post_init__(self):
+        """Assemble; refuse masses that are not, rows that do not fit."""
+        n, mass = len(self.dofs), np.asarray(self.mass, dtype=float)
+        if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
+            raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
+        for one in (*self.springs, *self.meshes, *self.loads):
+            if np.shape(one.row) != (n,) or not np.isfinite(one.row).all():
+                raise ValueError(f"{one.name}: its row needs {n} finite numbers, one per degree of freedom")
+        for one in self.springs:
+            if not (math.isfinite(one.k) and math.isfinite(one.c) and one.k >= 0 and one.c >= 0):
+                raise ValueError(f"spring {one.name}: k = {one.k}, c = {one.c}, but they must be finite and not negative")
+        R = np.array([s.row for s in self.springs]).reshape(-1, n)
+        object.__setattr__(self, "mass", mass)
+        object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
+        object.__setattr__(self, "C", R.T @ (np.array([s.c for s in self.springs])[:, None] * R))
+        object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
+        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW}
+        law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
+        extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
+        object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})
+
+    def row(self, name):
+        """Unit row of a degree of freedom.
+
+        Raises
+        ------
+        ValueError
+            If there is none of that name.
+        """
+        if name not in self.dofs:
+            raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
+        return np.eye(len(self.dofs))[self.dofs.index(name)]
+
+    def mean_stiffness(self):
+        """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
+        return np.array([m.cycle.mean for m in self.meshes])
+
+    def linear(self, x=None):
+        """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
+
+        `x` (m,): compressions [m] at which a law that is not linear is taken (needed for a power other than 1).
+
+        Returns
+        -------
+        K, C : ndarray, shape (n, n)
+        k, c : ndarray, shape (m,)
+        """
+        mean = self.mean_stiffness()
+        if x is None:
+            x = np.where(self.law["power"] == 1.0, 1.0, 0.0)
+        k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law)
+        return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
+
+    def load(self, t=0.0):
+        """Sum of the loads at time `t` ``(n,)``."""
+        return sum((one.row * float(one(t)) for one in self.loads), np.zeros(len(self.dofs)))
+
+    def rest(self, t=None):
+        """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
+
+        Rigid-body motions are left out (least squares).
+
+        Raises
+        ------
+        RuntimeError
+            If Newton's method does not settle: a load opens a mesh that nothing closes.
+        """
+        load = self.load(0.0 if t is None else t)
+        mean, zero = self.mean_stiffness(), np.zeros(len(self.meshes))
+        start = 1e-5 * np.ones(len(self.meshes))
+        q = np.linalg.lstsq(self.linear(start)[0], load, rcond=1e-12)[0]
+        for _ in range(200):
+            x = self.G @ q
+            away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
+            tangent = slopes(x, zero, mean, self.law)[0]
+            tangent = np.maximum(tangent, 1e-6 * self.linear(start)[2])  # an open mesh keeps the matrix regular
+            change = _weighted_solve(self.K + self.G.T @ (tangent[:, None] * self.G), away, self.mass)
+            q = q + change
+            if np.abs(change * np.sqrt(self.mass)).max() <= 1e-11 * np.abs(q * np.sqrt(self.mass)).max() + 1e-30:
+                return q
+        raise RuntimeError("no state of rest found: the loads do not press the meshes together, or leave a body free")
+
+    def with_meshes(self, **changes):
+        """The same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""
+        return replace(self, meshes=tuple(replace(m, **changes) for m in self.meshes))
+
+
+def _weighted_solve(matrix, right, mass):
+    scale = 1 / np.sqrt(mass)
+    return scale * np.linalg.lstsq(matrix * scale[:, None] * scale[None, :], right * scale, rcond=1e-13)[0]
+
+
+def natural_frequencies(machine, *, x=None):
+    """Natural frequencies and modes without damping, meshes at their mean stiffness.
+
+    Parameters
+    ----------
+    machine : Machine
+    x : ndarray, shape (m,), optional
+        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
+
+    Returns
+    -------
+    frequencies : ndarray, shape (n,)
+        [Hz], rising; 0 for rigid-body modes.
+    modes : ndarray, shape (n, n)
+        In columns, ``modes.T @ diag(mass) @ modes = 1``.
+    """
+    if x is None and (machine.law["power"] != 1).any():
+        x = machine.G @ machine.rest()
+    squared, modes = modal(machine.linear(x)[0], machine.mass)
+    return np.sqrt(squared) / (2 * math.pi), modes
+
+
+def modal(K, mass):
+    """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
+
+    Raises
+    ------
+    ValueError
+        If the stiffness is not positive semi-definite.
+    """
+    scale = 1 / np.sqrt(mass)
+    squared, modes = eigh(K * scale[:, None] * scale[None, :])
+    if squared[0] < -1e-8 * squared[-1]:
+        raise ValueError(f"the stiffness matrix has a negative eigenvalue {squared[0]:.4g}: a spring of negative stiffness?")
+    return np.where(squared < RIGID * squared[-1], 0.0, squared), scale[:, None] * modes

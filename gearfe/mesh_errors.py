@@ -1,0 +1,45 @@
+"""Mesh errors of a whole machine: of the profiles at mesh frequency, of eccentric bodies, of misplaced ones."""
+
+import math
+from dataclasses import replace
+
+
+def with_errors(machine, *, profile=0.0, runout=None, place=None):
+    """The machine with sinusoidal errors in every mesh, the three kinds that the article on the herringbone stage lists.
+
+    Parameters
+    ----------
+    machine : Machine
+    profile : float or dict
+        Amplitude of the manufacturing error at mesh frequency [m], by mesh name if a dict; its phase is that of the mesh.
+    runout : dict, optional
+        Eccentric bodies: ``{"sunL": (amplitude [m], frequency [Hz], start [rad])}``: the axis of the teeth turns about that of
+        the body at `frequency` (relative to the carrier; counter-clockwise if positive) from angle `start`.
+    place : dict, optional
+        Misplaced bodies: ``{"planet1L": (dx, dy)}`` [m], a constant error.
+
+    A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
+    """
+    known = {dof.partition(".")[0] for dof in machine.dofs}
+    for name in (*(runout or {}), *(place or {})):
+        if name not in known:
+            raise ValueError(f"no body {name!r}; there are {', '.join(sorted(known))}")
+    meshes = []
+    for mesh in machine.meshes:
+        own = profile.get(mesh.name, 0.0) if isinstance(profile, dict) else profile
+        errors = [(own, mesh.frequency, 2 * math.pi * (mesh.phase % 1.0))] if own else []
+        for name, (amplitude, frequency, start) in (runout or {}).items():
+            dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")
+            size, angle = math.hypot(dx, dy), math.atan2(dy, dx)
+            if size and amplitude:  # -cos(turn - angle) as a sine
+                errors.append((amplitude * size, frequency, start - angle - math.pi / 2))
+        for name, (sx, sy) in (place or {}).items():
+            shift = _entry(machine, mesh, f"{name}.x") * sx + _entry(machine, mesh, f"{name}.y") * sy
+            if shift:
+                errors.append((-shift, 0.0, math.pi / 2))
+        meshes.append(replace(mesh, error=(*mesh.error, *errors)))
+    return replace(machine, meshes=tuple(meshes))
+
+
+def _entry(machine, mesh, dof):
+    return float(mesh.row[machine.dofs.index(dof)]) if dof in machine.dofs else 0.0
