@@ -35,6 +35,18 @@ def main(argv=None):
     _scene_arguments(verb, phases=False)
     verb.add_argument("--phase", type=float, default=0.0, help="mesh phase (default: 0, a pair enters)")
     verb.add_argument("-o", "--output", metavar="FILE", required=True, help="picture: .png")
+    verb = _verb(verbs, "dynamics", dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged")
+    verb.add_argument("scene", metavar="SCENE", help="a built-in scene with a machine, or a .toml file")
+    verb.add_argument("--case", metavar="NAME", help="case of damage, compared with healthy (default: healthy alone)")
+    verb.add_argument(
+        "--duration", type=float, default=1.0, metavar="S", help="seconds kept, after half as much to settle (default: 1)"
+    )
+    verb.add_argument(
+        "--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)"
+    )
+    verb.add_argument("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
+    verb.add_argument("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
+    verb.add_argument("--plot", metavar="FILE", help="draw the spectra: .png, .svg or .pdf")
     _verb(verbs, "scenes", scenes, "list the built-in scenes with their assumptions")
     _verb(verbs, "info", info, "versions, and what this machine has")
     arguments = parser.parse_args(argv)
@@ -152,6 +164,45 @@ def render(arguments):
     with _working("stress of both gears"):
         largest = render_stress(scene.pair(arguments.pair), arguments.output, phase=arguments.phase, refine=arguments.refine)
     print(f"largest von Mises stress {largest:.0f} MPa (in the contact)\nwritten: {arguments.output}")
+
+
+def dynamics(arguments):
+    """``gearfe dynamics``."""
+    from .machine import natural_frequencies
+    from .responses import analysis, responses
+    from .scene import load_scene
+
+    scene = load_scene(arguments.scene)
+    _print_scene(scene)
+    with _working("stiffness curves and response"):
+        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
+    made = next(iter(found.values())).machine
+    for name, value in made.notes.items():
+        print(f"  {name}: {_rounded(value)}")
+    print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
+    for case, one in found.items():
+        stats = one.stats
+        print(
+            f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}, {len(one.time)} outputs"
+        )
+    report = analysis(found, arguments.channel)
+    print(
+        f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}\n\n{report.indicators_text()}"
+    )
+    if arguments.output:
+        list(found.values())[-1].save(arguments.output)
+        print(f"\nwritten: {arguments.output}")
+    if arguments.plot:
+        report.plot(arguments.plot)
+        print(f"written: {arguments.plot}")
+
+
+def _rounded(value):
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_rounded(one)}" for name, one in value.items())
+    if isinstance(value, tuple):
+        return ", ".join(_rounded(one) for one in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def scenes(arguments):

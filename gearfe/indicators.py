@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from .spectral_lines import find_lines
 from .signals import spectrum
+from .spectral_lines import find_lines
 
 SOURCES = {
     "rms": "sqrt(mean(x**2)), S4; with the mean",

@@ -67,6 +67,12 @@ DAMAGE = {
         "tooth": (WHOLE, 0),
     },
 }
+MACHINE = {
+    "model": (TEXT, REQUIRED),
+    "speed_rpm": (NUMBER, REQUIRED),
+    "torque_Nm": (NUMBER, REQUIRED),
+    "n_planets": (WHOLE, 3),
+}
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED)}
 
 
@@ -100,7 +106,7 @@ class ScenePair:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A machine: `gears` and `pairs` by name, and what had to be assumed."""
+    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.scene_machine` needs to run it."""
 
     name: str
     title: str
@@ -109,6 +115,7 @@ class Scene:
     pairs: dict
     assumptions: tuple
     later: tuple
+    machine: dict = field(default_factory=dict)
 
     def pair(self, name=None):
         """The pair called `name`; the first one if None.
@@ -154,7 +161,8 @@ def load_scene(name_or_path):
 def _scene(file, data):
     tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    top = _table(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "assumption"))
+    run = _table(file, "machine", data.pop("machine"), MACHINE) if "machine" in data else {}
+    top = _table(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption"))
     for name in ("gear", "pair", "material"):
         if not isinstance(tables[name], dict) or not tables[name]:
             raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
@@ -182,7 +190,7 @@ def _scene(file, data):
         found = _cases(file, damage, gears, row)
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
     notes = tuple(_table(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
-    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]))
+    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run)
 
 
 def _cases(file, damage, gears, pair):
