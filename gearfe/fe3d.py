@@ -102,9 +102,11 @@ class Influence:
 
 
 def mesh_patches(gear, patches, *, cracks=(), extents=None, refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
-    """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm] (default b / 12, or a module).
+    """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
-    `refine` divides all edge lengths and the layers; `cracks`, `extents`, `sizes`, `fine` as in `geometry.solid.solid`.
+    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `extents`,
+    `sizes`, `fine` as in `geometry.solid.solid`. What converges last are loads that run over the end faces:
+    ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
     """
     patches.check(gear)
     edge = 2 * patches.half_width / per_hat

@@ -1,7 +1,9 @@
 """A whole gear in twisted 20-node hexahedra: the section of `geometry.quads`, extruded along the width.
 
 The transverse section at z = 0 is that of `geometry.tooth`; at height z it is turned clockwise by ``w z``,
-``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid.
+``w = tan(beta) / r``, with the sign of the gear's beta. Nodes, also those in the middle of edges, lie exactly on the helicoid. A
+ring's own section is seen in the mirror (`geometry.pair.GearPair.turn`): like an external wheel, it meshes with a pinion of the
+opposite beta.
 """
 
 import math
