@@ -1,9 +1,18 @@
 """The loop of `gearfe.exponential` compiled by numba: the same steps, halved at the same places, in scalar arithmetic."""
 
+from importlib.util import find_spec
+
 import numpy as np
-from numba import njit
 
 from .exponential import UNSTABLE
+
+if find_spec("numba"):
+    from numba import njit
+else:
+
+    def njit(**options):
+        """Leave the loops as they are: the same numbers, slowly (`gearfe.dynamics.simulate` then uses `gearfe.exponential`)."""
+        return lambda function: function
 
 
 def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
