@@ -1,9 +1,18 @@
 """The loop of `gearfe.exponential` compiled by numba: the same steps, halved at the same places, in scalar arithmetic."""
 
+from importlib.util import find_spec
+
 import numpy as np
-from numba import njit
 
 from .exponential import UNSTABLE
+
+if find_spec("numba"):
+    from numba import njit
+else:
+
+    def njit(**options):
+        """Leave the loops as they are: the same numbers, slowly (`gearfe.dynamics.simulate` then uses `gearfe.exponential`)."""
+        return lambda function: function
 
 
 def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
@@ -42,11 +51,14 @@ def _cubic(cells, place, count, at):
 def _lookup(flat, t, k, e, rate, weight, load):
     """Fill in what acts at time t."""
     for i in range(k.size):
-        phase = flat.phase[i] + flat.frequency[i] * t
-        k[i] = _cubic(flat.cells, flat.place[i], flat.count[i], (phase - np.floor(phase)) * flat.count[i])
         e[i] = rate[i] = 0.0
+        if flat.twin[i] == i:
+            phase = flat.phase[i] + flat.frequency[i] * t
+            k[i] = _cubic(flat.cells, flat.place[i], flat.count[i], (phase - np.floor(phase)) * flat.count[i])
     for j in range(flat.change_mesh.size):
         i = flat.change_mesh[j]
+        if flat.twin[i] != i:
+            continue
         z, own = flat.change[j, 0], flat.phase[i] + flat.frequency[i] * t - flat.change[j, 1] - flat.change[j, 2]
         own = (own - z * np.floor(own / z)) / flat.change[j, 3]
         if own < flat.change_count[j]:
@@ -54,6 +66,8 @@ def _lookup(flat, t, k, e, rate, weight, load):
     if flat.change_mesh.size:
         for i in range(k.size):
             k[i] = max(k[i], 0.0)
+    for i in range(k.size):
+        k[i] = k[flat.twin[i]]
     for j in range(flat.error_mesh.size):
         turn = flat.error[j, 1] * t + flat.error[j, 2]
         e[flat.error_mesh[j]] += flat.error[j, 0] * np.sin(turn)

@@ -14,6 +14,7 @@ from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 STEPS = 80  # per mesh cycle, by default
+SHARE = 0.35  # of the period of the stiffest mesh
 
 
 def simulate(
@@ -39,8 +40,7 @@ def simulate(
         ``"fast"``: `gearfe.exponential`, fixed steps that are halved about changes of contact. Or a method of
         `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``).
     dt : float, optional
-        Step of the fast path, and interval of the output [s]; rounded down to divide `duration`. Default: a mesh cycle in
-        `STEPS` (or a fifth of the shortest natural period if nothing meshes periodically).
+        Step of the fast path, and interval of the output [s]; rounded down to divide `duration`. Default: `default_step`.
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
@@ -66,9 +66,7 @@ def simulate(
     """
     _check(machine, duration, method, dt, every)
     if dt is None:
-        highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-        top = natural_frequencies(machine)[0][-1] if not highest else 0.0
-        dt = 1 / (STEPS * highest) if highest else 1 / (5 * top)
+        dt = min(default_step(machine), duration)
     steps = every * math.ceil(duration / dt / every * (1 - 1e-12))
     if initial is None:
         initial = machine.rest(), np.zeros(len(machine.dofs))
@@ -85,6 +83,18 @@ def simulate(
     away = np.abs(out.q - finer.q).max(axis=0)
     stats = out.stats | {"error": float((away / np.where(size > 1e-9 * size.max(), size, np.inf)).max())}
     return replace(out, stats=stats | {"seconds": out.stats["seconds"] + finer.stats["seconds"]})
+
+
+def default_step(machine):
+    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
+
+    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
+    """
+    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
+    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
+    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
+    return 1 / max(STEPS * highest, top / SHARE)
 
 
 def _check(machine, duration, method, dt, every):
@@ -107,7 +117,10 @@ def _fast(machine, duration, steps, state, every, numba):
     plan = propagator.plan(machine, h, x)
     flat = excitation.flatten(machine, np.linspace(0.0, duration, 4 * steps + 1))
     breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
-    compiled = find_spec("numba") is not None if numba is None else numba
+    installed = find_spec("numba") is not None
+    if numba and not installed:
+        raise ValueError("numba=True, but numba is not installed: pip install gearfe[fast], or leave the choice open")
+    compiled = installed if numba is None else numba
     if compiled:
         from .compiled import run
     else:

@@ -13,6 +13,7 @@ class Flat(NamedTuple):
     damaged tooth: its mesh, number of teeth, first cycle, and start, width, place and number of cells of the change. Of each
     sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each friction row: mesh, place and number of cells. Of
     each load: where its knots start and end.
+    `twin` is the first mesh whose stiffness is always that of a mesh.
     """
 
     cells: np.ndarray
@@ -31,6 +32,7 @@ class Flat(NamedTuple):
     rub_count: np.ndarray
     knots: np.ndarray  # (n, 2): time, value
     knot_place: np.ndarray
+    twin: np.ndarray
 
 
 def flatten(machine, times):
@@ -66,7 +68,18 @@ def flatten(machine, times):
         np.array([r[2] for r in rubs], dtype=whole),
         np.concatenate(knots) if knots else np.zeros((1, 2)),
         np.cumsum([0, *map(len, knots)]).astype(whole),
+        np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
     )
+
+
+def _twins(one, two):
+    """Whether two meshes have the same stiffness at all times, as those of both halves of a herringbone gear."""
+    if (one.frequency, one.phase, len(one.changes)) != (two.frequency, two.phase, len(two.changes)):
+        return False
+    pairs = list(zip(one.changes, two.changes, strict=True))
+    tables = [(one.cycle, two.cycle), *((a[2], b[2]) for a, b in pairs)]
+    alike = all((a.start, a.width) == (b.start, b.width) and np.array_equal(a.cells, b.cells) for a, b in tables)
+    return alike and all(a[:2] == b[:2] for a, b in pairs)
 
 
 def _knots(load, times):

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import excitation, exponential, propagator
 from .contact_law import slopes
-from .dynamics import STEPS
+from .dynamics import default_step
 from .response import Response
 
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
@@ -78,7 +78,7 @@ def steady_state(machine, *, period=None, dt=None, initial=None, iterations=20, 
     period : float, optional
         [s]; default: `common_period`.
     dt : float, optional
-        Step; default a mesh cycle in 80.
+        Step; default `gearfe.dynamics.default_step`.
     initial : (ndarray, ndarray), optional
         Displacements and velocities to start from; default: at rest.
     iterations : int
@@ -134,9 +134,7 @@ class _Flow:
     """The motion over a period in steps of h/2, and its derivative by the start in steps of h."""
 
     def __init__(self, machine, period, dt):
-        highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-        dt = dt or (1 / (STEPS * highest) if highest else period / STEPS)
-        steps = math.ceil(period / dt * (1 - 1e-12))
+        steps = math.ceil(period / (dt or default_step(machine)) * (1 - 1e-12))
         h, law = period / steps, machine.law
         x = machine.G @ machine.rest() if (law["power"] != 1).any() else None
         self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)

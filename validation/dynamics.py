@@ -38,7 +38,8 @@ def run():
     lines = [
         "# Integrators on the herringbone stage",
         "",
-        f"Made by `python -m validation dynamics` on {machine.describe()}. 55 degrees of freedom, 12 meshes, a damaged sun tooth.",
+        f"Made by `python -m validation dynamics` on {machine.describe()}.",
+        "55 degrees of freedom, 12 meshes, a damaged sun tooth.",
         "Error: largest of any mesh force over its range, against DOP853 (rtol 1e-10).",
         "",
         "| integrator | seconds per simulated second | error |",
