@@ -17,9 +17,19 @@ from .tooth import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank
 from .tooth import root_half_angle as root_half
 from .triangle import BULGE, ENDS, jacobians
 
-# edge lengths in modules: flank, tip corner of the loaded flank, a form point with a kink, fillet,
+# edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
-SIZES = {"flank": 0.8, "corner": 0.003, "kink": 0.03, "fillet": 0.5, "root": 0.8, "side": 0.8, "crack": 0.5, "crack tip": 0.004}
+SIZES = {
+    "flank": 0.8,
+    "back": 0.8,
+    "corner": 0.003,
+    "kink": 0.03,
+    "fillet": 0.5,
+    "root": 0.8,
+    "side": 0.8,
+    "crack": 0.5,
+    "crack tip": 0.004,
+}
 CHECKED = 6  # order at whose quadrature points the maps are checked
 GROWTH = 1.2  # of the edge length per length, away from fine places
 
@@ -168,7 +178,8 @@ def _pieces(gear, size, cracks):
     bottom[-1] = -pitch
     out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
     roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
-    back, front = (_flank(gear, size, corner) for corner in (max(2 * half * gear.r_a, size["corner"]), size["corner"]))
+    back = _flank(gear, size["back"], size["kink"], max(2 * half * gear.r_a, size["corner"]))
+    front = _flank(gear, size["flank"], size["kink"], size["corner"])
     width = half * gear.r_a
     tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
     for name, sign in (("unloaded", -1), ("loaded", 1)):
@@ -195,12 +206,12 @@ def _flank_points(gear, roll, sign):
     return cartesian(radius, sign * angle)
 
 
-def _flank(gear, size, corner):
+def _flank(gear, size, kink, corner):
     """Roll lengths of flank vertices from root to tip."""
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
-    fine = [(stop, stop, corner), *([(start, start, size["kink"])] if kinked else [])]
-    rolls = roll_at_arc(gear, spaced(start, stop, min(size["flank"], (stop - start) / 3), fine, 1, GROWTH))
+    fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
+    rolls = roll_at_arc(gear, spaced(start, stop, min(size, (stop - start) / 3), fine, 1, GROWTH))
     rolls[[0, -1]] = gear.roll_f, gear.roll_a
     return rolls
 

@@ -25,7 +25,17 @@ HAT = 0.4  # half their width [m_n]
 OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.sector.SIZES`
-SIZES = {"flank": 0.28, "corner": 0.07, "kink": 0.2, "fillet": 0.4, "root": 1.0, "side": 0.7, "crack": 0.5, "crack tip": 0.01}
+SIZES = {
+    "flank": 0.28,
+    "back": 0.7,
+    "corner": 0.07,
+    "kink": 0.2,
+    "fillet": 0.4,
+    "root": 1.0,
+    "side": 0.7,
+    "crack": 0.5,
+    "crack tip": 0.01,
+}
 
 
 @dataclass(frozen=True, slots=True)
