@@ -182,13 +182,10 @@ def dynamics(arguments):
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats
-        print(
-            f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}, {len(one.time)} outputs"
-        )
+        print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}")
     report = analysis(found, arguments.channel)
-    print(
-        f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}\n\n{report.indicators_text()}"
-    )
+    print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n")
+    print(f"{report.lines_text()}\n\n{report.indicators_text()}")
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
         print(f"\nwritten: {arguments.output}")

@@ -263,7 +263,8 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
     rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     for axes, (name, found) in zip(rows, spectra.items(), strict=True):
-        axes.plot(found.frequency, found.values, linewidth=0.8)
+        axes.semilogy(found.frequency, found.values, linewidth=0.8)
+        axes.set_ylim(bottom=1e-6 * max(one.values.max() for one in spectra.values()))
         axes.set_ylabel(f"{name} [{found.unit}]")
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)

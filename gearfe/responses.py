@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from geometry.pit import Pit
+
 from .dynamics import simulate
 from .indicators import indicator_table, table_text
 from .scene_machine import build_machine
@@ -67,9 +69,11 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     """
     if not duration > 0:
         raise ValueError(f"duration = {duration} s, but it must be positive")
+    damage = [one for pair in scene.pairs.values() for found in pair.damage.get(case, {}).values() for one in found]
+    curves = "ritz3d" if any(isinstance(one, Pit) for one in damage) else "auto"  # one method for what is compared
     out = {}
     for name in ("healthy", *([case] if case else [])):
-        made = build_machine(scene, None if name == "healthy" else name, phases=phases)
+        made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
         whole = simulate(made, (1 + SETTLE) * duration, method=method)
         kept = whole.time >= SETTLE * duration
         out[name] = replace(whole, time=whole.time[kept], states=whole.states[kept])
@@ -94,7 +98,7 @@ def analysis(found, channel=None):
     notes = first.machine.notes
     mesh = _last(notes, "mesh frequenc")
     fault = _last(notes, "fault frequenc") or _first(notes, "turning frequencies")
-    lines = expected_lines(mesh, fault, _last(notes, "carrier frequenc"), harmonics=3)
+    lines = expected_lines(mesh, fault, count=2, harmonics=2)
     signals, spectra = {}, {}
     for case, one in found.items():
         values, rate = np.asarray(one[channel], dtype=float), 1 / (one.time[1] - one.time[0])
