@@ -87,16 +87,17 @@ def analysis(found, channel=None):
     ----------
     found : dict of str to Response
     channel : str, optional
-        Default: the force of the first mesh.
+        Default: the force of the first mesh of the driven stage.
 
     Returns
     -------
     Analysis
     """
     first = next(iter(found.values()))
-    channel = channel or f"force {first.machine.meshes[0].name}"
     notes = first.machine.notes
     mesh = _last(notes, "mesh frequenc")
+    driven = [one.name for one in first.machine.meshes if abs(one.frequency - mesh) < 1e-6 * mesh]
+    channel = channel or f"force {driven[0]}"
     fault = _last(notes, "fault frequenc") or _first(notes, "turning frequencies")
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     signals, spectra = {}, {}
