@@ -248,10 +248,12 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
     members = [np.flatnonzero(line == number) for number in np.unique(line)]
     force = load * length / length.sum()
     mean = _smoother(ends, line, SMOOTH * half_width(load / length.sum(), radius.mean(), modulus))
+    widest = _pieces(ends, line) / 2  # a piece shorter than it is wide acts as one as wide as it is long
     active, x = np.ones(gap.size, dtype=bool), np.ones(gap.size)
     for attempt in range(MOST):
         if attempt < WIDTHS:
             wide = strip(half_width(np.maximum(mean @ force, FLOOR * load / length), radius, modulus))
+            wide = np.minimum(wide, widest)
             x = wide if attempt < WIDTHS // 2 else np.sqrt(x * wide)
         total = matrix.copy()
         for at in members:
@@ -270,6 +272,13 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):
         if not active.any():
             active[:] = True
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
+
+
+def _pieces(ends, line):
+    """Length of the unbroken piece of contact each cell belongs to ``(n,)`` [mm]."""
+    apart = (np.diff(line) != 0) | (np.abs(ends[0][1:] - ends[1][:-1]) > 1e-9 * (ends[1] - ends[0])[1:])
+    number = np.concatenate([[0], np.cumsum(apart)])
+    return np.bincount(number, weights=ends[1] - ends[0])[number]
 
 
 def _smoother(ends, line, reach):

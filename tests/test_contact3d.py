@@ -100,7 +100,7 @@ def test_loads_satisfy_the_contact_conditions():
         force, approach = contact3d.line_cells(matrix, gap, load, k, ends, line, radius, modulus)
         reach = contact3d.SMOOTH * half_width(load / np.diff(edge).sum(), radius.mean(), modulus)
         mean = np.maximum(contact3d._smoother(ends, line, reach) @ force, 1e-9 * load / np.diff(edge))
-        x = halfspace.strip(half_width(mean, radius, modulus))
+        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), contact3d._pieces(ends, line) / 2)
         total = matrix + k * np.where(line[:, None] == line, halfspace.line_kernel(*ends, x), 0.0)
         closed = total @ force + gap
         close = (
@@ -215,3 +215,18 @@ def test_crack_lowers_a_spur_pair_as_in_the_plane():
     )
     assert other.k[0] < 0.98 * solid[0][0], "tooth -1 of the wheel meets tooth 1 of the pinion"
     assert abs(other.k[1] / solid[0][1] - 1) < 0.1
+
+
+def test_a_piece_that_vanishes_takes_its_load_with_it():
+    """A short piece of line beside a long one: what it carries falls to nothing with its length."""
+    edge = np.linspace(0, 10, 26)
+    carried = []
+    for length in (0.1, 0.01, 0.001):
+        ends = np.append(edge[:-1], 12.0), np.append(edge[1:], 12.0 + length)
+        line = np.zeros(26, dtype=int)
+        force, _ = contact3d.line_cells(
+            np.full((26, 26), 1e-6), np.zeros(26), 1500.0, 2.8e-6, ends, line, np.full(26, 3.0), 1.1e5
+        )
+        carried.append(force[-1])
+    assert_allclose(np.array(carried[:2]) / carried[1:], 10.0, rtol=0.5)
+    assert carried[2] < 1e-3 * 1500.0
