@@ -20,7 +20,7 @@ def same(printed, shown):
 def test_programs_print_what_is_shown():
     shown = [match[1] for match in readme.OUTPUT.findall(TEXT)]
     printed = readme.outputs(TEXT)
-    assert len(shown) == len(printed) == 3
+    assert len(shown) == len(printed) == 4
     for ours, theirs in zip(printed, shown, strict=True):
         same(ours, theirs)
 

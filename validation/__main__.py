@@ -10,6 +10,7 @@ PAGES = {
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
     "hard": "hard cases, each with its outcome",
+    "three": "three dimensions: energy model against hexahedra of the whole gear",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
     "dynamics": "integrators: seconds against error on 55 degrees of freedom",
     "own_model": "the example of a curve exported by MATLAB",
