@@ -49,7 +49,7 @@ class StiffnessCurve:
     def zones(self):
         """Mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs, on the path of contact), ``mean``, ``max``.
 
-        A zone none of the phases falls into is left out.
+        A zone none of the phases falls into is left out, and so are those of helical teeth.
         """
         out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
@@ -63,6 +63,8 @@ class StiffnessCurve:
         return out | {"mean": float(relative.max()), "max": float(relative[np.argmax(self.k)])}
 
     def _rows(self):
+        if self.meta.get("face") in ("helical", "herringbone"):
+            return {}  # lines of several lengths, no zones
         inside = (self.phase + 1e-9) % 1.0 <= self.meta["eps_alpha"] % 1.0 + 2e-9
         low = int(self.meta["eps_alpha"])
         names = {1: "single", 2: "double", 3: "triple"}

@@ -31,15 +31,23 @@ def two_materials(material):
     return tuple(materials)
 
 
-def phase_array(phases, span, pair):
-    """Phases spelled out."""
+def overlap_ratio(pair, face, groove):
+    """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says; 0 for spur."""
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    if face == "herringbone":
+        width = (width - groove) / 2
+    return width * math.tan(abs(pair.gear_1.beta_b)) / pair.p_bt if face in ("helical", "herringbone") else 0.0
+
+
+def phase_array(phases, span, pair, overlap=0.0):
+    """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
     if span not in ("cycle", "tooth"):
         raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
     if np.ndim(phases) == 0:
         if not isinstance(phases, Real) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
             raise ValueError(f"phases = {phases}, but give a number of phases >= 1, or an array of phases")
         if span == "tooth":
-            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + 0.25) * phases) + 1) / int(phases)
+            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / int(phases)
         return np.arange(int(phases)) / int(phases)
     phases = np.asarray(phases, dtype=float)
     if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():

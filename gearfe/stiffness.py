@@ -17,7 +17,7 @@ from .contact import Mesh
 from .curve import StiffnessCurve
 from .energy import coupled, ritz
 from .energy.plain_sum import plain_sum
-from .inputs import CLOSED, METHODS, by_gear, choose, phase_array, refuse, two_materials, warn_if_unseen
+from .inputs import CLOSED, METHODS, by_gear, choose, overlap_ratio, phase_array, refuse, two_materials, warn_if_unseen
 from .material import check_state
 from .wide import wide_curve
 
@@ -69,7 +69,7 @@ def mesh_stiffness(
         Number of equidistant phases per mesh cycle, or the phases themselves.
     span : {"cycle", "tooth"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
-        after it (where the damaged tooth is).
+        after it (where the damaged tooth is); in three dimensions pair 0 enters at one end at phase 0.
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: ``ritz``, ``ritz3d``, ``fe``
         and the plain sums; pits: ``ritz3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses
@@ -121,10 +121,12 @@ def mesh_stiffness(
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
     materials = two_materials(material)
     check_state(state)
-    phase = phase_array(phases, span, pair)
     cracks, pits = by_gear(pair, damage)
     method, why = choose(method, pair, pits, face, teeth)
     refuse(method, pair, cracks, pits, teeth, variants, face)
+    if method == "ritz3d" and face is None:
+        face = "helical" if pair.gear_1.beta else "spur"
+    phase = phase_array(phases, span, pair, overlap_ratio(pair, face, groove))
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
@@ -135,7 +137,7 @@ def mesh_stiffness(
         options = {"state": state}
         solve, details = _coupled(pair, materials, phase, state)
     elif method == "ritz3d":
-        options = {"face": face or ("helical" if pair.gear_1.beta else "spur"), "groove": groove, "refine": float(refine)}
+        options = {"face": face, "groove": groove, "refine": float(refine)}
         solve, details = None, {"extended": False}
     else:
         options = {"extended": bool(extended), **numeric}
