@@ -149,7 +149,7 @@ def compare(arguments):
     print(f"errors are against {meta['method']}; the estimate is its own discretisation error\n")
     print(result.table())
     if arguments.plot:
-        from .render import plot_curves
+        from .plots import plot_curves
 
         plot_curves(result.curves, arguments.plot)
         print(f"\nwritten: {arguments.plot}")

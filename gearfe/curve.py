@@ -98,6 +98,6 @@ class StiffnessCurve:
 
     def plot(self, path=None):
         """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
-        from .render import plot_curves
+        from .plots import plot_curves
 
         return plot_curves({self.meta.get("method", "k"): self}, path)

@@ -80,7 +80,7 @@ class ErrorMap:
 
     def plot(self, path, formulations=None, x="load", y="bore_1", zone="mean"):
         """Heat maps of the median error of healthy pairs over two columns, one for each formulation."""
-        from .render import plot_map
+        from .plots import plot_map
 
         names = formulations or [name for name in self.formulations if name not in CRACKED]
         return plot_map(self, names, x, y, zone, path)

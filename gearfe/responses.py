@@ -43,7 +43,7 @@ class Analysis:
 
     def plot(self, path=None):
         """Spectra below each other; returns the figure."""
-        from .render import plot_spectra
+        from .plots import plot_spectra
 
         return plot_spectra(self.spectra, self.lines, path)
 

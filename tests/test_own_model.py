@@ -197,7 +197,7 @@ def test_command_line_names_the_file_that_is_wrong(tmp_path, capsys):
 
 
 def test_own_models_are_drawn():
-    from gearfe.render import plot_curves
+    from gearfe.plots import plot_curves
 
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -1,0 +1,177 @@
+"""Plots (matplotlib): stiffness curves, error maps, contact lines, spectra, phase portraits."""
+
+import numpy as np
+
+from .export import written
+
+
+def plot_curves(curves, path=None):
+    """Draw stiffness curves over the phase, each with the load share below; save to `path` if given.
+
+    Parameters
+    ----------
+    curves : dict of str to StiffnessCurve
+    path : path, optional
+        Picture file; its suffix decides (png, svg, pdf).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 5), layout="constrained")
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    for name, curve in curves.items():
+        phase, order = curve.phase, np.arange(curve.phase.size)
+        if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:  # one cycle: close it
+            phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
+        style = "-" if name == next(iter(curves)) else "--"
+        top.plot(phase, curve.k[order] / 1e9, style, label=name)
+        if style == "-":
+            share = np.where(curve.force > 0, curve.share, np.nan)
+            bottom.plot(curve.phase, share, label=[f"pair {k:+d}" for k in curve.order])
+    top.set_ylabel("mesh stiffness k [GN/m]")
+    top.set_ylim(bottom=0)
+    top.legend()
+    bottom.set_ylabel(f"load share ({next(iter(curves))})")
+    bottom.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
+    bottom.set_ylim(0, 1.05)
+    bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_map(found, formulations, x, y, zone, path=None, bins=8):
+    """Heat maps of the median error over two columns of an `gearfe.errormap.ErrorMap`, one for each formulation.
+
+    Columns with few different values (loads) get one bin each, others `bins` of equal width.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(3.4 * len(formulations) + 1, 3.4), layout="constrained")
+    row = figure.subplots(1, len(formulations), sharex=True, sharey=True, squeeze=False)[0]
+    (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
+    for axes, name in zip(row, formulations, strict=True):
+        error = 100 * found.columns[f"{name} {zone}"]
+        table = np.full((len(names_y), len(names_x)), np.nan)
+        for i in range(len(names_y)):
+            for j in range(len(names_x)):
+                here = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
+                table[i, j] = np.median(here) if here.size else np.nan
+                if here.size:
+                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7)
+        image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")
+        axes.set_title(name, fontsize=9)
+        axes.set_xlabel(x)
+        axes.set_xticks(range(len(names_x)), names_x, fontsize=7)
+        axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
+    row[0].set_ylabel(y)
+    figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=100)
+    return figure
+
+
+def _binned(values, bins):
+    """Bin of every value, and the names of the bins."""
+    few = np.unique(values)
+    if few.size <= bins:
+        return np.searchsorted(few, values), [f"{v:g}" for v in few]
+    edges = np.linspace(values.min(), values.max(), bins + 1)
+    return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]
+
+
+def plot_spectra(spectra, lines=None, path=None, top=None):
+    """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
+
+    Parameters
+    ----------
+    spectra : dict of str to gearfe.signals.Spectrum
+    lines : dict of str to float, optional
+        See `gearfe.spectral_lines.expected_lines`.
+    path : path, optional
+    top : float, optional
+        Largest frequency or order; default 1.2 times the last line.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
+    rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    for axes, (name, found) in zip(rows, spectra.items(), strict=True):
+        axes.semilogy(found.frequency, found.values, linewidth=0.8)
+        axes.set_ylim(bottom=1e-6 * max(one.values.max() for one in spectra.values()))
+        axes.set_ylabel(f"{name} [{found.unit}]")
+        for value in (lines or {}).values():
+            axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
+    for name, value in (lines or {}).items():
+        rows[0].annotate(name, (value, 1), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom")
+    end = 1.2 * max(lines.values()) if lines and top is None else top
+    rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
+    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_phase(portrait, section=None, unit="m", path=None):
+    """Draw a phase portrait, `gearfe.portrait.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5, 4), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(*portrait, linewidth=0.4)
+    if section is not None:
+        axes.plot(*np.transpose(section), "k.", markersize=4)
+    axes.set_xlabel(f"displacement [{unit}]")
+    axes.set_ylabel(f"velocity [{unit}/s]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_contact(pair, contact, phase=0, path=None):
+    """Contact lines of one phase on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contact : gearfe.contact3d.Contact3D
+    phase : int
+        Which of its phases.
+    path : path, optional
+        Picture file; its suffix decides (png, svg, pdf).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    cells = contact.cells[phase]
+    figure = Figure(figsize=(8, 5), layout="constrained")
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    radius = np.hypot(pair.gear_1.r_b, cells.roll_1)
+    drawn = top.scatter(cells.z, radius, c=cells.pressure, s=12, cmap="inferno")
+    for limit in (pair.gear_1.r_form, pair.gear_1.r_a):
+        top.axhline(limit, color="gray", linewidth=0.7)
+    top.set_ylabel("contact radius on the pinion [mm]")
+    top.set_title(f"phase {contact.phase[phase]:.3g}", fontsize=9)
+    figure.colorbar(drawn, ax=top, label="pressure [MPa]")
+    for order in np.unique(cells.order):
+        for half in np.unique(cells.half):
+            own = np.flatnonzero((cells.order == order) & (cells.half == half))
+            own = own[np.argsort(cells.z[own])]
+            bottom.plot(cells.z[own], cells.load[own] / cells.width[own], ".-", markersize=3, label=f"pair {order:+d}")
+    bottom.set_ylabel("load [N/mm]")
+    bottom.set_xlabel("along the width [mm]")
+    bottom.legend(fontsize=7)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=110)
+    return figure
