@@ -230,3 +230,12 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
         carried.append(force[-1])
     assert_allclose(np.array(carried[:2]) / carried[1:], 10.0, rtol=0.5)
     assert carried[2] < 1e-3 * 1500.0
+
+
+def test_plot_of_the_contact_lines(tmp_path):
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 10.0}
+    pair = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **rack), gf.Gear(z=27, r_bore=14.0, **rack))
+    found = pair_stiffness3d(pair, 1000.0, gf.Material(), [0.4], order=2, axial=8)
+    figure = gf.plot_contact(pair, found, path=tmp_path / "lines.png")
+    assert (tmp_path / "lines.png").stat().st_size > 10000
+    assert figure.axes[1].get_xlabel() == "along the width [mm]"
