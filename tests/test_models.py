@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.signal import hilbert
 
 import gearfe as gf
 from gearfe.bodies import around, through
@@ -259,6 +260,86 @@ def test_helical_pair_of_the_article():
     chord = 10.0 * 2.0 / math.hypot(10.0 * slope, 2.0) / math.cos(base_helix(pinion))  # through the centre
     assert_allclose(loss.max(), chord, rtol=1e-3)
     assert mesh.at_phase(np.arange(0, 3, 0.01)).min() < line_cycle(pair, 1.0).k.min() * mesh.stiffness.k.max()
+
+
+def pattern(teeth, order, z=17):
+    """Amplitude of a line at ``order`` turns for equal impacts of those teeth over that of one tooth."""
+    return abs(np.exp(2j * math.pi * order * np.asarray(teeth) / z).sum())
+
+
+def test_which_places_of_three_teeth_could_give_twice_the_turning_frequency():
+    """Equal impacts at teeth p_j of 17 multiply the line n f_r of one tooth by ``|sum exp(2 pi i n p_j / 17)|``.
+
+    2 f_r gains most of all lines up to 8 f_r (beyond, the factors repeat backwards, also about f_m) in 15 of the 120 sets of
+    three teeth with tooth 0: two of them within two teeth of each other, the third about half a turn away, with gaps of
+    1, 8, 8; 1, 7, 9 or 2, 7, 8 teeth in any order. Neighbours give f_r, teeth at thirds of a turn 3 f_r.
+    """
+    dominant = []
+    for a in range(1, 17):
+        for b in range(a + 1, 17):
+            gains = [pattern((0, a, b), n) for n in range(1, 9)]
+            if gains[1] > (1 + 1e-9) * max(gains[:1] + gains[2:]):
+                dominant.append((0, a, b))
+    gaps = {tuple(sorted((a, b - a, 17 - b))) for _, a, b in dominant}
+    assert len(dominant) == 15
+    assert gaps == {(1, 8, 8), (1, 7, 9), (2, 7, 8)}
+    assert_allclose([pattern((0, 8, 9), n) for n in (1, 2, 3, 4)], [0.966, 2.865, 0.700, 2.478], atol=1e-3)
+    assert [1 + int(np.argmax([pattern(teeth, n) for n in range(1, 9)])) for teeth in ((0, 1, 2), (0, 6, 11))] == [1, 3]
+
+
+@pytest.fixture(scope="module")
+def pitted_responses():
+    """Steady responses of the helical pair of the article over a turn, by pitted pinion teeth."""
+    rack = {"m_n": 2.1, "alpha_n": math.radians(17.5), "beta": math.radians(29)}
+    pair = gf.GearPair(gf.Gear(z=17, b=19.8, r_bore=6.0, **rack), gf.Gear(z=60, b=16.9, r_bore=24.0, **rack))
+    steel = (gf.Material(E=210e3, nu=0.278),) * 2
+    large = [(pair.pitch_radius_1, 8.0, 10.0, 2.0)]
+    row = [(pair.pitch_radius_1, place, 3.0, 2.0) for place in (3.0, 8.0, 13.0)]
+    cases = {teeth: tuple((tooth, large) for tooth in teeth) for teeth in ((0,), (0, 8), (0, 8, 9), (0, 1, 2), (0, 6, 11))}
+    from gearfe.steady import steady_state
+
+    cases["three pits on one tooth"] = ((0, row),)
+    return {name: steady_state(pitted_helical(pair, steel, pits=p), dt=1 / 708.33 / 40).response for name, p in cases.items()}
+
+
+def turns(response, channel="pinion.y acceleration", count=8):
+    """Squared envelope of a channel over a turn: amplitudes at 1, 2, ... turns."""
+    x = response[channel][:-1]
+    squared = np.abs(hilbert(x - x.mean())) ** 2
+    return np.abs(np.fft.rfft(squared))[1 : count + 1]
+
+
+def test_several_pitted_teeth_show_twice_the_turning_frequency_only_half_a_turn_apart(pitted_responses):
+    """The claim of S3, that 2 f_r dominates with several pits, is a statement on where they are, not on how many.
+
+    In the squared envelope of the pinion's acceleration the largest line is 2 f_r = 83.3 Hz for teeth 0 and 8 and for 0, 8 and 9
+    (17 teeth cannot be halved: 8 is the nearest), f_r for neighbours and for three pits on one tooth, as for one pit, and 3 f_r
+    for thirds of a turn. Where the impacts are apart the lines are those of one tooth times the factors of their places, within
+    0.15. Verdict: the claim holds for teeth half a turn apart only; it does not hold for several pits in general, and not for
+    several on one tooth, which is how the scene reads the article's case of several pits.
+    """
+    found = {name: turns(one) for name, one in pitted_responses.items()}
+    largest = {name: 1 + int(np.argmax(lines)) for name, lines in found.items()}
+    want = {(0,): 1, (0, 8): 2, (0, 8, 9): 2, (0, 1, 2): 1, (0, 6, 11): 3, "three pits on one tooth": 1}
+    assert largest == want
+    assert found[(0, 8, 9)][1] > 1.8 * found[(0, 8, 9)][0]
+    assert found[(0, 8)][1] > 7 * found[(0, 8)][0]
+    for teeth in ((0, 8), (0, 6, 11)):
+        assert_allclose(found[teeth][:4] / found[(0,)][:4], [pattern(teeth, n) for n in (1, 2, 3, 4)], atol=0.15)
+
+
+def test_twice_the_turning_frequency_in_the_mesh_force(pitted_responses):
+    """Lines of the force itself: they grow up to the 13th, where the pair resonates; f_r and 2 f_r are below 1 % of it.
+
+    2 f_r is never its largest line. What teeth half a turn apart do to it is to raise even lines over odd ones.
+    """
+    force = {name: lines(one, "force mesh", 1 / 0.024, range(1, 17)) for name, one in pitted_responses.items()}
+    one, three = force[(0,)], force[(0, 8, 9)]
+    for found in (one, three):
+        assert 1 + int(np.argmax(found)) == 13
+        assert found[:2].max() < 0.01 * found.max()
+    gains = three / one
+    assert gains[[1, 3, 5]].min() > 2.5 * gains[[2, 4, 6]].max()
 
 
 def test_impact_law_of_the_spur_stage_runs(spur_stage):
