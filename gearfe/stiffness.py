@@ -124,7 +124,7 @@ def mesh_stiffness(
     phase = phase_array(phases, span, pair)
     cracks, pits = by_gear(pair, damage)
     method, why = choose(method, pair, pits, face, teeth)
-    refuse(method, pair, cracks, pits, teeth, variants, face)
+    refuse(method, pair, cracks, pits, teeth, variants, face, groove)
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
