@@ -68,7 +68,7 @@ def choose(method, pair, pits, face, teeth):
     return "ritz", "spur gears, nothing changes along the width: plane strain"
 
 
-def refuse(method, pair, cracks, pits, teeth, variants, face):
+def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
     """Raise ValueError for what a method does not model."""
     if face not in (None, *FACES):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
@@ -76,6 +76,8 @@ def refuse(method, pair, cracks, pits, teeth, variants, face):
         raise ValueError(
             f"face = {face!r} with method = {method!r}, a transverse section: use method = 'ritz3d' or a closed form"
         )
+    if method in ("ritz", "fe", "coupled") and groove:
+        raise ValueError(f"groove = {groove} mm with method = {method!r}, a transverse section: use face = 'herringbone'")
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
     if ring and (method == "coupled" or (method in CLOSED and (variants or {}).get("foundation") != "none")):
         raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")

@@ -53,7 +53,13 @@ def bands_of(pair, face, groove):
 
 
 def lines_of(pair, phase, pits, bands, beta_b):
-    """Contact lines of one phase: half, pair order, roll of the pinion at the first end [mm], intervals of depth left by pits."""
+    """Contact lines of one phase: half, pair order, roll of the pinion at the first end [mm], intervals of depth left by pits.
+
+    Raises
+    ------
+    RuntimeError
+        If none is left; the message says at which phase.
+    """
     start, end = pair.path
     slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
     first = math.ceil((start - end) / pair.p_bt - phase)
@@ -70,6 +76,8 @@ def lines_of(pair, phase, pits, bands, beta_b):
             if high - low > 1e-6 * width:
                 left = _left(pair, order, roll, slope, pits, band, (low, high))
                 out.append((half, order, roll, left))
+    if not any(left for *_, left in out):
+        raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
     return out
 
 
@@ -105,7 +113,5 @@ def cells_of(pair, found, bands, slope, step):
             first, last = bands[half]
             z = first + math.copysign(1, last - first) * middle
             rows.append(np.array([np.full(z.size, half), np.full(z.size, order), z, width, middle, roll - slope * middle]))
-    if not rows:
-        raise RuntimeError("no contact at some phase: pits cover it all, or the pair has left its path of contact")
     half, order, z, width, depth, roll_1 = np.hstack(rows)
     return Cells(half.astype(int), order.astype(int), z, width, depth, roll_1, pair.mate_roll(roll_1))

@@ -123,7 +123,7 @@ def mesh_stiffness(
     check_state(state)
     cracks, pits = by_gear(pair, damage)
     method, why = choose(method, pair, pits, face, teeth)
-    refuse(method, pair, cracks, pits, teeth, variants, face)
+    refuse(method, pair, cracks, pits, teeth, variants, face, groove)
     if method == "ritz3d" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap_ratio(pair, face, groove))
