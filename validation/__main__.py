@@ -13,6 +13,7 @@ PAGES = {
     "three": "three dimensions: energy model against hexahedra of the whole gear",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
     "dynamics": "integrators: seconds against error on 55 degrees of freedom",
+    "hard_dynamics": "hard cases of the dynamics, each with its outcome",
     "own_model": "the example of a curve exported by MATLAB",
     "readme": "the table and the program output in the README",
 }
