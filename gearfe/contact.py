@@ -73,7 +73,8 @@ class Mesh:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        self.radius = np.where(np.isfinite(found.gap), pair.relative_radius(found.roll_1, found.roll_2), 1.0)
+        radius = pair.relative_radius(found.roll_1, found.roll_2)
+        self.radius = np.where(np.isfinite(found.gap) & (radius > 0), radius, 1.0)  # pairs far off their path have none
         self.opening = self._opening(found.roll_1, found.roll_2, found.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
