@@ -11,6 +11,7 @@ import numpy as np
 from geometry.damage import Crack, check_apart
 from geometry.pit import Pit
 
+from .contact_cycle import overlap_ratio
 from .energy import published, textbook
 from .energy.plain_sum import plain_sum
 from .energy.slices import FACES
@@ -31,12 +32,12 @@ def two_materials(material):
     return tuple(materials)
 
 
-def overlap_ratio(pair, face, groove):
+def overlap(pair, face, groove):
     """Overlap ratio of a pair (of one half, if herringbone) whose teeth run as `face` says; 0 for spur."""
     width = min(pair.gear_1.b, pair.gear_2.b)
     if face == "herringbone":
         width = (width - groove) / 2
-    return width * math.tan(abs(pair.gear_1.beta_b)) / pair.p_bt if face in ("helical", "herringbone") else 0.0
+    return overlap_ratio(pair, width) if face in ("helical", "herringbone") else 0.0
 
 
 def phase_array(phases, span, pair, overlap=0.0):

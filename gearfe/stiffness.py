@@ -17,7 +17,7 @@ from .contact import Mesh
 from .curve import StiffnessCurve
 from .energy import coupled, ritz
 from .energy.plain_sum import plain_sum
-from .inputs import CLOSED, METHODS, by_gear, choose, overlap_ratio, phase_array, refuse, two_materials, warn_if_unseen
+from .inputs import CLOSED, METHODS, by_gear, choose, overlap, phase_array, refuse, two_materials, warn_if_unseen
 from .material import check_state
 from .wide import wide_curve
 
@@ -126,7 +126,7 @@ def mesh_stiffness(
     refuse(method, pair, cracks, pits, teeth, variants, face, groove)
     if method == "ritz3d" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
-    phase = phase_array(phases, span, pair, overlap_ratio(pair, face, groove))
+    phase = phase_array(phases, span, pair, overlap(pair, face, groove))
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
