@@ -80,8 +80,13 @@ def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
     if method in ("ritz", "fe", "coupled") and groove:
         raise ValueError(f"groove = {groove} mm with method = {method!r}, a transverse section: use face = 'herringbone'")
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
-    if ring and (method == "coupled" or (method in CLOSED and (variants or {}).get("foundation") != "none")):
-        raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")
+    if ring and method == "coupled":
+        raise ValueError("method = 'coupled' has no ring: use method = 'ritz'")
+    if ring and method in CLOSED and (variants or {}).get("foundation") not in ("none", "external"):
+        raise ValueError(
+            f"method = {method!r} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
+            "out (or 'none' for both gears'), or use method = 'ritz'"
+        )
     if damaged and method == "coupled":
         raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
     if any(pits) and method not in (*CLOSED, "ritz3d"):

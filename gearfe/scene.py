@@ -53,6 +53,7 @@ DAMAGE = {
         "start": (TEXT, "30deg"),
         "turning": (TRUTH, False),
         "tooth": (WHOLE, 0),
+        "pair": (TEXT, None),
     },
     "pits": {
         "case": (TEXT, REQUIRED),
@@ -65,6 +66,7 @@ DAMAGE = {
         "depth_mm": (NUMBER, REQUIRED),
         "angle_deg": (NUMBER, 0.0),
         "tooth": (WHOLE, 0),
+        "pair": (TEXT, None),
     },
 }
 MACHINE = {
@@ -187,15 +189,18 @@ def _scene(file, data):
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
         if not row["force_N"] > 0:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
-        found = _cases(file, damage, gears, row)
+        found = _cases(file, damage, gears, name, rows["pair"])
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
     notes = tuple(_table(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
     return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run)
 
 
-def _cases(file, damage, gears, pair):
-    """Damage of a pair by case, from the scene's [[crack]] and [[pits]] tables."""
-    out = {}
+def _cases(file, damage, gears, name, pairs):
+    """Damage of the pair `name` by case, from the scene's [[crack]] and [[pits]] tables.
+
+    Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
+    """
+    out, pair = {}, pairs[name]
     for kind, tables in damage.items():
         if not isinstance(tables, list):
             raise ValueError(f"{file}: damage is written as [[{kind}]] tables")
@@ -203,9 +208,13 @@ def _cases(file, damage, gears, pair):
             where = f"{kind} {i + 1}"
             row = _table(file, where, table, DAMAGE[kind])
             _known(file, where, "gear", row["gear"], gears, "gear")
+            if row["pair"] is not None:
+                _known(file, where, "pair", row["pair"], pairs, "pair")
+                if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
+                    raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
             made = _made(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
             for side, key in (("pinion", "gear_1"), ("wheel", "gear_2")):
-                if pair[key] == row["gear"]:
+                if pair[key] == row["gear"] and row["pair"] in (None, name):
                     out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
     return out
 

@@ -228,7 +228,7 @@ def test_what_is_outside_its_range_is_named():
     [
         ({"crack_model": "curved"}, "constant, straight, parabola"),
         ({"root": "square"}, "fillet, base, line"),
-        ({"foundation": "rigid"}, "'sainsot' or 'none'"),
+        ({"foundation": "rigid"}, "sainsot, external, none"),
         ({"contact": "iso"}, "linear, published, weber, palmgren"),
         ({"face": "bevel"}, "spur, helical, herringbone"),
         ({"groove": 2.0}, "only face = 'herringbone'"),

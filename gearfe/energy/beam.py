@@ -10,6 +10,7 @@ from numpy.polynomial.legendre import leggauss
 
 from geometry.tooth import cartesian, fillet, flank, form_point
 
+FOUNDATIONS = ("sainsot", "external", "none")
 FLANK_POINTS, FILLET_POINTS = leggauss(24), leggauss(64)
 
 # rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F

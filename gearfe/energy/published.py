@@ -7,14 +7,14 @@ from numpy.polynomial.legendre import leggauss
 
 from geometry.tooth import flank
 
-from .beam import Components, load_angle, sainsot, sainsot_outside
+from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
 from .integrals import integrals
 
 GAUSS = leggauss(32)
 
 
-def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant"):
-    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics"); not for rings.
+def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot"):
+    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
 
     As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
     ``cos(a)**2 / (E L)``, and the coefficient table.
@@ -39,6 +39,11 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
        take nothing more (its case 3, there only said to be "close to");
     7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
 
+    For a ring, with ``foundation="external"`` (as in `textbook`):
+
+    8. its beam is integrated over its own profile, the involute extended to the root circle (the printed integrals from a_f to
+       a_1 have lost their factors); it has no foundation, since that formula is a fit to discs held at their bore.
+
     The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
 
     References
@@ -49,10 +54,14 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
     force = load_angle(gear, roll)
     alpha_2 = gear.base_half_angle
     cos = np.cos(force)
-    if cracks or pits:
+    if foundation not in FOUNDATIONS:
+        raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
+    if cracks or pits or gear.internal:
         bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model)
     else:
         bending, shear, axial = _healthy(gear, material, force)
+    if foundation == "none" or (foundation == "external" and gear.internal):
+        return Components(bending, shear, axial, np.zeros(roll.shape))
     theta = (
         math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
         if gear.r_f < gear.r_b
@@ -97,7 +106,7 @@ def _damaged(gear, material, roll, cracks, pits, crack_model):
     cos, sin = np.cos(force), np.sin(force)
     radius, angle = flank(gear, roll)
     i0, i1, i2, area, uncracked = integrals(gear, roll, root="prism", cracks=cracks, pits=pits, crack_model=crack_model)
-    arm = cos * radius * np.cos(angle) - sin * radius * np.sin(angle)
+    arm = cos * gear.outward * radius * np.cos(angle) - sin * radius * np.sin(angle)
     bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
     return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E
 

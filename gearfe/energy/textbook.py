@@ -4,7 +4,7 @@ import numpy as np
 
 from geometry.tooth import flank, root_half_angle
 
-from .beam import Components, load_angle, sainsot, sainsot_outside
+from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
 from .integrals import integrals
 
 
@@ -48,7 +48,8 @@ def components(
         Where the beam begins: on the root circle over the true fillet; or where the involute, extended downwards, meets the
         larger of base and root circle, ``base`` with nothing below it, ``line`` with a straight radial flank and ``prism``
         with constant thickness down to the root circle.
-    foundation : {"sainsot", "none"}
+    foundation : {"sainsot", "external", "none"}
+        ``external``: Sainsot's of external gears, none of a ring.
     lever : {"crossing", "contact"}
         u: height over the root circle of the point where the load line crosses the centre-line (Sainsot), or of the
         contact point itself (as some codes have it).
@@ -65,8 +66,8 @@ def components(
     (2014) 179-194 (from the root circle over the true fillet); X. Liang, H. Zhang, L. Liu, M. J. Zuo, Mech. Mach. Theory
     106 (2016) 1-15 (pits as lost section and lost contact); Sainsot et al. 2004, eq. 8, its bracket as here.
     """
-    if foundation not in ("sainsot", "none"):
-        raise ValueError(f"foundation = {foundation!r}, but it must be 'sainsot' or 'none'")
+    if foundation not in FOUNDATIONS:
+        raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
     if lever not in ("crossing", "contact"):
         raise ValueError(f"lever = {lever!r}, but it must be 'crossing' or 'contact'")
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
@@ -79,7 +80,7 @@ def components(
     bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
     shear = 1.2 * cos**2 * area / material.shear_modulus
     axial = sin**2 * uncracked / material.E
-    if foundation == "none":
+    if foundation == "none" or (foundation == "external" and gear.internal):
         return Components(bending, shear, axial, np.zeros(roll.shape))
     theta = root_half_angle(gear) if theta_f is None else theta_f
     outside = sainsot_outside(gear, theta)
