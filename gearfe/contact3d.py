@@ -13,6 +13,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from geometry.pit import check_pits
 
+from .bodies3d import between, bodies_of
 from .energy.halfspace import line_kernel, strip
 from .energy.ritz3d import axial_degree, flexibility3d
 from .hertz import contact_modulus, half_width, peak_pressure
@@ -80,7 +81,7 @@ def pair_stiffness3d(
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
     pits, cracks : (sequence, sequence)
         Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
-        Cracks run through the whole width (of both halves), their faces may pass through each other.
+        The faces of cracks may pass through each other.
     face : {"spur", "helical", "herringbone"}
         The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
         otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
@@ -118,11 +119,12 @@ def pair_stiffness3d(
     lines = [lines_of(pair, p, pits, bands, abs(pair.gear_1.beta_b)) for p in phase]
 
     def solve(order, less):
-        bodies = []
-        for (gear, offset), own, found in zip(_gears(pair, face, groove), materials, cracks, strict=True):
+        def flexible(gear, own, found):
             degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
             options = {"neighbours": max(1, _reach(lines)), "order": order, "axial": degree, "refine": refine}
-            bodies.append((flexibility3d(gear, own, tuple(found), **options), offset))
+            return flexibility3d(gear, own, found, **options)
+
+        bodies = bodies_of(pair, materials, cracks, bands, face, groove, flexible)
         return _solved(pair, force, materials, phase, lines, bodies, bands, step)
 
     solved = solve(order, 0)
@@ -146,22 +148,6 @@ def _solved(pair, force, materials, phase, lines, bodies, bands, step):
     return Contact3D(phase, 1e3 * force / approach, approach, orders, load, tuple(cells))
 
 
-def _gears(pair, face, groove):
-    """Each gear as its flexibility sees it, and where its contact begins on it [mm].
-
-    Heights count from the end that touches first: the pinion's roll length falls with them, so its beta is negative. The wheel's,
-    in its own frame, is the opposite one; also a ring's, whose frame is mirrored.
-    """
-    out = []
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
-        if face == "herringbone":
-            out.append((replace(gear, beta=sense * abs(gear.beta), b=(gear.b - groove) / 2), (gear.b - common) / 2))
-        else:
-            out.append((replace(gear, beta=sense * abs(gear.beta)), (gear.b - common) / 2))
-    return out
-
-
 def _reach(lines):
     """Largest difference of the orders of pairs in contact at the same phase."""
     orders = [[order for _, order, _, _ in found] for found in lines]
@@ -181,20 +167,10 @@ def _carried(pair, cells, bodies, normal, materials, beta_b):
     radius = np.abs(pair.relative_radius(cells.roll_1, cells.roll_2)) / math.cos(beta_b)
     ends = [(cells.depth + side * cells.width / 2) / math.cos(beta_b) for side in (-1, 1)]
     line = np.unique(np.array([cells.half, cells.order]), axis=1, return_inverse=True)[1].ravel()
-    kernel = sum(body.kernel for body, _ in bodies)
-    load, approach = line_cells(_between(cells, bodies), np.zeros(line.size), normal, kernel, ends, line, radius, modulus)
+    kernel = sum(body.kernel for body, _ in bodies[0])
+    load, approach = line_cells(between(cells, bodies), np.zeros(line.size), normal, kernel, ends, line, radius, modulus)
     pressure = peak_pressure(load / (ends[1] - ends[0]), radius, modulus)
     return replace(cells, load=load, pressure=pressure), approach
-
-
-def _between(cells, bodies):
-    """Approach ``(n, n)`` of the cells per unit normal force on each, half-space left out [mm/N]."""
-    out = np.zeros((cells.z.size,) * 2)
-    for half in np.unique(cells.half):
-        at = np.flatnonzero(cells.half == half)
-        for (body, offset), sense, roll in zip(bodies, (1, -1), (cells.roll_1, cells.roll_2), strict=True):
-            out[np.ix_(at, at)] += body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
-    return (out + out.T) / 2
 
 
 def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus):

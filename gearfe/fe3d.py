@@ -101,11 +101,11 @@ class Influence:
     moved: np.ndarray | None = None
 
 
-def mesh_patches(gear, patches, *, cracks=(), extents=None, refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
+def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
     """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
-    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `extents`,
-    `sizes`, `fine` as in `geometry.solid.solid`. What converges last are loads that run over the end faces:
+    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `sizes`,
+    `fine` as in `geometry.solid.solid`. What converges last are loads that run over the end faces:
     ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
     """
     patches.check(gear)
@@ -117,7 +117,6 @@ def mesh_patches(gear, patches, *, cracks=(), extents=None, refine=1.0, per_hat=
         layer=layer,
         loaded=patches.teeth,
         cracks=cracks,
-        extents=extents,
         patches=places,
         refine=refine,
         sizes=sizes,

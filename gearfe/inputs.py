@@ -8,7 +8,7 @@ from numbers import Real
 
 import numpy as np
 
-from geometry.damage import Crack, check_apart
+from geometry.damage import Crack, check_apart, check_through
 from geometry.pit import Pit
 
 from .contact_cycle import overlap_ratio
@@ -91,6 +91,7 @@ def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
         raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
     if any(pits) and method not in (*CLOSED, "ritz3d"):
         raise ValueError(f"pits with method = {method!r}, a transverse section: use 'ritz3d', 'textbook' or 'published'")
+    check_through([crack for own in cracks for crack in own], f"method = {method!r}")
     if teeth is not None and method != "fe":
         raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
     if variants and method not in CLOSED:

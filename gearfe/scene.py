@@ -54,6 +54,8 @@ DAMAGE = {
         "turning": (TRUTH, False),
         "tooth": (WHOLE, 0),
         "pair": (TEXT, None),
+        "width_mm": (TWO, None),
+        "ends": (TWO, [1.0, 1.0]),
     },
     "pits": {
         "case": (TEXT, REQUIRED),
@@ -221,7 +223,7 @@ def _cases(file, damage, gears, name, pairs):
 
 def _crack(row):
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
-    return [Crack(**numbers, **{key: row[key] for key in ("start", "turning", "tooth")})]
+    return [Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends")})]
 
 
 def _pits(row):

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import contact3d, lines3d
+from gearfe import bodies3d, contact3d, lines3d
 from gearfe.contact3d import pair_stiffness3d
 from gearfe.energy import halfspace
 from gearfe.hertz import half_width
@@ -41,7 +41,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
     found = lines3d.lines_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
     cells = lines3d.cells_of(pair, found, [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), 0.5)
-    gear = contact3d._gears(pair, "helical", 0.0)[face != "pinion"][0]
+    gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2
     for number in np.unique(cells.order):
         own = cells.order == number

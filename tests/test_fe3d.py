@@ -17,7 +17,7 @@ from gearfe.hexahedron import assemble, face_shapes, gauss, shapes, slopes_at
 from gearfe.solver import factor
 from geometry.mesher import section
 from geometry.outline import stations
-from geometry.solid import Extent, extrude, twist_rate
+from geometry.solid import extrude, twist_rate
 from geometry.tooth import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -204,10 +204,10 @@ def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):
 
 
 def test_crack_extents_lie_between_none_and_all(steel):
-    crack, found, sizes = gf.Crack(level=0.5), patches(GEAR, count=1), COARSE | {"crack tip": 0.15}
+    found, sizes = patches(GEAR, count=1), COARSE | {"crack tip": 0.15}
     values = []
-    for extents in (None, {0: Extent(0.0, 1.5)}, {0: Extent(0.0, 3.0)}):
-        mesh = mesh_of(GEAR, found, cracks=(crack,), extents=extents or {}, sizes=sizes)
+    for width in (None, (0.0, 1.5), (0.0, 3.0)):
+        mesh = mesh_of(GEAR, found, cracks=(gf.Crack(level=0.5, width=width),), sizes=sizes)
         values.append(influence(mesh, steel, found).matrix.item())
     none = influence(mesh_of(GEAR, found), steel, found).matrix.item()
     assert values[0] == pytest.approx(values[2], rel=1e-12)

@@ -12,6 +12,7 @@ from numbers import Integral
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from geometry.damage import check_through
 from geometry.gear import Gear
 from geometry.sector import sector
 from geometry.tooth import arc_at, roll_at_arc
@@ -150,6 +151,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     healthy = _healthy(gear, material, min(neighbours, gear.z - 1), *options)
     if not cracks:
         return healthy
+    check_through(cracks, "the energy model")
     reach = max(1, neighbours)
     solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
     one = _panel(gear, material, (), *options)

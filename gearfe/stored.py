@@ -1,0 +1,65 @@
+"""Stiffness curves of a scene that took too long to compute each time: files beside the scene, valid for just its numbers."""
+
+import csv
+import hashlib
+from dataclasses import MISSING, fields, is_dataclass
+from importlib import resources
+
+import numpy as np
+
+COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "estimate")
+
+
+def fingerprint(chosen, case):
+    """Eight letters that change with any number of a scene's pair or its damage; fields left at their default do not count."""
+    run = chosen.case(case)
+    text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
+    return hashlib.sha256(text.encode()).hexdigest()[:8]
+
+
+def _plain(value):
+    if is_dataclass(value):
+        said = {f.name: getattr(value, f.name) for f in fields(value) if f.init}
+        defaults = {f.name: f.default for f in fields(value) if f.default is not MISSING}
+        return f"{type(value).__name__}({_plain({n: v for n, v in said.items() if n not in defaults or v != defaults[n]})})"
+    if isinstance(value, dict):
+        return "{" + ",".join(f"{name}:{_plain(value[name])}" for name in sorted(value)) + "}"
+    if isinstance(value, (list, tuple)):
+        return "[" + ",".join(_plain(one) for one in value) + "]"
+    return f"{value:.9g}" if isinstance(value, float) else repr(value)
+
+
+def stored_file(scene):
+    """Where the curves of a built-in scene are; it may not exist."""
+    return resources.files("gearfe.scenes") / f"{scene.name}_fe3d.csv"
+
+
+def read_curves(scene, file=None):
+    """Stored curves by (pair, case): (phases, k [N/m], the damaged tooth's own [N/m], relative error estimate of the mean).
+
+    Only those computed for just this scene's gears, loads and damages; none if there is no file.
+    """
+    file = stored_file(scene) if file is None else file
+    if not file.is_file():
+        return {}
+    rows = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    out = {}
+    for pair, case in dict.fromkeys((row["pair"], row["case"]) for row in rows):
+        name = case if case != "healthy" else None
+        known = pair in scene.pairs and (name is None or name in scene.pairs[pair].damage)
+        own = [row for row in rows if (row["pair"], row["case"]) == (pair, case)]
+        if known and own[0]["print"] == fingerprint(scene.pairs[pair], name):
+            numbers = np.array([[float(row[column]) for column in COLUMNS[3:]] for row in own])
+            out[pair, name] = (*numbers[:, :3].T, float(numbers[0, 3]))
+    return out
+
+
+def write_curves(scene, curves, file):
+    """Write curves, given as `read_curves` gives them."""
+    with file.open("w", encoding="utf-8", newline="") as out:
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for (pair, case), (phase, k, tooth, estimate) in curves.items():
+            mark = fingerprint(scene.pairs[pair], case)
+            for row in zip(phase, k, tooth, strict=True):
+                table.writerow([pair, case or "healthy", mark, *(f"{value:.8g}" for value in row), f"{estimate:.3g}"])
