@@ -1,0 +1,177 @@
+"""All pairs of a scene in all their cases of damage: stiffness by each method beside finite elements, and what damage takes."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.pit import Pit
+
+from .inputs import CLOSED, overlap
+from .stiffness import mesh_stiffness
+from .stored import read_curves
+
+PHASES = 32  # of the cycle looked at
+
+
+@dataclass(frozen=True, slots=True)
+class CaseCurve:
+    """Stiffness over the cycle in which the damaged tooth is in the middle of its engagement.
+
+    Attributes
+    ----------
+    k : ndarray, shape (n,)
+        Of the mesh [N/m].
+    tooth : ndarray, shape (n,)
+        Of the damaged tooth's own pair: its force over the common approach [N/m].
+    seconds : float
+        nan if it was read from a file.
+    estimate : float
+        Relative error estimate of the mean; nan if there is none.
+    """
+
+    k: np.ndarray
+    tooth: np.ndarray
+    seconds: float = float("nan")
+    estimate: float = float("nan")
+
+    @property
+    def mean(self):
+        """Mean over the cycle [N/m]."""
+        return float(self.k.mean())
+
+    @property
+    def largest(self):
+        """Maximum over the cycle [N/m]."""
+        return float(self.k.max())
+
+
+@dataclass(frozen=True, slots=True)
+class CaseTable:
+    """Curves by (pair, case, method) for every pair and case of a scene; case None is healthy, `reference` names a method."""
+
+    phases: dict
+    curves: dict
+    methods: tuple
+    reference: str
+
+    def cases(self):
+        """(pair, case) in order."""
+        return list(dict.fromkeys((pair, case) for pair, case, _ in self.curves))
+
+    def errors(self, pair, case, method):
+        """Relative errors of a method against the reference: of the mean, of the maximum, and the largest at one phase."""
+        truth, found = (self.curves[pair, case, name] for name in (self.reference, method))
+        return found.mean / truth.mean - 1, found.largest / truth.largest - 1, float(np.abs(found.k / truth.k - 1).max())
+
+    def drops(self, pair, case, method):
+        """What damage takes of the stiffness [-]: largest over the cycle, of the mean, and of the damaged tooth's own pair.
+
+        The last is the mean of its pair's own stiffness over the cycle.
+        """
+        healthy, hurt = (self.curves[pair, which, method] for which in (None, case))
+        return (
+            float((1 - hurt.k / healthy.k).max()),
+            1 - hurt.mean / healthy.mean,
+            1 - float(hurt.tooth.mean() / healthy.tooth.mean()),
+        )
+
+    def table(self):
+        """Markdown: per pair and case the reference, and every method's error of the mean and of the maximum."""
+        others = [name for name in self.methods if name != self.reference]
+        lines = [
+            f"| pair | case | {self.reference} mean | max [GN/m] | "
+            + " | ".join(f"{name} mean | max" for name in others) + " |",
+            "|---" * (4 + 2 * len(others)) + "|",
+        ]  # fmt: skip
+        for pair, case in self.cases():
+            truth = self.curves[pair, case, self.reference]
+            cells = [f"{100 * error:+.1f} %" for name in others for error in self.errors(pair, case, name)[:2]]
+            head = [pair, case or "healthy", f"{truth.mean / 1e9:.4f}", f"{truth.largest / 1e9:.4f}"]
+            lines.append("| " + " | ".join([*head, *cells]) + " |")
+        total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
+        shown = " | ".join(f"{one:.1f} | " if np.isfinite(one) else "read | " for one in total)
+        return "\n".join([*lines, f"| seconds |  | {shown} |"])
+
+    def drop_table(self):
+        """Markdown: what each case takes, largest over the cycle, by method."""
+        lines = ["| pair | case | " + " | ".join(self.methods) + " |", "|---" * (2 + len(self.methods)) + "|"]
+        for pair, case in self.cases():
+            if case is not None:
+                cells = [f"{100 * self.drops(pair, case, name)[0]:.2f} %" for name in self.methods]
+                lines.append("| " + " | ".join([pair, case, *cells]) + " |")
+        return "\n".join(lines)
+
+
+def damage_cycle(chosen):
+    """Phases ``(PHASES,)`` of the cycle in which tooth 0 of a scene's pair is in the middle of its engagement."""
+    length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
+    return length / 2 - 0.5 + (np.arange(PHASES) + 0.5) / PHASES
+
+
+def is_wide(chosen):
+    """Whether a scene's pair needs three dimensions in any of its cases."""
+    pits = any(isinstance(one, Pit) for case in chosen.damage.values() for found in case.values() for one in found)
+    return pits or chosen.face in ("helical", "herringbone")
+
+
+def case_curve(chosen, case, method, phase, **options):
+    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `mesh_stiffness`."""
+    run = chosen.case(case) | {"phases": phase, "method": method} | options
+    if method in ("ritz", "fe"):
+        run |= {"face": None, "groove": 0.0}
+    if method in CLOSED and chosen.pair.gear_2.internal:
+        run["variants"] = {"foundation": "external"}
+    started = time.perf_counter()
+    curve = mesh_stiffness(**run)
+    seconds = time.perf_counter() - started
+    own = np.flatnonzero(curve.order == 0)
+    tooth = curve.force[:, own].sum(axis=1) / curve.lte
+    doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
+    return CaseCurve(curve.k, tooth, seconds, doubt)
+
+
+def case_table(scene, *, compute=False, progress=None):
+    """Every pair and case of a scene by every method that has it.
+
+    The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
+    The latter take minutes a gear: those of a built-in scene are read from the file that comes with it; without one for just
+    these gears, loads and damages, the energy model `ritz3d` is the reference unless `compute` asks for them.
+
+    Parameters
+    ----------
+    scene : Scene
+        With cases of damage.
+    compute : bool
+        Compute three-dimensional finite elements that are not on file.
+    progress : callable, optional
+        Gets a text before each solve.
+
+    Returns
+    -------
+    CaseTable
+
+    Raises
+    ------
+    ValueError
+        If the scene has no damage.
+    """
+    if not any(pair.damage for pair in scene.pairs.values()):
+        raise ValueError(f"scene {scene.name} has no cases of damage: add [[crack]] or [[pits]] tables")
+    tell = progress or (lambda text: None)
+    wide = any(is_wide(pair) for pair in scene.pairs.values())
+    stored = read_curves(scene) if wide else {}
+    wanted = [(name, case) for name, pair in scene.pairs.items() if pair.damage for case in (None, *pair.damage)]
+    solid = wide and (compute or all(key in stored for key in wanted))
+    reference = "fe3d" if solid else "ritz3d" if wide else "fe"
+    methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), "textbook", "published")
+    curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
+    for name, case in wanted:
+        chosen = scene.pairs[name]
+        for method in methods:
+            if method == "fe3d" and (name, case) in stored:
+                curves[name, case, method] = CaseCurve(*stored[name, case][1:3], estimate=stored[name, case][3])
+                continue
+            tell(f"{name} {case or 'healthy'}: {method}")
+            curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
+    return CaseTable(cycles, curves, methods, reference)
