@@ -97,7 +97,7 @@ def _working(text):
 def _print_scene(scene):
     print(f"{scene.title}\n")
     for note in scene.assumptions:
-        print(f"  assumed: {note['what']}: {note['why']}")
+        print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
     for item in scene.later:
         print(f"  not modelled yet: {item}")
     print()
@@ -136,6 +136,7 @@ def stiffness(arguments):
 def compare(arguments):
     """``gearfe compare``."""
     from .comparison import compare as run
+    from .references import printed_stiffness
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)
@@ -148,6 +149,8 @@ def compare(arguments):
     print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")
     print(f"errors are against {meta['method']}; the estimate is its own discretisation error\n")
     print(result.table())
+    for text in printed_stiffness(scene, result.pair_name, arguments.case):
+        print(text)
     if arguments.plot:
         from .plots import plot_curves
 

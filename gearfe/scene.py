@@ -12,10 +12,9 @@ from geometry.pair import GearPair
 from geometry.pit import pit_row
 
 from .material import Material
+from .references import read_references
+from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, WHOLE, checked, known, placed
 
-REQUIRED = object()
-NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
-TWO, TRUTH = "two numbers", "true or false"
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
 TABLES = {
     "material": {"E_MPa": (NUMBER, REQUIRED), "nu": (NUMBER, REQUIRED)},
@@ -77,7 +76,7 @@ MACHINE = {
     "torque_Nm": (NUMBER, REQUIRED),
     "n_planets": (WHOLE, 3),
 }
-ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED)}
+ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, "")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +109,10 @@ class ScenePair:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.scene_machine` needs to run it."""
+    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.scene_machine` needs to run it.
+
+    `references` are what its sources print, `gearfe.references.Reference`.
+    """
 
     name: str
     title: str
@@ -120,6 +122,7 @@ class Scene:
     assumptions: tuple
     later: tuple
     machine: dict = field(default_factory=dict)
+    references: tuple = ()
 
     def pair(self, name=None):
         """The pair called `name`; the first one if None.
@@ -165,36 +168,38 @@ def load_scene(name_or_path):
 def _scene(file, data):
     tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    run = _table(file, "machine", data.pop("machine"), MACHINE) if "machine" in data else {}
-    top = _table(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption"))
+    run = checked(file, "machine", data.pop("machine"), MACHINE) if "machine" in data else {}
+    printed = data.pop("reference", [])
+    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "reference"))
     for name in ("gear", "pair", "material"):
         if not isinstance(tables[name], dict) or not tables[name]:
             raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
     if not isinstance(tables["assumption"], list):
         raise ValueError(f"{file}: assumptions are written as [[assumption]] tables")
     rows = {
-        kind: {name: _table(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
+        kind: {name: checked(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
         for kind in TABLES
     }
     materials = {
-        n: _made(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
+        n: placed(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
     }
-    gears = {n: _made(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
+    gears = {n: placed(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
     for name, row in rows["gear"].items():
-        _known(file, f"gear.{name}", "material", row["material"], materials, "material")
+        known(file, f"gear.{name}", "material", row["material"], materials, "material")
     pairs = {}
     for name, row in rows["pair"].items():
         where = f"pair.{name}"
         for key in ("gear_1", "gear_2"):
-            _known(file, where, key, row[key], gears, "gear")
-        made = _made(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
+            known(file, where, key, row[key], gears, "gear")
+        made = placed(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
         if not row["force_N"] > 0:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
         found = _cases(file, damage, gears, name, rows["pair"])
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
-    notes = tuple(_table(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
-    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run)
+    notes = tuple(checked(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
+    rows = read_references(file, printed, pairs)
+    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run, rows)
 
 
 def _cases(file, damage, gears, name, pairs):
@@ -208,13 +213,13 @@ def _cases(file, damage, gears, name, pairs):
             raise ValueError(f"{file}: damage is written as [[{kind}]] tables")
         for i, table in enumerate(tables):
             where = f"{kind} {i + 1}"
-            row = _table(file, where, table, DAMAGE[kind])
-            _known(file, where, "gear", row["gear"], gears, "gear")
+            row = checked(file, where, table, DAMAGE[kind])
+            known(file, where, "gear", row["gear"], gears, "gear")
             if row["pair"] is not None:
-                _known(file, where, "pair", row["pair"], pairs, "pair")
+                known(file, where, "pair", row["pair"], pairs, "pair")
                 if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
                     raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
-            made = _made(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
+            made = placed(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
             for side, key in (("pinion", "gear_1"), ("wheel", "gear_2")):
                 if pair[key] == row["gear"] and row["pair"] in (None, name):
                     out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
@@ -239,57 +244,3 @@ def _gear(row):
     lengths = {key: row[f"{key}_mm"] for key in ("m_n", "b", "r_bore", "r_rim")}
     angles = {key: math.radians(row[f"{key}_deg"]) for key in ("alpha_n", "beta")}
     return Gear(**plain, **lengths, **angles)
-
-
-def _table(file, where, table, keys, extra=()):
-    """Check one table against its keys and fill in defaults."""
-    if not isinstance(table, dict):
-        raise ValueError(f"{file} [{where}]: expected a table, got {table!r}")
-    out = {}
-    for key in table:
-        if key not in keys:
-            raise ValueError(f"{file} [{where}]: unknown key {key!r}; expected {', '.join((*keys, *extra))}")
-    for key, (kind, default) in keys.items():
-        if key not in table:
-            if default is REQUIRED:
-                raise ValueError(f"{file} [{where}]: missing key {key!r}; expected {kind}{_unit(key)}")
-            out[key] = default
-            continue
-        if not _fits(table[key], kind):
-            raise ValueError(f"{file} [{where}] {key} = {table[key]!r}: expected {kind}{_unit(key)}")
-        out[key] = table[key]
-    return out
-
-
-def _unit(key):
-    units = {"mm": "mm", "deg": "degrees", "N": "N", "MPa": "MPa"}
-    end = key.rpartition("_")[2]
-    return f" in {units[end]}" if end in units and "_" in key else ""
-
-
-def _fits(value, kind):
-    if kind == TEXT:
-        return isinstance(value, str)
-    if kind == TRUTH:
-        return isinstance(value, bool)
-    if kind == TWO:
-        return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
-    if kind == TEXTS:
-        return isinstance(value, list) and all(isinstance(v, str) for v in value)
-    if isinstance(value, bool):
-        return False
-    if kind == WHOLE:
-        return isinstance(value, int)
-    return isinstance(value, (int, float)) and math.isfinite(value)
-
-
-def _known(file, where, key, name, known, kind):
-    if name not in known:
-        raise ValueError(f"{file} [{where}] {key} = {name!r}: no such {kind}; there is {', '.join(known)}")
-
-
-def _made(file, where, make):
-    try:
-        return make()
-    except ValueError as error:
-        raise ValueError(f"{file} [{where}]: {error}") from error

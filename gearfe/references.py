@@ -1,0 +1,160 @@
+"""What the sources of a scene print: numbers and statements with tolerance, citation, and what is wrong in them."""
+
+from dataclasses import dataclass
+
+from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known
+
+REFERENCE = {
+    "id": (TEXT, REQUIRED),
+    "quantity": (TEXT, REQUIRED),
+    "unit": (TEXT, REQUIRED),
+    "source": (TEXT, REQUIRED),
+    "relative": (NUMBER, None),
+    "absolute": (NUMBER, None),
+    "tolerance": (TEXT, REQUIRED),
+    "trend": (TRUTH, False),
+    "note": (TEXT, ""),
+    "reason": (TEXT, ""),
+    "correction": (TEXT, ""),
+    "rows": (TABLES, REQUIRED),
+}
+ROW = {
+    "case": (TEXT, REQUIRED),
+    "pair": (TEXT, None),
+    "printed": (NUMBER, None),
+    "claim": (TRUTH, None),
+    "corrected": (NUMBER, None),
+    "correction": (TEXT, ""),
+    "reason": (TEXT, ""),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """One printed value.
+
+    Attributes
+    ----------
+    case : str
+        What it is printed for.
+    pair : str or None
+        Pair of the scene.
+    value : float
+        As printed; of a statement 1 (true) or 0; nan: the source gives a formula but no number.
+    corrected : float or None
+        After the correction.
+    correction : str
+        What is changed in the printed value, or in the conditions ours is computed for.
+    reason : str
+        Why it cannot be reproduced.
+    """
+
+    case: str
+    pair: str | None
+    value: float
+    corrected: float | None
+    correction: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """A quantity as its source prints it.
+
+    Attributes
+    ----------
+    id : str
+        Name of the function that computes it.
+    quantity, unit, source : str
+        `unit` is ``statement`` for statements; `source` the article and the place in it.
+    relative, absolute : float or None
+        Tolerance as a part of the printed value, or in `unit`; one of them.
+    tolerance : str
+        Its reason.
+    trend : bool
+        Whether the order of the cases is what the source concludes from.
+    note : str
+    rows : tuple of Printed
+    """
+
+    id: str
+    quantity: str
+    unit: str
+    source: str
+    relative: float | None
+    absolute: float | None
+    tolerance: str
+    trend: bool
+    note: str
+    rows: tuple
+
+    def within(self, ours, value):
+        """Whether `ours` is `value` within the tolerance."""
+        return abs(ours - value) <= (self.absolute if self.relative is None else self.relative * abs(value))
+
+
+def read_references(file, tables, pairs):
+    """References of the [[reference]] tables of a scene file.
+
+    Raises
+    ------
+    ValueError
+        Naming file, table and key.
+    """
+    if not isinstance(tables, list):
+        raise ValueError(f"{file}: references are written as [[reference]] tables")
+    out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
+    names = [one.id for one in out]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"{file}: reference id {twice[0]!r} is used twice; give each its own")
+    return out
+
+
+def _reference(file, where, table, pairs):
+    row = checked(file, where, table, REFERENCE)
+    where = f"{where}, {row['id']}"
+    if (row["relative"] is None) == (row["absolute"] is None):
+        raise ValueError(f"{file} [{where}]: give one tolerance, relative (a part) or absolute (in {row['unit']})")
+    size = row["absolute"] if row["relative"] is None else row["relative"]
+    if size < 0:
+        raise ValueError(f"{file} [{where}]: a tolerance of {size} is negative; give 0 for exact values")
+    if not row["rows"]:
+        raise ValueError(f"{file} [{where}]: rows = [], but a reference prints something; give a row for each case")
+    rows = tuple(_row(file, where, one, row, pairs) for one in row["rows"])
+    places = [(one.case, one.pair) for one in rows]
+    twice = [place for place in places if places.count(place) > 1]
+    if twice:
+        raise ValueError(f"{file} [{where}]: two rows of case {twice[0][0]!r} and pair {twice[0][1]!r}; give each its own case")
+    keep = {key: row[key] for key in ("id", "quantity", "unit", "source", "relative", "absolute", "tolerance", "trend", "note")}
+    return Reference(**keep, rows=rows)
+
+
+def _row(file, where, table, reference, pairs):
+    one = checked(file, where, table, ROW)
+    if one["pair"] is not None:
+        known(file, where, "pair", one["pair"], pairs, "pair")
+    if one["printed"] is not None and one["claim"] is not None:
+        raise ValueError(f"{file} [{where}]: printed and claim in one row; a row is a number or a statement")
+    if (reference["unit"] == "statement") != (one["claim"] is not None):
+        raise ValueError(f"{file} [{where}]: rows of unit 'statement' have claim = true or false, others printed = a number")
+    if one["corrected"] is not None and not (one["correction"] or reference["correction"]):
+        raise ValueError(f"{file} [{where}]: corrected = {one['corrected']}, but no correction that says what was changed")
+    value = float("nan") if one["printed"] is None else float(one["printed"])
+    value = value if one["claim"] is None else float(one["claim"])
+    corrected = None if one["corrected"] is None else float(one["corrected"])
+    reason, correction = one["reason"] or reference["reason"], one["correction"]
+    if corrected is not None:
+        correction = correction or reference["correction"]
+    return Printed(one["case"], one["pair"], value, corrected, correction, reason)
+
+
+def printed_stiffness(scene, pair, case=None):
+    """Lines of text with the stiffnesses [N/m] that the sources of a scene print for a pair in a case (None: healthy)."""
+    out = []
+    for one in scene.references:
+        for row in one.rows if one.unit == "N/m" else ():
+            if (row.pair, row.case) == (pair, case or "healthy"):
+                more = "" if row.corrected is None else f"; {row.corrected:.4g} N/m after a correction: {row.correction}"
+                out.append(f"printed, {one.quantity}: {row.value:.4g} N/m ({one.source}){more}")
+    return out

@@ -1,0 +1,65 @@
+"""Strict TOML tables: known keys of known kinds, and messages that name file, table and key. Units stand in the key names."""
+
+import math
+
+REQUIRED = object()
+NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
+TWO, TRUTH, TABLES = "two numbers", "true or false", "a list of tables"
+
+
+def checked(file, where, table, keys, extra=()):
+    """Check one table against its keys and fill in defaults."""
+    if not isinstance(table, dict):
+        raise ValueError(f"{file} [{where}]: expected a table, got {table!r}")
+    out = {}
+    for key in table:
+        if key not in keys:
+            raise ValueError(f"{file} [{where}]: unknown key {key!r}; expected {', '.join((*keys, *extra))}")
+    for key, (kind, default) in keys.items():
+        if key not in table:
+            if default is REQUIRED:
+                raise ValueError(f"{file} [{where}]: missing key {key!r}; expected {kind}{_unit(key)}")
+            out[key] = default
+            continue
+        if not _fits(table[key], kind):
+            raise ValueError(f"{file} [{where}] {key} = {table[key]!r}: expected {kind}{_unit(key)}")
+        out[key] = table[key]
+    return out
+
+
+def _unit(key):
+    units = {"mm": "mm", "deg": "degrees", "N": "N", "MPa": "MPa"}
+    end = key.rpartition("_")[2]
+    return f" in {units[end]}" if end in units and "_" in key else ""
+
+
+def _fits(value, kind):
+    if kind == TEXT:
+        return isinstance(value, str)
+    if kind == TRUTH:
+        return isinstance(value, bool)
+    if kind == TWO:
+        return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
+    if kind == TABLES:
+        return isinstance(value, list) and all(isinstance(v, dict) for v in value)
+    if kind == TEXTS:
+        return isinstance(value, list) and all(isinstance(v, str) for v in value)
+    if isinstance(value, bool):
+        return False
+    if kind == WHOLE:
+        return isinstance(value, int)
+    return isinstance(value, (int, float)) and math.isfinite(value)
+
+
+def known(file, where, key, name, names, kind):
+    """Refuse a `name` that is not among `names`."""
+    if name not in names:
+        raise ValueError(f"{file} [{where}] {key} = {name!r}: no such {kind}; there is {', '.join(names)}")
+
+
+def placed(file, where, make):
+    """What `make` gives, with the place in front of its ValueErrors."""
+    try:
+        return make()
+    except ValueError as error:
+        raise ValueError(f"{file} [{where}]: {error}") from error
