@@ -1,6 +1,7 @@
 """All pairs of a scene in all their cases of damage: stiffness by each method beside finite elements, and what damage takes."""
 
 import time
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,15 +26,15 @@ class CaseCurve:
     tooth : ndarray, shape (n,)
         Of the damaged tooth's own pair: its force over the common approach [N/m].
     seconds : float
-        nan if it was read from a file.
+        What it took, when it was computed.
     estimate : float
         Relative error estimate of the mean; nan if there is none.
     """
 
     k: np.ndarray
     tooth: np.ndarray
-    seconds: float = float("nan")
-    estimate: float = float("nan")
+    seconds: float
+    estimate: float
 
     @property
     def mean(self):
@@ -86,21 +87,24 @@ class CaseTable:
         ]  # fmt: skip
         for pair, case in self.cases():
             truth = self.curves[pair, case, self.reference]
-            cells = [f"{100 * error:+.1f} %" for name in others for error in self.errors(pair, case, name)[:2]]
+            cells = [_percent(error, "+.1f") for name in others for error in self.errors(pair, case, name)[:2]]
             head = [pair, case or "healthy", f"{truth.mean / 1e9:.4f}", f"{truth.largest / 1e9:.4f}"]
             lines.append("| " + " | ".join([*head, *cells]) + " |")
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
-        shown = " | ".join(f"{one:.1f} | " if np.isfinite(one) else "read | " for one in total)
-        return "\n".join([*lines, f"| seconds |  | {shown} |"])
+        return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
 
     def drop_table(self):
         """Markdown: what each case takes, largest over the cycle, by method."""
         lines = ["| pair | case | " + " | ".join(self.methods) + " |", "|---" * (2 + len(self.methods)) + "|"]
         for pair, case in self.cases():
             if case is not None:
-                cells = [f"{100 * self.drops(pair, case, name)[0]:.2f} %" for name in self.methods]
+                cells = [_percent(self.drops(pair, case, name)[0], ".2f") for name in self.methods]
                 lines.append("| " + " | ".join([pair, case, *cells]) + " |")
         return "\n".join(lines)
+
+
+def _percent(value, form):
+    return "none" if np.isnan(value) else f"{100 * value:{form}} %"
 
 
 def damage_cycle(chosen):
@@ -150,6 +154,7 @@ def case_table(scene, *, compute=False, progress=None):
     Returns
     -------
     CaseTable
+        Formulas that have no value for a damage have nan; a warning says why.
 
     Raises
     ------
@@ -170,8 +175,16 @@ def case_table(scene, *, compute=False, progress=None):
         chosen = scene.pairs[name]
         for method in methods:
             if method == "fe3d" and (name, case) in stored:
-                curves[name, case, method] = CaseCurve(*stored[name, case][1:3], estimate=stored[name, case][3])
+                _, k, tooth, estimate, seconds = stored[name, case]
+                curves[name, case, method] = CaseCurve(k, tooth, seconds, estimate)
                 continue
             tell(f"{name} {case or 'healthy'}: {method}")
-            curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
+            try:
+                curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
+            except ValueError as error:
+                if method not in CLOSED:
+                    raise
+                warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
+                nothing = np.full(PHASES, np.nan)
+                curves[name, case, method] = CaseCurve(nothing, nothing, 0.0, np.nan)
     return CaseTable(cycles, curves, methods, reference)

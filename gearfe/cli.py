@@ -31,6 +31,10 @@ def main(argv=None):
         "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
     )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
+    verb.add_argument(
+        "--cases", action="store_true", help="all pairs in all cases of damage (default of a scene with finite elements on file)"
+    )
+    verb.add_argument("--reference", action="store_true", help="with --cases: compute three-dimensional finite elements anew")
     verb = _verb(verbs, "render", render, "von Mises stress of the loaded teeth, without a screen")
     _scene_arguments(verb, phases=False)
     verb.add_argument("--phase", type=float, default=0.0, help="mesh phase (default: 0, a pair enters)")
@@ -141,6 +145,9 @@ def compare(arguments):
 
     scene = load_scene(arguments.scene)
     _print_scene(scene)
+    if arguments.cases or arguments.reference or not (arguments.pair or arguments.case or arguments.model or not _on_file(scene)):
+        _compare_cases(scene, arguments)
+        return
     with _working("finite elements and energy methods"):
         options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
         result = run(scene, arguments.pair, case=arguments.case, **options)
@@ -156,6 +163,26 @@ def compare(arguments):
 
         plot_curves(result.curves, arguments.plot)
         print(f"\nwritten: {arguments.plot}")
+
+
+def _on_file(scene):
+    from .stored import read_curves
+
+    return bool(read_curves(scene))
+
+
+def _compare_cases(scene, arguments):
+    """``gearfe compare --cases``."""
+    from .case_table import case_table
+
+    if arguments.pair or arguments.case or arguments.model or arguments.plot:
+        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    with _working("every case by every method"):
+        result = case_table(scene, compute=arguments.reference)
+    print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
+    print(f"engagement; errors are against {result.reference}\n")
+    print(result.table())
+    print(f"\nlargest loss of stiffness over that cycle\n\n{result.drop_table()}")
 
 
 def render(arguments):

@@ -7,7 +7,7 @@ from importlib import resources
 
 import numpy as np
 
-COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "estimate")
+COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "estimate", "seconds")
 
 
 def fingerprint(chosen, case):
@@ -35,7 +35,7 @@ def stored_file(scene):
 
 
 def read_curves(scene, file=None):
-    """Stored curves by (pair, case): (phases, k [N/m], the damaged tooth's own [N/m], relative error estimate of the mean).
+    """Stored curves by (pair, case): phases, k [N/m], the damaged tooth's own [N/m], relative error estimate, seconds.
 
     Only those computed for just this scene's gears, loads and damages; none if there is no file.
     """
@@ -50,7 +50,7 @@ def read_curves(scene, file=None):
         own = [row for row in rows if (row["pair"], row["case"]) == (pair, case)]
         if known and own[0]["print"] == fingerprint(scene.pairs[pair], name):
             numbers = np.array([[float(row[column]) for column in COLUMNS[3:]] for row in own])
-            out[pair, name] = (*numbers[:, :3].T, float(numbers[0, 3]))
+            out[pair, name] = (*numbers[:, :3].T, *numbers[0, 3:].tolist())
     return out
 
 
@@ -59,7 +59,7 @@ def write_curves(scene, curves, file):
     with file.open("w", encoding="utf-8", newline="") as out:
         table = csv.writer(out, lineterminator="\n")
         table.writerow(COLUMNS)
-        for (pair, case), (phase, k, tooth, estimate) in curves.items():
+        for (pair, case), (phase, k, tooth, *rest) in curves.items():
             mark = fingerprint(scene.pairs[pair], case)
             for row in zip(phase, k, tooth, strict=True):
-                table.writerow([pair, case or "healthy", mark, *(f"{value:.8g}" for value in row), f"{estimate:.3g}"])
+                table.writerow([pair, case or "healthy", mark, *(f"{value:.8g}" for value in row), *(f"{v:.3g}" for v in rest)])
