@@ -7,6 +7,7 @@ on itself is a strip of Hertz's pressure, as in the plane.
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -35,8 +36,8 @@ class Contact3D:
 
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
     along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
-    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `error` (phases,) estimated
-    discretisation error of k [N/m], or None.
+    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
+    of pinion and wheel; `error` (phases,) estimated discretisation error of k [N/m], or None.
     """
 
     phase: np.ndarray
@@ -45,6 +46,7 @@ class Contact3D:
     order: np.ndarray
     load: np.ndarray
     cells: tuple
+    dofs: tuple
     error: np.ndarray | None = None
 
 
@@ -63,6 +65,7 @@ def pair_stiffness3d(
     axial=None,
     refine=1.0,
     error=False,
+    model=None,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -93,8 +96,10 @@ def pair_stiffness3d(
     order, axial, refine : int, int, float
         Of `flexibility3d`.
     error : bool
-        Estimate the discretisation error of every k: its difference from that of a section order less by 1 and an axial degree
-        less by 2, or the mean of those over the phases if that is larger.
+        Of the energy model: estimate the discretisation error of every k: its difference from that of a section order less by
+        1 and an axial degree less by 2, or the mean of those over the phases if that is larger.
+    model : callable, optional
+        ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
 
     Returns
     -------
@@ -118,18 +123,20 @@ def pair_stiffness3d(
     bands = bands_of(pair, face, groove)
     lines = [lines_of(pair, p, pits, bands, abs(pair.gear_1.beta_b)) for p in phase]
 
-    def solve(order, less):
-        def flexible(gear, own, found):
+    def energy(order, less):
+        def flexible(gear, own, found, neighbours):
             degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
-            options = {"neighbours": max(1, _reach(lines)), "order": order, "axial": degree, "refine": refine}
-            return flexibility3d(gear, own, found, **options)
+            return flexibility3d(gear, own, found, neighbours=neighbours, order=order, axial=degree, refine=refine)
 
-        bodies = bodies_of(pair, materials, cracks, bands, face, groove, flexible)
+        return flexible
+
+    def solve(model):
+        bodies = bodies_of(pair, materials, cracks, bands, face, groove, partial(model, neighbours=max(1, _reach(lines))))
         return _solved(pair, force, materials, phase, lines, bodies, bands, step)
 
-    solved = solve(order, 0)
+    solved = solve(model or energy(order, 0))
     if error:
-        away = np.abs(solve(order - 1, 2).k - solved.k)
+        away = np.abs(solve(energy(order - 1, 2)).k - solved.k)
         solved = replace(solved, error=np.maximum(away, away.mean()))
     return solved
 
@@ -145,7 +152,8 @@ def _solved(pair, force, materials, phase, lines, bodies, bands, step):
         approach[i] = closed / math.cos(beta_b)
         np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(beta_b))
         cells.append(own)
-    return Contact3D(phase, 1e3 * force / approach, approach, orders, load, tuple(cells))
+    dofs = tuple(body.unknowns for body, _ in bodies[0])
+    return Contact3D(phase, 1e3 * force / approach, approach, orders, load, tuple(cells), dofs)
 
 
 def _reach(lines):
