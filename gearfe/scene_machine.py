@@ -70,12 +70,12 @@ def curves(pair, case, options):
 
 def _both(scene, case, options, kinds):
     """Healthy curves by kind of mesh, and damage of the sun's tooth 0, from ``kinds[kind]``, a scene pair's name."""
+    for kind, name in kinds.items():
+        if case in scene.pairs[name].damage and not kind.startswith("sun"):
+            raise ValueError(f"case {case!r} damages {name}, but in this machine only the sun has damage: use its cases")
     found = {name: curves(scene.pairs[name], case, options) for name in dict.fromkeys(kinds.values())}
     healthy = {kind: found[name][0] for kind, name in kinds.items()}
     hurt = {kind: found[name][1] for kind, name in kinds.items() if found[name][1] is not None}
-    for kind in hurt:
-        if not kind.startswith("sun"):
-            raise ValueError(f"case {case!r} damages {kinds[kind]}, but in this machine only the sun has damage: use its cases")
     return healthy, hurt
 
 

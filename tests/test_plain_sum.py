@@ -223,6 +223,23 @@ def test_what_is_outside_its_range_is_named():
     assert plain_sum(pair(), BOTH, PHASE, textbook, foundation="none")[1]["outside"] == ()
 
 
+@pytest.mark.parametrize("formulas", [textbook, published])
+def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
+    """With foundation 'external' the planet's tooth is as before and the ring's that without any foundation."""
+    roll = np.array([8.0, 9.0])
+    planet = gf.Gear(z=27, r_bore=12.0, **RACK)
+    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, tip_radius=0.2, **RACK)
+    own, whole = (formulas.components(planet, STEEL, roll, foundation=name) for name in ("external", "sainsot"))
+    assert_allclose(own.total, whole.total, rtol=0)
+    at = np.linspace(ring.roll_a, ring.roll_f, 4)[1:3]
+    inner, bare = (formulas.components(ring, STEEL, at, foundation=name) for name in ("external", "none"))
+    assert_allclose(inner.total, bare.total, rtol=0)
+    assert (inner.bending > 0).all()
+    assert inner.bending[0] > inner.bending[1]  # nearer the tip
+    with pytest.raises(ValueError, match="does not hold for a ring"):
+        formulas.components(ring, STEEL, at)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

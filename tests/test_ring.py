@@ -105,7 +105,7 @@ def test_ring_pair_equals_full_contact(pair, phase):
 
 
 def test_energy_methods_have_no_ring(pair):
-    with pytest.raises(ValueError, match="has no ring"):
+    with pytest.raises(ValueError, match="has no foundation for a ring"):
         gf.mesh_stiffness(pair, 2000.0, STEEL, method="textbook")
 
 

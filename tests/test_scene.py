@@ -59,6 +59,24 @@ def test_errors_name_file_table_and_key(tmp_path, old, new, message):
         gf.load_scene(path)
 
 
+def test_damage_of_one_pair_only():
+    scene = gf.load_scene("herringbone")
+    assert "planet1" in scene.pairs["planet_ring"].damage
+    assert "planet1" not in scene.pairs["sun_planet"].damage
+    with pytest.raises(ValueError, match="only the sun has damage"):
+        gf.build_machine(scene, "planet1", method="textbook")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"), [("sun_moon", "no such pair; there is sun_planet"), ("planet_ring", "'planet_ring' has no gear 'sun'")]
+)
+def test_damage_of_another_pair_is_refused(tmp_path, name, message):
+    path = tmp_path / "s.toml"
+    path.write_text(TEXT.replace('case = "mild"', f'case = "mild"\npair = "{name}"', 1))
+    with pytest.raises(ValueError, match=message):
+        gf.load_scene(path)
+
+
 def test_unknown_scene_and_pair():
     with pytest.raises(ValueError, match="built in are compound_planetary, helical_pitting, herringbone, planetary_pitting"):
         gf.load_scene("nonsense")
