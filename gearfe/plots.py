@@ -4,6 +4,15 @@ import numpy as np
 
 from .export import written
 
+COLUMNS = {  # of an error map
+    "load": "load F / (b m_n) [MPa]",
+    "bore_1": "pinion bore / root radius",
+    "bore_2": "wheel bore / root radius",
+    "z_1": "teeth of the pinion",
+    "z_2": "teeth of the wheel",
+    "crack": "crack level",
+}
+
 
 def plot_curves(curves, path=None):
     """Draw stiffness curves over the phase, each with the load share below; save to `path` if given.
@@ -62,13 +71,14 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
                 here = error[(place_x == j) & (place_y == i) & np.isfinite(error)]
                 table[i, j] = np.median(here) if here.size else np.nan
                 if here.size:
-                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7)
+                    color = "white" if abs(table[i, j]) > 20 else "black"
+                    axes.text(j, i, f"{table[i, j]:+.0f}", ha="center", va="center", fontsize=7, color=color)
         image = axes.imshow(table, cmap="RdBu_r", vmin=-30, vmax=30, origin="lower", aspect="auto")
         axes.set_title(name, fontsize=9)
-        axes.set_xlabel(x)
+        axes.set_xlabel(COLUMNS.get(x, x), fontsize=9)
         axes.set_xticks(range(len(names_x)), names_x, fontsize=7)
         axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
-    row[0].set_ylabel(y)
+    row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
     figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
     if path is not None:
         with written(path) as name:
