@@ -8,15 +8,15 @@ from .fe3d import Patches, influence, mesh_patches
 from .flexibility3d import hats, parted, solved_teeth
 
 PER_HAT = 4  # edges across a hat
-LAYER = 1.0  # height of the element layers [m_n], at most a sixth of the width
+LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
 # edge lengths in modules, see `geometry.quads.SIZES`
-SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.5, "near": 0.7, "far": 1.6, "crack": 0.3, "crack tip": 0.06}
+SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 
 
 def axial_modes(width, m_n):
-    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module, at least 6, as `ritz3d` keeps by default."""
-    return max(6, math.ceil(0.8 * width / m_n))
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module and 2, at least 8: 2 more than `ritz3d` keeps."""
+    return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
 def solid_flexibility(

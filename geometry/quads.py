@@ -18,7 +18,16 @@ from .tooth import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_cu
 # edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
-ATTEMPTS = ((1.0, 8), (1.0, 5), (1.07, 8), (1.07, 5), (1.15, 8), (1.24, 5))  # finer, algorithm: gmsh may leave triangles
+ATTEMPTS = (
+    (1.0, 8),
+    (1.0, 5),
+    (1.07, 8),
+    (1.07, 5),
+    (1.15, 8),
+    (1.24, 5),
+    (1.4, 8),
+    (1.6, 8),
+)  # finer, algorithm: gmsh may leave triangles
 GROWTH = 0.4  # of the edge length per length, away from fine places
 
 
