@@ -11,6 +11,7 @@ from geometry.gear import Gear
 from geometry.pair import GearPair
 from geometry.pit import pit_row
 
+from . import machine_table
 from .material import Material
 
 REQUIRED = object()
@@ -72,7 +73,7 @@ MACHINE = {
     "speed_rpm": (NUMBER, REQUIRED),
     "torque_Nm": (NUMBER, REQUIRED),
     "n_planets": (WHOLE, 3),
-}
+} | machine_table.MACHINE
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED)}
 
 
@@ -161,7 +162,7 @@ def load_scene(name_or_path):
 def _scene(file, data):
     tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    run = _table(file, "machine", data.pop("machine"), MACHINE) if "machine" in data else {}
+    run = _machine(file, data.pop("machine")) if "machine" in data else {}
     top = _table(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption"))
     for name in ("gear", "pair", "material"):
         if not isinstance(tables[name], dict) or not tables[name]:
@@ -191,6 +192,13 @@ def _scene(file, data):
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
     notes = tuple(_table(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
     return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run)
+
+
+def _machine(file, table):
+    """Check a [machine] table and its [machine.impact]."""
+    flat = {key: value for key, value in table.items() if key != "impact"} if isinstance(table, dict) else table
+    out = _table(file, "machine", flat, MACHINE, extra=("impact",))
+    return out | {"impact": _table(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT)}
 
 
 def _cases(file, damage, gears, pair):
@@ -251,7 +259,7 @@ def _table(file, where, table, keys, extra=()):
 
 
 def _unit(key):
-    units = {"mm": "mm", "deg": "degrees", "N": "N", "MPa": "MPa"}
+    units = {"mm": "mm", "um": "um", "deg": "degrees", "N": "N", "MPa": "MPa"}
     end = key.rpartition("_")[2]
     return f" in {units[end]}" if end in units and "_" in key else ""
 
