@@ -50,9 +50,19 @@ def main(argv=None):
     verb.add_argument(
         "--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)"
     )
+    verb.add_argument("--contact", choices=("linear", "impact"), help="contact law (default: the scene's, else linear)")
     verb.add_argument("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
-    verb.add_argument("--plot", metavar="FILE", help="draw the spectra: .png, .svg or .pdf")
+    _analysis_arguments(verb)
+    verb = _verb(verbs, "signal", signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
+    verb.add_argument("file", metavar="FILE", nargs="+", help="signal as .csv, .mat or .npz; several: cases, the first healthy")
+    verb.add_argument("--rate", type=float, metavar="HZ", help="sampling rate, if the file does not state it")
+    verb.add_argument("--unit", metavar="U", help="unit, if the file does not state it")
+    verb.add_argument("--column", metavar="NAME", help="column, if there are several")
+    verb.add_argument("--mesh", type=float, metavar="HZ", help="mesh frequency")
+    verb.add_argument("--fault", type=float, metavar="HZ", help="how often the faulty tooth meshes")
+    verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
+    _analysis_arguments(verb)
     _verb(verbs, "scenes", scenes, "list the built-in scenes with their assumptions")
     _verb(verbs, "info", info, "versions, and what this machine has")
     arguments = parser.parse_args(argv)
@@ -71,6 +81,11 @@ def _verb(verbs, name, run, text):
     verb = verbs.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
     verb.set_defaults(run=run)
     return verb
+
+
+def _analysis_arguments(verb):
+    verb.add_argument("--plot", metavar="FILE", help="draw the spectra: .png, .svg or .pdf")
+    verb.add_argument("--kurtogram", metavar="FILE", help="draw the fast kurtogram of the last case: .png, .svg or .pdf")
 
 
 def _scene_arguments(verb, *, phases=True):
@@ -200,11 +215,15 @@ def render(arguments):
 
 def dynamics(arguments):
     """``gearfe dynamics``."""
+    from dataclasses import replace
+
     from .machine import natural_frequencies
     from .responses import analysis, responses
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)
+    if arguments.contact:
+        scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     _print_scene(scene)
     with _working("stiffness curves and response"):
         found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
@@ -214,13 +233,49 @@ def dynamics(arguments):
     print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
     for case, one in found.items():
         stats = one.stats
-        print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}")
-    report = analysis(found, arguments.channel)
-    print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n")
-    print(f"{report.lines_text()}\n\n{report.indicators_text()}")
+        doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
+        if "switched" in stats:
+            print(f"  {case}: reference used because {stats['switched']}")
+    _print_analysis(analysis(found, arguments.channel), arguments)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
-        print(f"\nwritten: {arguments.output}")
+        print(f"written: {arguments.output}")
+
+
+def signal(arguments):
+    """``gearfe signal``."""
+    from .responses import analyse
+    from .signal_file import read_signal
+
+    read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
+    signals = {one.name: one for one in read}
+    if len(signals) < len(read):
+        raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+    _print_analysis(analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name), arguments)
+
+
+def _print_analysis(report, arguments):
+    """Tables, envelope and plots of a `gearfe.responses.Analysis`."""
+    from .demodulation import demodulate
+
+    if report.lines:
+        print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}")
+    print(f"\n{report.indicators_text()}\n")
+    last = list(report.signals.values())[-1]
+    if report.fault:
+        found = demodulate(last, report.fault)
+        print(f"{last.name}, {found.text()}")
+        kurtogram = found.kurtogram
+    elif arguments.kurtogram:
+        from .kurtogram import fast_kurtogram
+
+        kurtogram = fast_kurtogram(last)
+    if arguments.kurtogram:
+        from .plots import plot_kurtogram
+
+        plot_kurtogram(kurtogram, arguments.kurtogram)
+        print(f"written: {arguments.kurtogram}")
     if arguments.plot:
         report.plot(arguments.plot)
         print(f"written: {arguments.plot}")

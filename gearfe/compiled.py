@@ -1,40 +1,27 @@
 """The loop of `gearfe.exponential` compiled by numba: the same steps, halved at the same places, in scalar arithmetic."""
 
-from importlib.util import find_spec
-
 import numpy as np
 
+from . import closed
 from .exponential import UNSTABLE
-
-if find_spec("numba"):
-    from numba import njit
-else:
-
-    def njit(**options):
-        """Leave the loops as they are: the same numbers, slowly (`gearfe.dynamics.simulate` then uses `gearfe.exponential`)."""
-        return lambda function: function
+from .loops import add_columns, lookup, njit
 
 
 def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     """As `gearfe.exponential.run`."""
+    if plan.affine:
+        return closed.run(plan, machine, flat, z, steps, every, start)
     law, m = machine.law, len(machine.meshes)
-    E = np.stack([one[0] for one in plan.levels])
-    D = np.zeros((len(E), 4, z.size // 2))
-    if plan.blocks:
-        even = np.arange(0, z.size, 2)
-        D = np.stack([E[:, even, even], E[:, even, even + 1], E[:, even + 1, even], E[:, even + 1, even + 1]], axis=1)
-    Y, F = (np.stack([one[i] for one in plan.levels]) for i in (1, 4))
-    # columns of the small matrices lie one after the other, so that the loops over them run along memory
-    S, T = (np.stack([np.ascontiguousarray(one[i].T) for one in plan.levels]) for i in (2, 3))
-    PF = plan.P @ F
+    E, Y = (np.stack([one[i] for one in plan.levels]) for i in (0, 1))
+    # columns of the matrices lie one after the other, so that the loops over them run along memory
+    S, T, F = (np.stack([np.ascontiguousarray(one[i].T) for one in plan.levels]) for i in (2, 3, 4))
+    PF = np.stack([np.ascontiguousarray((plan.P @ one[4]).T) for one in plan.levels])
     laws = np.array([law[key].astype(float) for key in ("power", "damping", "beta", "per_depth", "backlash", "film", "push")])
     states = np.empty((1 + steps // every, z.size))
     counts = np.zeros(3, dtype=np.int64)
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     linear = np.stack([plan.k, plan.c])
-    done = _run(
-        plan.blocks, E, D, Y, S, T, F, PF, plan.P, laws, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, m
-    )
+    done = _run(E, Y, S, T, F, PF, plan.P, laws, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, m)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
@@ -45,43 +32,6 @@ def _cubic(cells, place, count, at):
     cell = min(int(at), count - 1)
     u, row = at - cell, place + cell
     return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
-
-
-@njit(cache=True, error_model="numpy")
-def _lookup(flat, t, k, e, rate, weight, load):
-    """Fill in what acts at time t."""
-    for i in range(k.size):
-        e[i] = rate[i] = 0.0
-        if flat.twin[i] == i:
-            phase = flat.phase[i] + flat.frequency[i] * t
-            k[i] = _cubic(flat.cells, flat.place[i], flat.count[i], (phase - np.floor(phase)) * flat.count[i])
-    for j in range(flat.change_mesh.size):
-        i = flat.change_mesh[j]
-        if flat.twin[i] != i:
-            continue
-        z, own = flat.change[j, 0], flat.phase[i] + flat.frequency[i] * t - flat.change[j, 1] - flat.change[j, 2]
-        own = (own - z * np.floor(own / z)) / flat.change[j, 3]
-        if own < flat.change_count[j]:
-            k[i] += _cubic(flat.cells, flat.change_place[j], flat.change_count[j], own)
-    if flat.change_mesh.size:
-        for i in range(k.size):
-            k[i] = max(k[i], 0.0)
-    for i in range(k.size):
-        k[i] = k[flat.twin[i]]
-    for j in range(flat.error_mesh.size):
-        turn = flat.error[j, 1] * t + flat.error[j, 2]
-        e[flat.error_mesh[j]] += flat.error[j, 0] * np.sin(turn)
-        rate[flat.error_mesh[j]] += flat.error[j, 0] * flat.error[j, 1] * np.cos(turn)
-    for j in range(flat.rub_mesh.size):
-        i = flat.rub_mesh[j]
-        phase = flat.phase[i] + flat.frequency[i] * t
-        weight[j] = _cubic(flat.cells, flat.rub_place[j], flat.rub_count[j], (phase - np.floor(phase)) * flat.rub_count[j])
-    for j in range(load.size):
-        low, high = flat.knot_place[j], flat.knot_place[j + 1]
-        if high - low == 1:
-            load[j] = flat.knots[low, 1]
-        else:
-            load[j] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
 
 
 @njit(cache=True, error_model="numpy")
@@ -121,15 +71,6 @@ def _forces(out, x, now, laws, linear, rub_mesh, m, rates):
 
 
 @njit(cache=True, error_model="numpy")
-def _add(out, columns, x):
-    """``out += columns.T @ x``, along memory."""
-    for j in range(x.size):
-        value = x[j]
-        for i in range(out.size):
-            out[i] += columns[j, i] * value
-
-
-@njit(cache=True, error_model="numpy")
 def _changed(side, seen, laws):
     for i in range(side.size):  # noqa: SIM110 (numba has no generators here)
         if laws[4, i] > 0 and side[i] != seen[i]:
@@ -138,13 +79,13 @@ def _changed(side, seen, laws):
 
 
 @njit(cache=True, error_model="numpy")
-def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start, every, states, counts, m):
-    p, f, n2 = P.shape[0], F.shape[2] // 4, z.size
+def _run(E, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start, every, states, counts, m):
+    p, f, n2, size = P.shape[0], F.shape[1] // 3, z.size, E.shape[2]
     rates, rub, last = p > m, flat.rub_mesh.size, len(E) - 1
     loads = f - m - rub
-    g = np.zeros(4 * f)  # forces of the stages 1, 3, 2, 4
-    f1, f3, f2, f4, f13 = g[:f], g[f : 2 * f], g[2 * f : 3 * f], g[3 * f :], g[: 2 * f]
-    y, x, x0, new, extra = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n2), np.zeros(n2)
+    g = np.zeros(4 * f)  # forces of the stages 1, 3, 4, 2
+    f1, f3, f4, f2, f13, f134 = g[:f], g[f : 2 * f], g[2 * f : 3 * f], g[3 * f :], g[: 2 * f], g[: 3 * f]
+    y, x, x0, new = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n2)
     side, seen, total = np.zeros(m), np.zeros(m), np.zeros(m)
     k, e, rate = np.zeros((3, m)), np.zeros((3, m)), np.zeros((3, m))
     weight, load = np.zeros((3, rub)), np.zeros((3, loads))
@@ -163,8 +104,8 @@ def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start
             if known == t:
                 k[0], e[0], rate[0], weight[0], load[0] = k[2], e[2], rate[2], weight[2], load[2]
             else:
-                _lookup(flat, t, k[0], e[0], rate[0], weight[0], load[0])
-            _lookup(flat, t + own / 2, k[1], e[1], rate[1], weight[1], load[1])
+                lookup(flat, t, k[0], e[0], rate[0], weight[0], load[0])
+            lookup(flat, t + own / 2, k[1], e[1], rate[1], weight[1], load[1])
             _forces(f1, x0, (k[0], e[0], rate[0], weight[0], load[0], seen, total), laws, linear, flat.rub_mesh, m, rates)
             if first:
                 side[:] = seen
@@ -180,37 +121,32 @@ def _run(blocks, E, D, Y, S, T, F, PF, P, laws, linear, flat, edges, z, h, start
                     counts[1] += 1
                     continue
             upper = start + h * (step + (at + (whole >> level)) / whole)
-            _lookup(flat, upper, k[2], e[2], rate[2], weight[2], load[2])
+            lookup(flat, upper, k[2], e[2], rate[2], weight[2], load[2])
             known = upper
             np.dot(Y[level], z, y)
             change = False
             x[:] = y[:p]
-            _add(x, S[level], f1)
+            add_columns(x, S[level], f1)
             _forces(f2, x, (k[1], e[1], rate[1], weight[1], load[1], seen, total), laws, linear, flat.rub_mesh, m, rates)
             change = change or _changed(side, seen, laws)
             x[:] = y[:p]
-            _add(x, S[level], f2)
+            add_columns(x, S[level], f2)
             _forces(f3, x, (k[1], e[1], rate[1], weight[1], load[1], seen, total), laws, linear, flat.rub_mesh, m, rates)
             change = change or _changed(side, seen, laws)
             x[:] = y[p:]
-            _add(x, T[level], f13)
+            add_columns(x, T[level], f13)
             _forces(f4, x, (k[2], e[2], rate[2], weight[2], load[2], seen, total), laws, linear, flat.rub_mesh, m, rates)
             change = change or _changed(side, seen, laws)
-            if blocks:
-                for j in range(n2 // 2):
-                    a, b = z[2 * j], z[2 * j + 1]
-                    new[2 * j] = D[level, 0, j] * a + D[level, 1, j] * b
-                    new[2 * j + 1] = D[level, 2, j] * a + D[level, 3, j] * b
-            else:
-                for i in range(n2):
-                    value = 0.0
-                    for j in range(n2):
-                        value += E[level, i, j] * z[j]
-                    new[i] = value
-            np.dot(F[level], g, extra)
-            new += extra
-            np.dot(PF[level], g, x)
-            x += y[p:]
+            for i in range(f):
+                f3[i] += f2[i]
+            for i in range(n2):
+                value, low = 0.0, i // size * size
+                for j in range(size):
+                    value += E[level, i // size, i - low, j] * z[low + j]
+                new[i] = value
+            add_columns(new, F[level], f134)
+            x[:] = y[p:]
+            add_columns(x, PF[level], f134)
             if last > 0:
                 for i in range(m):
                     own_x = x[i] - e[2, i]

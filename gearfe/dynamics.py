@@ -3,18 +3,19 @@
 import math
 import time
 from dataclasses import replace
-from importlib.util import find_spec
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from . import excitation, propagator
-from .machine import Machine, natural_frequencies
+from . import excitation
+from .fast import fast
+from .machine import Machine
 from .response import Response, acceleration
+from .step_control import WANTED_OPEN, chosen_step, default_step, difference
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
-STEPS = 80  # per mesh cycle, by default
-SHARE = 0.35  # of the period of the stiffest mesh
+FINER = 3  # times the step of a whole run is halved where contact is lost
+ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 
 
 def simulate(
@@ -40,22 +41,27 @@ def simulate(
         ``"fast"``: `gearfe.exponential`, fixed steps that are halved about changes of contact. Or a method of
         `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``).
     dt : float, optional
-        Step of the fast path, and interval of the output [s]; rounded down to divide `duration`. Default: `default_step`.
+        Step of the fast path, and interval of the output [s]; rounded down to divide `duration`. Default: a step whose error on
+        a short stretch is at most 7e-4 of the range (`gearfe.step_control.chosen_step`); where contact is lost the whole run is
+        repeated at half the step until both agree within 1e-2, and if they never do the reference takes over, which
+        ``stats["switched"]`` says.
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
-        Keep one output in so many.
+        Keep one output in so many; without `dt` of those that `default_step` is apart, whatever the step.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool
-        Fast path: integrate once more with half the step; ``stats["error"]`` is then the largest difference of a displacement
-        over its range, which bounds the error of the first run from above as long as halving helps.
+        Fast path: integrate once more with half the step; ``stats["error"]`` is then of the whole run.
     numba : bool, optional
         Fast path: use the compiled loop; default: if numba is installed.
 
     Returns
     -------
     Response
+        Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
+        step, over their ranges (`gearfe.step_control.difference`), on the first ``stats["error_seconds"]`` of a run about the
+        worst damaged tooth, or of the whole run. A given `dt` without ``error=True`` has none.
 
     Raises
     ------
@@ -65,36 +71,54 @@ def simulate(
         If the response grows beyond all bounds, or the reference gives up.
     """
     _check(machine, duration, method, dt, every)
-    if dt is None:
-        dt = min(default_step(machine), duration)
-    steps = every * math.ceil(duration / dt / every * (1 - 1e-12))
     if initial is None:
-        initial = machine.rest(), np.zeros(len(machine.dofs))
-    state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
+        state = np.concatenate([machine.rest(), np.zeros(len(machine.dofs))])
+    else:
+        state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
     if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
     if method != "fast":
-        return _reference(machine, duration, steps // every, state, method, rtol)
-    out = _fast(machine, duration, steps, state, every, numba)
+        return _reference(machine, duration, _outputs(machine, duration, dt, every), state, method, rtol)
+    if dt is None:
+        return _controlled(machine, duration, state, initial is not None, every, error, numba)
+    steps = every * _outputs(machine, duration, dt, every)
+    out = fast(machine, duration, steps, state, every=every, numba=numba)
     if not error:
         return out
-    finer = _fast(machine, duration, 2 * steps, state, 2 * every, numba)
-    size = np.ptp(finer.q, axis=0)
-    away = np.abs(out.q - finer.q).max(axis=0)
-    stats = out.stats | {"error": float((away / np.where(size > 1e-9 * size.max(), size, np.inf)).max())}
-    return replace(out, stats=stats | {"seconds": out.stats["seconds"] + finer.stats["seconds"]})
+    finer = fast(machine, duration, 2 * steps, state, every=2 * every, numba=numba)
+    stats = {"error": max(difference(out, finer)), "seconds": out.stats["seconds"] + finer.stats["seconds"]}
+    return replace(out, stats=out.stats | stats | {"error_seconds": float(duration)})
 
 
-def default_step(machine):
-    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
+def _controlled(machine, duration, state, given, every, error, numba):
+    """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
+    started = time.perf_counter()
+    dt, doubt, length = chosen_step(machine, duration, state if given else None, numba)
+    outputs = _outputs(machine, duration, None, every)
+    every = math.ceil(duration / outputs / dt * (1 - 1e-9))
+    steps = every * outputs
+    out = fast(machine, duration, steps, state, every=every, numba=numba)
+    if not (out.stats["losses"] or error):
+        stats = {"error": doubt, "error_seconds": length, "seconds": time.perf_counter() - started}
+        return replace(out, stats=out.stats | stats)
+    for _ in range(FINER):
+        steps, every = 2 * steps, 2 * every
+        finer = fast(machine, duration, steps, state, every=every, numba=numba)
+        doubt = max(difference(out, finer))
+        out = finer
+        if doubt <= ALLOWED or not out.stats["losses"]:
+            stats = {"error": doubt, "error_seconds": float(duration), "seconds": time.perf_counter() - started}
+            return replace(out, stats=out.stats | stats)
+    why = f"contact is lost and two runs of the fast path, with steps of {2 * duration / steps:.3g} s and half of it, differ by"
+    want = _reference(machine, duration, len(out.time) - 1, state, "DOP853", 1e-8)
+    stats = {"switched": f"{why} {doubt:.2g} of the range", "error": max(difference(out, want)), "error_seconds": float(duration)}
+    return replace(want, stats=want.stats | stats | {"seconds": time.perf_counter() - started})
 
-    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
-    """
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
-    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
-    return 1 / max(STEPS * highest, top / SHARE)
+
+def _outputs(machine, duration, dt, every):
+    """Number of intervals between outputs."""
+    dt = min(default_step(machine), duration) if dt is None else dt
+    return math.ceil(duration / dt / every * (1 - 1e-12))
 
 
 def _check(machine, duration, method, dt, every):
@@ -108,27 +132,6 @@ def _check(machine, duration, method, dt, every):
         raise ValueError(f"dt = {dt} s, but it must be positive and no longer than the duration")
     if isinstance(every, bool) or every != int(every) or every < 1:
         raise ValueError(f"every = {every!r}, but give a whole number >= 1")
-
-
-def _fast(machine, duration, steps, state, every, numba):
-    started = time.perf_counter()
-    h, n = duration / steps, len(machine.dofs)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    plan = propagator.plan(machine, h, x)
-    flat = excitation.flatten(machine, np.linspace(0.0, duration, 4 * steps + 1))
-    breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
-    installed = find_spec("numba") is not None
-    if numba and not installed:
-        raise ValueError("numba=True, but numba is not installed: pip install gearfe[fast], or leave the choice open")
-    compiled = installed if numba is None else numba
-    if compiled:
-        from .compiled import run
-    else:
-        from .exponential import run
-    with np.errstate(over="ignore", invalid="ignore"):
-        states, stats = run(plan, machine, flat, plan.inverse @ state, steps, every, breaks)
-    stats |= {"method": "fast", "dt": h, "numba": bool(compiled), "seconds": time.perf_counter() - started, "dofs": n}
-    return Response(machine, h * every * np.arange(len(states)), states, plan.basis, stats)
 
 
 def _reference(machine, duration, count, state, method, rtol):

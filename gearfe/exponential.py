@@ -22,6 +22,7 @@ import numpy as np
 
 from . import excitation
 from .contact_law import force
+from .propagator import dense
 
 CHUNK = 1024  # steps whose stiffnesses are looked up at once
 
@@ -36,7 +37,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
         ``steps`` done, ``rejected`` for a change of contact, ``losses`` of contact.
     """
     step = _Step(plan, machine, flat)
-    if step.affine and not len(breaks):
+    if plan.affine:
         return _run_affine(step, z, steps, every, start)
     opens, free = machine.law["backlash"] > 0, not (machine.law["backlash"] > 0).any() and not len(breaks)
     states = np.empty((1 + steps // every, z.size))
@@ -67,17 +68,18 @@ def _run_affine(step, z, steps, every, start):
     """`run` where every mesh stays closed and its force is affine: ``f = slope x + shift``, with as few array calls as can be."""
     plan, m = step.plan, step.m
     E, Y, S, T, F = plan.levels[0]
-    wide, p, n = plan.B.shape[1], len(plan.P), z.size
+    wide, p, n = S.shape[1], len(plan.P), z.size
 
     def pad(rows):  # compressions beside zeros for the loads, so that f, x, slope and shift have one shape
         return np.concatenate([rows, np.zeros((wide - p, rows.shape[1]))])
 
-    whole = np.concatenate([E, pad(plan.P), pad(Y[:p]), pad(Y[p:])])
+    whole = np.concatenate([dense(E), pad(plan.P), pad(Y[:p]), pad(Y[p:])])
     S, T = pad(S), pad(T)
-    # z, x1, x2 and x4 without their forces, in one product; f of the stages 1, 3, 2, 4
+    # z, x1, x2 and x4 without their forces, in one product; f of the stages 1, 3, 4, 2
     both, g, x = np.empty(len(whole)), np.zeros(4 * wide), np.empty(wide)
     new, x1, y, w = both[:n], both[n : n + wide], both[n + wide : n + 2 * wide], both[n + 2 * wide :]
-    f1, f3, f2, f4, f13 = g[:wide], g[wide : 2 * wide], g[2 * wide : 3 * wide], g[3 * wide :], g[: 2 * wide]
+    f1, f3, f4, f2 = g.reshape(4, wide)
+    f13, f134 = g[: 2 * wide], g[: 3 * wide]
     z, add, times = z.copy(), np.add, np.multiply
     extra = np.empty(n)
     states = np.empty((1 + steps // every, n))
@@ -87,7 +89,7 @@ def _run_affine(step, z, steps, every, start):
         k, e, rate, _, load = step.lookup(start + plan.h * (first + np.arange(2 * count + 1) / 2))
         slope, shift = np.zeros((len(k), wide)), np.empty((len(k), wide))
         slope[:, :m] = k - plan.k
-        shift[:, :m] = -k * e - step.law["damping"] * rate
+        shift[:, :m] = -k * e - (step.law["damping"] + step.law["beta"] * k) * rate
         shift[:, m:] = load
         for i in range(count):
             j = 2 * i
@@ -107,7 +109,8 @@ def _run_affine(step, z, steps, every, start):
             add(x, w, x)
             times(slope[j + 2], x, f4)
             add(f4, shift[j + 2], f4)
-            F.dot(g, extra)
+            add(f3, f2, f3)
+            F.dot(f134, extra)
             add(new, extra, z)
             if (first + i + 1) % every == 0:
                 states[(first + i + 1) // every] = z
@@ -163,9 +166,9 @@ class _Step:
         self.plan, self.flat, self.law, self.m = plan, flat, law, len(machine.meshes)
         self.rub, self.rates = len(flat.rub_mesh), len(plan.P) > len(machine.meshes)
         self.fronts = not (law["backlash"] > 0).any()
-        self.affine = self.fronts and not self.rates and not (law["power"] != 1).any()
-        self.f = np.zeros((4, plan.B.shape[1]))  # of the stages 1, 3, 2, 4
+        self.f = np.zeros((4, plan.levels[0][2].shape[1]))  # of the stages 1, 3, 4, 2
         self.flat_f = self.f.ravel()
+        self.E = [dense(one[0]) for one in plan.levels]
 
     def lookup(self, t):
         """Stiffnesses, errors, their rates, friction weights and loads at times `t`."""
@@ -181,21 +184,22 @@ class _Step:
 
     def __call__(self, z, level, grid, j):
         """New z, and the sides of contact on the way."""
-        E, Y, S, T, F = self.plan.levels[level]
+        _, Y, S, T, F = self.plan.levels[level]
         f, p, wide = self.f, len(S), self.f.shape[1]
         if len(grid[4][j]):
-            f[:, self.m + self.rub :] = grid[4][[j, j + 1, j + 1, j + 2]]
+            f[:, self.m + self.rub :] = grid[4][[j, j + 1, j + 2, j + 1]]
         y = Y @ z
         w, y = y[p:], y[:p]
         x1 = self.plan.P @ z
         self._forces(f[0], x1, grid, j)
         x2 = y + S @ f[0]
-        self._forces(f[2], x2, grid, j + 1)
-        x3 = y + S @ f[2]
+        self._forces(f[3], x2, grid, j + 1)
+        x3 = y + S @ f[3]
         self._forces(f[1], x3, grid, j + 1)
         x4 = w + T @ self.flat_f[: 2 * wide]
-        self._forces(f[3], x4, grid, j + 2)
-        new = E @ z + F @ self.flat_f
+        self._forces(f[2], x4, grid, j + 2)
+        f[1] += f[3]
+        new = self.E[level] @ z + F @ self.flat_f[: 3 * wide]
         if self.fronts:
             return new, ()
         m, slack = self.m, self.law["backlash"]

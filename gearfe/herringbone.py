@@ -29,7 +29,8 @@ def pitted_helical(
     materials : (Material, Material)
         For the coefficient of the impact law at the pitch point.
     pits : sequence of (int, sequence of (float, float, float, float))
-        Pinion teeth and their pits, as `gearfe.contact_cycle.ellipse_loss` takes them; where the pits are is not in the article.
+        Pinion teeth and their pits, as `gearfe.contact_cycle.ellipse_loss` takes them, or instead of pits a function of the
+        phase (`gearfe.impact_machine.pits_loss`); where the pits are is not in the article.
     speed, torque : float
         Of the pinion [rad/s], [N m]: 2500 rpm; that 250 N m act on the pinion is assumed.
     damping, depth : float
@@ -50,8 +51,8 @@ def pitted_helical(
         made = disc(gear, density, 0.0)
         bodies.append(Body(name, made.mass, made.inertia, "x y z theta"))
     damage = tuple(
-        ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=ellipse_loss(pair, own, width=width), width=width))
-        for tooth, own in pits
+        ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
+        for tooth, lost in ((n, own if callable(own) else ellipse_loss(pair, own, width=width)) for n, own in pits)
     )
     return gear_pair(
         pair,

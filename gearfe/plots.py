@@ -158,6 +158,34 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     return figure
 
 
+def plot_kurtogram(kurtogram, path=None):
+    """Draw a `gearfe.kurtogram.Kurtogram`: kurtosis over frequency and level, the best band framed; save to `path` if given."""
+    from matplotlib import colormaps
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 4), layout="constrained")
+    axes = figure.subplots()
+    levels = np.unique(kurtogram.level)
+    top = kurtogram.kurtosis.max()
+    low = kurtogram.centre - kurtogram.bandwidth / 2
+    for row, level in enumerate(levels):
+        own = kurtogram.level == level
+        shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[own] / max(top, 1e-300), 0, 1))
+        axes.barh(row, kurtogram.bandwidth[own], 1.0, left=low[own], color=shades, align="center")
+    best = kurtogram.best
+    row = int(np.searchsorted(levels, kurtogram.level[best]))
+    axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="red", linewidth=1.5)
+    axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
+    axes.invert_yaxis()
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("level")
+    axes.set_title(f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz", fontsize=9)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
 def plot_phase(portrait, section=None, unit="m", path=None):
     """Draw a phase portrait, `gearfe.portrait.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
     from matplotlib.figure import Figure

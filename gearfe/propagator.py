@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eig, expm
+from scipy.linalg import eig
 
 from .machine import modal
 
@@ -20,32 +20,36 @@ class Plan:
     ----------
     basis, inverse : ndarray, shape (2n, 2n)
         ``(q, v) = basis @ z``.
-    A : ndarray, shape (2n, 2n)
-    B : ndarray, shape (2n, f)
-        Columns of the meshes, the friction rows, and the loads.
     P : ndarray, shape (m or 2m, 2n)
-        Compressions (without errors), and their rates where the law needs them.
-    blocks : bool
-        Whether A is made of blocks of two.
+        What the forces depend on: compressions (without errors), and their rates where the law needs them; where all forces are
+        affine ``x + beta v`` alone.
+    affine : bool
+        Whether they are: ``f = (k - plan.k) P z + shift(t)``.
     k, c : ndarray, shape (m,)
         Mesh stiffness and damping in the linear part.
     h : float
         Step [s].
     levels : list of tuple
-        Of each step ``h / 2**level``: E; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S), for f1 and f3; F = (F1, F2, F2,
-        F3), for f1, f3, f2 and f4.
+        Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
+        for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
     """
 
     basis: np.ndarray
     inverse: np.ndarray
-    A: np.ndarray
-    B: np.ndarray
     P: np.ndarray
-    blocks: bool
+    affine: bool
     k: np.ndarray
     c: np.ndarray
     h: float
     levels: list
+
+
+def is_affine(machine):
+    """Whether all mesh forces are ``k(t) (x - e) + (damping + beta k(t)) (x - e)'`` at any time, and the loads never bend."""
+    law = machine.law
+    plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
+    smooth = all(one.breaks.size < 2 for one in machine.loads) and not any(m.friction for m in machine.meshes)
+    return bool(plain.all()) and smooth
 
 
 def plan(machine, h, x=None):
@@ -56,9 +60,10 @@ def plan(machine, h, x=None):
     unit = math.sqrt(squared[-1]) or 1.0  # so that displacements and velocities are of one size
     D = modes.T @ C @ modes
     A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-np.diag(squared) / unit, -D]])
-    turn, blocks = _blocks(A, squared, D)
+    turn, size = _blocks(A, squared, D)
     back = np.linalg.inv(turn)
-    A = back @ A @ turn
+    A = (back @ A @ turn).reshape(2 * n // size, size, 2 * n // size, size)
+    A = A[np.arange(len(A)), :, np.arange(len(A))]
     zero = np.zeros((n, n))
     basis = np.block([[modes / unit, zero], [zero, modes]]) @ turn
     to_modes = modes.T * machine.mass
@@ -66,17 +71,16 @@ def plan(machine, h, x=None):
     rub = [row for m in machine.meshes for row, _ in m.friction]
     rows = np.concatenate([-machine.G, -np.array(rub).reshape(-1, n), np.array([p.row for p in machine.loads]).reshape(-1, n)])
     B = back[:, n:] @ modes.T @ rows.T
-    law = machine.law
-    rates = (
-        (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | ((law["film"] != 1) & (law["damping"] > 0)) | (len(rub) > 0)
-    )
-    P = np.concatenate([machine.G @ basis[:n], *([machine.G @ basis[n:]] if rates.any() else [])])
+    x, v, law = machine.G @ basis[:n], machine.G @ basis[n:], machine.law
+    affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
+    rates = (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | film | (len(rub) > 0)
+    P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     count = 1 + (LEVELS if (law["backlash"] > 0).any() or any(one.breaks.size > 1 for one in machine.loads) else 0)
-    return Plan(basis, inverse, A, B, P, blocks, k, c, h, [_matrices(A, B, P, h / 2**level) for level in range(count)])
+    return Plan(basis, inverse, P, affine, k, c, h, [_matrices(A, B, P, h / 2**level) for level in range(count)])
 
 
 def _blocks(A, squared, D):
-    """Coordinates in which A is made of real blocks of two, and whether they could be found."""
+    """Coordinates in which A is made of real blocks along its diagonal, and their size: 2, or all of it if that fails."""
     n = len(squared)
     small = 1e-12 * np.abs(D).max(initial=0.0)
     rigid = (squared == 0) & (np.abs(D) <= small).all(axis=1)
@@ -91,25 +95,56 @@ def _blocks(A, squared, D):
         turn[mode, 2 * j] = turn[n + mode, 2 * j + 1] = 1.0
     turn[others, 2 * rigid.sum() :] = np.array(columns).T if columns else 0.0
     if np.linalg.cond(turn) > CONDITION:
-        return np.eye(2 * n), False
-    return turn, True
+        return np.eye(2 * n), 2 * n
+    return turn, 2
+
+
+def dense(blocks):
+    """Matrix ``(2n, 2n)`` of blocks along its diagonal."""
+    count, size, _ = blocks.shape
+    out = np.zeros((count, size, count, size))
+    out[np.arange(count), :, np.arange(count)] = blocks
+    return out.reshape(count * size, count * size)
 
 
 def _matrices(A, B, P, h):
-    """Matrices of one step length; the phi functions from one exponential of an augmented matrix."""
-    E2, (Q,) = _phi(A, B, h / 2, 1)
-    E, phi = _phi(A, B, h, 3)
-    F1, F2, F3 = phi[0] - 3 * phi[1] + 4 * phi[2], 2 * phi[1] - 4 * phi[2], 4 * phi[2] - phi[1]
-    S, R = P @ Q, P @ E2 @ Q
-    return E, np.concatenate([P @ E2, P @ E]), S, np.hstack([R - S, 2 * S]), np.hstack([F1, F2, F2, F3])
+    """Matrices of one step length."""
+    count, size, _ = A.shape
+
+    def on(blocks, columns):
+        return (blocks @ columns.reshape(count, size, -1)).reshape(columns.shape)
+
+    def before(blocks):  # P times the blocks
+        return np.einsum("pis,ist->pit", P.reshape(-1, count, size), blocks).reshape(P.shape)
+
+    half, one, _, _ = _phi(A * (h / 2))
+    E, *phi = _phi(A * h)
+    Q = h / 2 * on(one, B)
+    phi = [h * on(each, B) for each in phi]
+    F = phi[0] - 3 * phi[1] + 4 * phi[2], 2 * phi[1] - 4 * phi[2], 4 * phi[2] - phi[1]
+    S, R = P @ Q, P @ on(half, Q)
+    return E, np.concatenate([before(half), before(E)]), S, np.hstack([R - S, 2 * S]), np.hstack(F)
 
 
-def _phi(A, B, h, order):
-    """``exp(h A)`` and ``h phi_j(h A) B`` for j from 1 to `order`."""
-    n, f = B.shape
-    big = np.zeros((n + order * f, n + order * f))
-    big[:n, :n], big[:n, n : n + f] = h * A, h * B
-    for j in range(order - 1):
-        big[n + j * f : n + (j + 1) * f, n + (j + 1) * f : n + (j + 2) * f] = np.eye(f)
-    full = expm(big)
-    return full[:n, :n], [full[:n, n + j * f : n + (j + 1) * f] for j in range(order)]
+def _phi(Z):
+    """``exp(Z), phi_1(Z), phi_2(Z), phi_3(Z)`` of blocks ``(n, s, s)``, ``phi_j(z) = sum z**i / (i + j)!``.
+
+    Taylor's series of each block brought below 1/2 in size, then doubled by ``2**j phi_j(2 z) = exp(z) phi_j(z) + sum over i
+    from 1 to j of phi_i(z) / (j - i)!`` (B. Skaflestad, W. M. Wright, Appl. Numer. Math. 59 (2009) 783-799).
+    """
+    size = np.abs(Z).sum(axis=-1).max(axis=-1)
+    halved = np.maximum(np.ceil(np.log2(np.maximum(size, 1e-300) / 0.5)), 0).astype(int)
+    Z, one = Z / 2.0 ** halved[:, None, None], np.eye(Z.shape[-1])
+    third = np.zeros_like(Z)
+    for i in range(14, -1, -1):
+        third = Z @ third + one / math.factorial(i + 3)
+    second = Z @ third + one / 2
+    first = Z @ second + one
+    E = Z @ first + one
+    for done in range(halved.max(initial=0)):
+        more = (done < halved)[:, None, None]
+        third = np.where(more, (E @ third + first / 2 + second + third) / 8, third)
+        second = np.where(more, (E @ second + first + second) / 4, second)
+        first = np.where(more, (E @ first + first) / 2, first)
+        E = np.where(more, E @ E, E)
+    return E, first, second, third

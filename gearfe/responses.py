@@ -1,5 +1,6 @@
 """A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,7 +8,7 @@ import numpy as np
 from geometry.pit import Pit
 
 from .dynamics import simulate
-from .indicators import indicator_table, table_text
+from .indicators import LOBES, indicator_table, table_text
 from .scene_machine import build_machine
 from .signals import Signal, spectrum
 from .spectral_lines import expected_lines, find_lines
@@ -17,18 +18,24 @@ SETTLE = 0.5  # of the duration, before it, left out
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Spectra and indicators of one channel of some responses, by case.
+    """Spectra and indicators of one channel of some responses, or of a measured signal, by case.
 
-    `lines` are the expected frequencies by name [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of
-    `gearfe.indicators.indicator_table`.
+    `signals` are what was analysed, `fault` the frequency of the fault looked for [Hz], `lines` the expected frequencies by name
+    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicators.indicator_table`.
     """
 
     channel: str
-    unit: str
+    signals: dict
+    fault: float | None
     lines: dict
     spectra: dict
     amplitudes: dict
     indicators: dict
+
+    @property
+    def unit(self):
+        """Of the channel."""
+        return next(iter(self.signals.values())).unit
 
     def lines_text(self):
         """Amplitudes as Markdown."""
@@ -69,7 +76,10 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     """
     if not duration > 0:
         raise ValueError(f"duration = {duration} s, but it must be positive")
-    damage = [one for pair in scene.pairs.values() for found in pair.damage.get(case, {}).values() for one in found]
+    impact = scene.machine.get("contact") == "impact"
+    damage = (
+        [] if impact else [one for pair in scene.pairs.values() for found in pair.damage.get(case, {}).values() for one in found]
+    )
     curves = "ritz3d" if any(isinstance(one, Pit) for one in damage) else "auto"  # one method for what is compared
     out = {}
     for name in ("healthy", *([case] if case else [])):
@@ -95,19 +105,52 @@ def analysis(found, channel=None):
     """
     first = next(iter(found.values()))
     notes = first.machine.notes
-    mesh = _last(notes, "mesh frequenc")
-    driven = [one.name for one in first.machine.meshes if abs(one.frequency - mesh) < 1e-6 * mesh]
-    channel = channel or f"force {driven[0]}"
-    fault = _last(notes, "fault frequenc") or _first(notes, "turning frequencies")
-    lines = expected_lines(mesh, fault, count=2, harmonics=2)
-    signals, spectra = {}, {}
-    for case, one in found.items():
-        values, rate = np.asarray(one[channel], dtype=float), 1 / (one.time[1] - one.time[0])
-        signals[case] = Signal(values, rate, one.unit(channel), name=case)
-        spectra[case] = spectrum(replace(signals[case], values=values - values.mean()))
+    mesh, fault = _last(notes, "mesh frequenc"), _last(notes, "fault frequenc")
+    driven = next(one for one in first.machine.meshes if abs(one.frequency - mesh) < 1e-6 * mesh)
+    turning, channel = mesh / driven.teeth[0], channel or f"force {driven.name}"
+    rate = 1 / (first.time[1] - first.time[0])
+    signals = {
+        case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
+    }
+    return analyse(signals, mesh, fault, turning=turning, carrier=_last(notes, "carrier frequency"), channel=channel)
+
+
+def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
+    """Spectrum lines and indicators of signals, computed or measured.
+
+    Parameters
+    ----------
+    signals : dict of str to Signal
+        By case, the first the healthy one.
+    mesh, fault, turning, carrier : float, optional
+        Frequencies [Hz] of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one of both
+        is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
+    channel : str
+
+    Returns
+    -------
+    Analysis
+    """
+    spectra = {case: spectrum(replace(one, values=one.values - one.values.mean())) for case, one in signals.items()}
+    first = next(iter(spectra.values()))
+    lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
+    lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
     amplitudes = {case: {name: two[1] for name, two in find_lines(one, lines).items()} for case, one in spectra.items()}
-    table = indicator_table(signals, mesh, fault)
-    return Analysis(channel, first.unit(channel), lines, spectra, amplitudes, table)
+    both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
+    table = indicator_table(signals, *both, healthy=next(iter(signals)))
+    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)
+
+
+def _lines(mesh, fault, turning, carrier, resolution):
+    """Lines of the fault twice with two mesh harmonics, of the gear's turning (alone: as of the fault), of the carrier."""
+    lines = expected_lines(mesh, fault, count=2, harmonics=2)
+    if turning is not None:
+        own = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
+        lines |= {name.replace("f_fault", "f_r"): value for name, value in own.items()}
+    apart = min((abs(other - carrier) for other in (fault, turning) if other), default=math.inf) if carrier else 0.0
+    if carrier and carrier > LOBES * resolution and apart > LOBES / 2 * resolution:
+        lines |= expected_lines(mesh, None, carrier, count=1)
+    return lines
 
 
 def _last(notes, start):
@@ -115,11 +158,4 @@ def _last(notes, start):
     for name, value in notes.items():
         if name.startswith(start):
             return float(np.atleast_1d(value)[-1])
-    return None
-
-
-def _first(notes, start):
-    for name, value in notes.items():
-        if name.startswith(start):
-            return float(np.atleast_1d(value)[0])
     return None

@@ -11,6 +11,7 @@ from geometry.gear import Gear
 from geometry.pair import GearPair
 from geometry.pit import pit_row
 
+from . import machine_table
 from .material import Material
 from .references import read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, WHOLE, checked, known, placed
@@ -75,7 +76,7 @@ MACHINE = {
     "speed_rpm": (NUMBER, REQUIRED),
     "torque_Nm": (NUMBER, REQUIRED),
     "n_planets": (WHOLE, 3),
-}
+} | machine_table.MACHINE
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, "")}
 
 
@@ -168,7 +169,7 @@ def load_scene(name_or_path):
 def _scene(file, data):
     tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    run = checked(file, "machine", data.pop("machine"), MACHINE) if "machine" in data else {}
+    run = _machine(file, data.pop("machine")) if "machine" in data else {}
     printed = data.pop("reference", [])
     top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "reference"))
     for name in ("gear", "pair", "material"):
@@ -200,6 +201,13 @@ def _scene(file, data):
     notes = tuple(checked(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
     rows = read_references(file, printed, pairs)
     return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run, rows)
+
+
+def _machine(file, table):
+    """Check a [machine] table and its [machine.impact]."""
+    flat = {key: value for key, value in table.items() if key != "impact"} if isinstance(table, dict) else table
+    out = checked(file, "machine", flat, MACHINE, extra=("impact",))
+    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT)}
 
 
 def _cases(file, damage, gears, name, pairs):

@@ -10,6 +10,9 @@ from geometry.planetary import PlanetarySet
 from .bodies import Body
 from .compound import compound_planetary
 from .herringbone import herringbone_planetary
+from .impact_machine import impact_helical, impact_planetary, pits_of
+from .mesh_errors import with_errors
+from .meshing import ToothDamage
 from .models import disc, gear_pair, pitted_planetary
 from .stiffness import mesh_stiffness
 
@@ -55,8 +58,45 @@ def build_machine(scene, case=None, *, phases=64, method="auto"):
     model = scene.machine["model"]
     if model not in made:
         raise ValueError(f"[machine] model = {model!r}, but it must be one of {', '.join(made)}")
-    speed = scene.machine["speed_rpm"] * math.pi / 30
-    return made[model](scene, case, speed, scene.machine["torque_Nm"], {"phases": phases, "method": method})
+    contact, speed = scene.machine.get("contact", "linear"), scene.machine["speed_rpm"] * math.pi / 30
+    if contact not in ("linear", "impact"):
+        raise ValueError(f"[machine] contact = {contact!r}, but it must be 'linear' or 'impact'")
+    if contact == "impact":
+        if model not in ("planetary", "helical_pair"):
+            raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
+        return _erring(scene, (_impact_stage if model == "planetary" else _impact_pair)(scene, case, speed))
+    out = made[model](scene, case, speed, scene.machine["torque_Nm"], {"phases": phases, "method": method})
+    play = scene.machine.get("backlash_um")
+    return _erring(scene, out.with_meshes(backlash=1e-6 * play) if play else out)
+
+
+def _erring(scene, machine):
+    """The machine with the errors that its scene states."""
+    profile, runout, shift = (1e-6 * scene.machine.get(key, 0.0) for key in ("profile_error_um", "runout_um", "misplaced_um"))
+    if not (profile or runout or shift):
+        return machine
+    bodies = dict.fromkeys(dof.partition(".")[0] for dof in machine.dofs)
+    drivers = [name for name in bodies if name in ("sun", "sun2", "pinion", "sunL", "sunR")]
+    moved = [name for name in bodies if name in ("planet1", "b1", "wheel", "planet1L", "planet1R")]
+    mesh = next(m for m in machine.meshes if any(m.row[machine.dofs.index(f"{name}.x")] for name in drivers))
+    turning = abs(mesh.frequency) / mesh.teeth[0]  # relative to the carrier
+    place = {name: (shift, 0.0) for name in moved} if shift else None
+    return with_errors(machine, profile=profile, runout={name: (runout, turning, 0.0) for name in drivers}, place=place)
+
+
+def _impact_stage(scene, case, speed):
+    chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
+    for name, one in chosen.items():
+        if name != "sun_planet" and pits_of(one.damage.get(case, {})):
+            raise ValueError("the impact law knows pits of the sun only: use contact = 'linear'")
+    found = pits_of(chosen["sun_planet"].damage.get(case, {}))
+    materials = {name: one.materials for name, one in chosen.items()}
+    return impact_planetary(_stage(scene, scene.machine["n_planets"]), materials, found, scene.machine, speed)
+
+
+def _impact_pair(scene, case, speed):
+    chosen = scene.pair()
+    return impact_helical(chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {})), scene.machine, speed)
 
 
 def curves(pair, case, options):
@@ -109,8 +149,6 @@ def _pair(scene, case, speed, torque, options):
     for name, gear in (("pinion", chosen.pair.gear_1), ("wheel", chosen.pair.gear_2)):
         made = disc(gear, DENSITY, 0.0)
         bodies.append(Body(name, made.mass, made.inertia, "x y z theta"))
-    from .meshing import ToothDamage
-
     damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
     settings = {"support": BEARING, "torsion": (1e4, 0.0), "damage": damage}
     return gear_pair(chosen.pair, bodies, healthy, speed=speed, torque=torque, **settings)

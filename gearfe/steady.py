@@ -9,8 +9,8 @@ import numpy as np
 
 from . import excitation, exponential, propagator
 from .contact_law import slopes
-from .dynamics import default_step
 from .response import Response
+from .step_control import chosen_step
 
 STABLE = 1e-6  # above 1: a multiplier this large still counts as 1 (rigid-body motion, no damping)
 
@@ -78,7 +78,7 @@ def steady_state(machine, *, period=None, dt=None, initial=None, iterations=20, 
     period : float, optional
         [s]; default: `common_period`.
     dt : float, optional
-        Step; default `gearfe.dynamics.default_step`.
+        Step; default `gearfe.step_control.chosen_step`.
     initial : (ndarray, ndarray), optional
         Displacements and velocities to start from; default: at rest.
     iterations : int
@@ -134,7 +134,7 @@ class _Flow:
     """The motion over a period in steps of h/2, and its derivative by the start in steps of h."""
 
     def __init__(self, machine, period, dt):
-        steps = math.ceil(period / (dt or default_step(machine)) * (1 - 1e-12))
+        steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
         h, law = period / steps, machine.law
         x = machine.G @ machine.rest() if (law["power"] != 1).any() else None
         self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)
@@ -142,7 +142,7 @@ class _Flow:
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
         self.breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
         plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
-        self.linear = bool(plain.all())
+        self.linear = bool(plain.all())  # even with friction
         # both plans must speak of the same coordinates
         self.turn = self.coarse.inverse @ self.plan.basis
 
@@ -163,10 +163,13 @@ class _Flow:
         rub = len(self.flat.rub_mesh)
         weight = excitation.rubbing(self.flat, phase) if rub else None
         E, Y, S, T, F = self.coarse.levels[0]
-        p, wide = len(S), F.shape[1] // 4
+        E, (p, wide) = propagator.dense(E), S.shape
         X, g = np.eye(2 * n), np.zeros((4 * wide, 2 * n))
 
         def forces(out, y, j):
+            if self.coarse.affine:
+                out[:m] = (k[j] - self.coarse.k)[:, None] * y
+                return
             total = by_x[j][:, None] * y[:m]
             out[:m] = total - self.coarse.k[:, None] * y[:m]
             if p > m:
@@ -175,13 +178,14 @@ class _Flow:
             if rub:
                 out[m : m + rub] = weight[j][:, None] * total[self.flat.rub_mesh]
 
-        f1, f3, f2, f4 = (g[i * wide : (i + 1) * wide] for i in range(4))
+        f1, f3, f4, f2 = (g[i * wide : (i + 1) * wide] for i in range(4))
         for j in range(0, 2 * self.steps, 2):
             y = Y @ X
             forces(f1, self.coarse.P @ X, j)
             forces(f2, y[:p] + S @ f1, j + 1)
             forces(f3, y[:p] + S @ f2, j + 1)
             forces(f4, y[p:] + T @ g[: 2 * wide], j + 2)
-            X = E @ X + F @ g
+            f3 += f2
+            X = E @ X + F @ g[: 3 * wide]
         back = np.linalg.inv(self.turn)
         return back @ X @ self.turn
