@@ -22,6 +22,7 @@ from .material import check_state
 from .wide import wide_curve
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
+ORDERS = {"ritz": 4, "ritz3d": 3}  # of the polynomials
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
@@ -37,7 +38,7 @@ def mesh_stiffness(
     extended=True,
     state="plane strain",
     refine=1.0,
-    order=4,
+    order=None,
     teeth=None,
     variants=None,
     face=None,
@@ -59,8 +60,8 @@ def mesh_stiffness(
         Of both gears, or of pinion and wheel.
     method : {"auto", "ritz", "ritz3d", "fe", "coupled", "textbook", "published"}
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz`). ``ritz3d``: the same
-        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact, contact on the
-        path of contact only (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
+        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
+        (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
         ``meta["why"]`` says why. ``fe``: finite elements of whole sections, the independent reference (`gearfe.fe`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
@@ -75,14 +76,14 @@ def mesh_stiffness(
         and the plain sums; pits: ``ritz3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses
         together are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
-        Let tip corners touch before the start and after the end of the path of contact (``ritz`` and ``fe``;
+        Let tip corners touch before the start and after the end of the path of contact (``ritz``, ``ritz3d`` and ``fe``;
         the closed forms know no contact there).
     state : {"plane strain", "plane stress"}
         For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
     refine : float
-        Resolution of ``ritz`` and ``fe``: divides the edge lengths.
-    order : int
-        Polynomial order of ``ritz``, 2 to 8.
+        Resolution of ``ritz``, ``ritz3d`` and ``fe``: divides the edge lengths.
+    order : int, optional
+        Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
     variants : dict, optional
@@ -94,7 +95,7 @@ def mesh_stiffness(
     groove : float
         Width of a herringbone pair's relief groove [mm], part of b.
     error : bool
-        For ``ritz`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
+        For ``ritz``, ``ritz3d`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
     cache : bool
         Reuse a gear solved before in this process; for ``fe`` also an earlier one (see `gearfe.cache`).
 
@@ -127,6 +128,7 @@ def mesh_stiffness(
     if method == "ritz3d" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
+    order = ORDERS.get(method) if order is None else order
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
@@ -137,8 +139,8 @@ def mesh_stiffness(
         options = {"state": state}
         solve, details = _coupled(pair, materials, phase, state)
     elif method == "ritz3d":
-        options = {"face": face, "groove": groove, "refine": float(refine)}
-        solve, details = None, {"extended": False}
+        options = {"face": face, "groove": groove, "refine": float(refine), "order": order, "extended": bool(extended)}
+        solve, details = None, {}
     else:
         options = {"extended": bool(extended), **numeric}
         case = (pair, materials, phase, extended, cracks, method, cache)

@@ -23,24 +23,26 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error):
     cracks, pits : (tuple, tuple)
         In each gear's own frame.
     meta : dict
-        Holds ``face``, ``groove`` and ``refine``.
+        Holds ``face``, ``groove``, ``refine``, ``order`` and ``extended``.
     error : bool
         Estimate the discretisation error.
 
     Returns
     -------
     StiffnessCurve
-        `pressure` is the largest of each pair's contact line.
+        `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
-    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "refine")}}
+    names = ("face", "groove", "refine", "order", "extended")
+    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in names}}
     found = pair_stiffness3d(pair, force, materials, phase, error=error, **options)
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
-            own = cells.pressure[cells.order == order]
-            pressure[i, k] = own.max(initial=0.0)
+            own = cells.pressure[(cells.order == order) & (cells.load > 0)]
+            flat = own[np.isfinite(own)]
+            pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
     used = found.load.max(axis=0) > 0
     return StiffnessCurve(
         phase=phase,
