@@ -17,8 +17,11 @@ import geometry
 from . import fe
 from .energy import ritz
 from .export import written
+from .fe_gear3d import solid_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
+MOST = 32  # gears kept in this process
+_known = {}
 
 
 def folder():
@@ -28,7 +31,7 @@ def folder():
 
 
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
-    """Flexibility of a gear by finite elements, from the cache if it is there.
+    """Flexibility of a gear's section by finite elements, from the cache if it is there.
 
     Parameters
     ----------
@@ -44,16 +47,63 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     -------
     Flexibility
     """
-    ordered = tuple(sorted(options.items()))
-    return _kept(gear, material, cracks, ordered) if cache else _solve(gear, material, cracks, ordered, cache=False)
+
+    def solve():
+        if not cracks:
+            return fe.flexibility(gear, material, **options)
+        healthy = solved_gear(gear, material, cache=cache, **options)
+        return fe.cracked_flexibility(gear, material, cracks, healthy, **options)
+
+    return _kept(("section", gear, material, cracks, sorted(options.items()), sorted(fe.EDGES.items())), solve, cache)
 
 
-@lru_cache(maxsize=32)
-def _kept(gear, material, cracks, options):
+def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
+    """Flexibility of a gear of finite width by finite elements of all of it, from the cache if it is there.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    cracks : tuple of Crack
+    cache : bool
+        False: solve anew, store nothing.
+    tell : callable, optional
+        Gets one line of text before each solve: which gear, the solver, the expected memory.
+    **options
+        As in `gearfe.fe_gear3d.solid_flexibility`: neighbours, degree, refine, solver.
+
+    Returns
+    -------
+    Flexibility3D
+    """
+
+    def said(plan):
+        damage = f", {len(cracks)} cracks" if cracks else ""
+        tell(f"z = {gear.z}, b = {gear.b:g} mm{damage}: {plan}")
+
+    def solve():
+        healthy = solved_solid(gear, material, cache=cache, tell=tell, **options) if cracks else None
+        return solid_flexibility(gear, material, cracks, healthy=healthy, tell=said if tell else None, **options)
+
+    return _kept(("solid", gear, material, cracks, sorted(options.items())), solve, cache)
+
+
+def _kept(what, solve, cache):
+    """What `solve` gives, from this process or the disk if it is there."""
+    if not cache:
+        return solve()
+    key = repr((*what, _made_by()))
+    if key not in _known:
+        if len(_known) >= MOST:
+            del _known[next(iter(_known))]
+        _known[key] = _stored(key, solve)
+    return _known[key]
+
+
+def _stored(key, solve):
     place = folder()
     if place is None:
-        return _solve(gear, material, cracks, options, cache=True)
-    key = repr((gear, material, cracks, options, sorted(fe.EDGES.items()), _made_by()))
+        return solve()
     file = place / f"{hashlib.sha256(key.encode()).hexdigest()}.pickle"
     try:
         stored_key, stored = pickle.loads(file.read_bytes())
@@ -61,7 +111,7 @@ def _kept(gear, material, cracks, options):
             return stored
     except (OSError, pickle.UnpicklingError, EOFError, ValueError, AttributeError, ImportError, IndexError):
         pass  # absent, cut off or from another version: solve
-    solved = _solve(gear, material, cracks, options, cache=True)
+    solved = solve()
     try:
         place.mkdir(parents=True, exist_ok=True)
         with written(file) as name:
@@ -69,13 +119,6 @@ def _kept(gear, material, cracks, options):
     except (OSError, ValueError):
         pass  # a full or read-only disk costs only the reuse
     return solved
-
-
-def _solve(gear, material, cracks, options, *, cache):
-    if not cracks:
-        return fe.flexibility(gear, material, **dict(options))
-    healthy = _kept(gear, material, (), options) if cache else _solve(gear, material, (), options, cache=False)
-    return fe.cracked_flexibility(gear, material, cracks, healthy, **dict(options))
 
 
 @lru_cache(maxsize=1)
@@ -90,5 +133,5 @@ def _made_by():
 
 def clear():
     """Forget the gears kept in this process (files stay)."""
-    _kept.cache_clear()
+    _known.clear()
     ritz.clear()

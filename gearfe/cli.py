@@ -16,10 +16,12 @@ def main(argv=None):
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
-    verb.add_argument("--method", default="auto", help="ritz, ritz3d, fe, coupled, textbook, published (default: ritz or ritz3d)")
+    verb.add_argument(
+        "--method", default="auto", help="ritz, ritz3d, fe, fe3d, coupled, textbook, published (default: ritz or ritz3d)"
+    )
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
-    verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (ritz, fe)")
+    verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (not of closed forms)")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", compare, "table of every formulation's error against finite elements, by zone, with cost")
@@ -81,9 +83,9 @@ def _scene_arguments(verb, *, phases=True):
 
 @contextlib.contextmanager
 def _working(text):
-    """A moving bar with the seconds gone, on a terminal only."""
+    """A moving bar with the seconds gone, on a terminal only; gives what prints a line above it."""
     if not sys.stderr.isatty():
-        yield
+        yield lambda line: print(f"gearfe: {line}", file=sys.stderr, flush=True)
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -91,7 +93,7 @@ def _working(text):
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         progress.add_task(text, total=None)
-        yield
+        yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
 
 
 def _print_scene(scene):
@@ -112,13 +114,13 @@ def stiffness(arguments):
     chosen = scene.pair(arguments.pair)
     force = chosen.force if arguments.force is None else arguments.force
     _print_scene(scene)
-    with _working(f"stiffness by {arguments.method}"):
+    with _working(f"stiffness by {arguments.method}") as tell:
         run = chosen.case(arguments.case) | {"force": force, "span": "tooth" if arguments.case else "cycle"}
         if arguments.method in ("ritz", "fe", "coupled"):
             run["face"] = None
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,
         )  # fmt: skip
     meta = curve.meta
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")

@@ -7,11 +7,13 @@ on itself is a strip of Hertz's pressure, as in the plane.
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from geometry.pit import check_pits
 
+from .bodies3d import bodies_of
 from .energy.ritz3d import axial_degree, flexibility3d
 from .phase_contact import REACH, PhaseContact
 
@@ -24,8 +26,8 @@ class Contact3D:
 
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
     along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
-    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `error` (phases,) estimated
-    discretisation error of k [N/m], or None.
+    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
+    of pinion and wheel; `error` (phases,) estimated discretisation error of k [N/m], or None.
     """
 
     phase: np.ndarray
@@ -34,6 +36,7 @@ class Contact3D:
     order: np.ndarray
     load: np.ndarray
     cells: tuple
+    dofs: tuple
     error: np.ndarray | None = None
 
 
@@ -53,6 +56,7 @@ def pair_stiffness3d(
     refine=1.0,
     extended=True,
     error=False,
+    model=None,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -71,7 +75,7 @@ def pair_stiffness3d(
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
     pits, cracks : (sequence, sequence)
         Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
-        Cracks run through the whole width (of both halves), their faces may pass through each other.
+        The faces of cracks may pass through each other.
     face : {"spur", "helical", "herringbone"}
         The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
         otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
@@ -86,8 +90,10 @@ def pair_stiffness3d(
         Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
         has there and the plane's local law of a corner (`corner3d`).
     error : bool
-        Estimate the discretisation error of every k: its difference from that of a section order less by 1 and an axial degree
-        less by 2, or the mean of those over the phases if that is larger.
+        Of the energy model: estimate the discretisation error of every k: its difference from that of a section order less by
+        1 and an axial degree less by 2, or the mean of those over the phases if that is larger.
+    model : callable, optional
+        ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
 
     Returns
     -------
@@ -111,17 +117,20 @@ def pair_stiffness3d(
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended}
     contact = PhaseContact(pair, force, materials, **options)
 
-    def solve(order, less):
-        bodies = []
-        for (gear, offset), own, found in zip(_gears(pair, face, groove), materials, cracks, strict=True):
+    def energy(order, less):
+        def flexible(gear, own, found, neighbours):
             degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
-            options = {"neighbours": contact.neighbours, "order": order, "axial": degree, "refine": refine}
-            bodies.append((flexibility3d(gear, own, tuple(found), **options), offset))
-        return _solved(contact, phase, [tuple(bodies)] * len(contact.bands))
+            return flexibility3d(gear, own, found, neighbours=neighbours, order=order, axial=degree, refine=refine)
 
-    solved = solve(order, 0)
+        return flexible
+
+    def solve(model):
+        flexible = partial(model, neighbours=contact.neighbours)
+        return _solved(contact, phase, bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible))
+
+    solved = solve(model or energy(order, 0))
     if error:
-        away = np.abs(solve(order - 1, 2).k - solved.k)
+        away = np.abs(solve(energy(order - 1, 2)).k - solved.k)
         solved = replace(solved, error=np.maximum(away, away.mean()))
     return solved
 
@@ -136,20 +145,5 @@ def _solved(contact, phase, bodies):
     load = np.zeros((phase.size, orders.size))
     for i, own in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
-    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells))
-
-
-def _gears(pair, face, groove):
-    """Each gear as its flexibility sees it, and where its contact begins on it [mm].
-
-    Heights count from the end that touches first: the pinion's roll length falls with them, so its beta is negative. The wheel's,
-    in its own frame, is the opposite one; also a ring's, whose frame is mirrored.
-    """
-    out = []
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    for gear, sense in ((pair.gear_1, -1), (pair.gear_2, 1)):
-        if face == "herringbone":
-            out.append((replace(gear, beta=sense * abs(gear.beta), b=(gear.b - groove) / 2), (gear.b - common) / 2))
-        else:
-            out.append((replace(gear, beta=sense * abs(gear.beta)), (gear.b - common) / 2))
-    return out
+    dofs = tuple(body.unknowns for body, _ in bodies[0])
+    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs)

@@ -16,6 +16,7 @@ from geometry.tooth import arc_at
 
 from .contact import CORNER, Mesh
 from .energy import ritz, ritz3d
+from .flexibility3d import carry
 from .hertz import contact_modulus, half_plane, half_width
 from .sharing import share
 
@@ -98,5 +99,5 @@ def _table(pair, materials, line_load, corner, span):
 
 def _read(gear, material, roll):
     """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `ritz3d` carry it."""
-    row = ritz3d._carry(gear, np.array([roll]))[0]
+    row = carry(gear, np.array([roll]))[0]
     return float(row @ ritz3d.plane_hats(gear, material) @ row)

@@ -4,7 +4,7 @@ A patch carries a pressure of known resultant along minus the flank's normal::
 
     p(s, z) dA = h(s) g(z) ds dz,    integral of h = 1
 
-with a hat h of half width w_a along the transverse arc s of the flank and a function g of the height z. On an involute
+with a hat h along the transverse arc s of the flank and a function g of the height z. On an involute
 helicoid ``dA = ds dz / cos(beta_b)`` and the normal has the axial part ``sin(beta_b)``. Displacement is measured with the same
 weights, so the influence matrix ``C = F' K^-1 F`` is symmetric.
 """
@@ -32,10 +32,8 @@ class Patches:
     Attributes
     ----------
     teeth : tuple of int
-    arcs : ndarray
-        Tops of the hats along the flank, as of `geometry.tooth.arc_at` [mm].
-    half_width : float
-        Of the hats [mm].
+    knots : ndarray, shape (3, arcs)
+        Start, top and end of each hat along the flank, as of `geometry.tooth.arc_at` [mm].
     axial : int or ndarray
         Functions along the width: so many Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform line
         load of unit resultant; or the knots [mm] of hats of unit integral, each from its left to its right neighbour, the
@@ -43,8 +41,7 @@ class Patches:
     """
 
     teeth: tuple
-    arcs: np.ndarray
-    half_width: float
+    knots: np.ndarray
     axial: int | np.ndarray
 
     @property
@@ -54,8 +51,9 @@ class Patches:
 
     def along_profile(self, arc):
         """Hats ``(arcs, n)`` [1/mm] at places `arc` [mm]."""
-        away = np.abs(np.asarray(arc) - np.asarray(self.arcs)[:, None])
-        return np.maximum(1 - away / self.half_width, 0.0) / self.half_width
+        start, top, stop = np.asarray(self.knots)[:, :, None]
+        rising = np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
+        return 2 / (stop - start) * np.maximum(rising, 0.0)
 
     def along_width(self, z, b):
         """Axial functions ``(modes, n)`` [1/mm] at heights `z` [mm]."""
@@ -70,12 +68,12 @@ class Patches:
         """Raise ValueError if a hat leaves the flank or the axial knots leave the face."""
         low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         slack = 1e-9 * gear.m_n
-        if not (self.half_width > 0 and np.size(self.arcs)):
-            raise ValueError(f"half_width = {self.half_width} mm, arcs = {self.arcs}: give at least one hat of positive width")
-        if min(self.arcs) - self.half_width < low - slack or max(self.arcs) + self.half_width > high + slack:
+        knots = np.asarray(self.knots)
+        if not (knots.ndim == 2 and knots.shape[0] == 3 and knots.size and (np.diff(knots, axis=0) > 0).all()):
+            raise ValueError(f"knots = {self.knots}, but each hat needs a start, a top beyond it and an end beyond that [mm]")
+        if knots.min() < low - slack or knots.max() > high + slack:
             raise ValueError(
-                f"hats from {min(self.arcs):.4g} to {max(self.arcs):.4g} mm of half width {self.half_width:.4g} mm leave the "
-                f"flank, which runs from {low:.4g} to {high:.4g} mm"
+                f"hats from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to {high:.4g} mm"
             )
         if np.ndim(self.axial) == 0:
             if self.axial < 1:
@@ -101,23 +99,21 @@ class Influence:
     moved: np.ndarray | None = None
 
 
-def mesh_patches(gear, patches, *, cracks=(), extents=None, refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
+def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
     """Mesh `gear` for `patches`: `per_hat` edges across each hat and layers of height `layer` [mm].
 
-    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `extents`,
-    `sizes`, `fine` as in `geometry.solid.solid`. What converges last are loads that run over the end faces:
+    `layer` is b / 12 by default, at most a module. `refine` divides all edge lengths and the layers; `cracks`, `sizes`,
+    `fine` as in `geometry.solid.solid`. What converges last are loads that run over the end faces:
     ``fine = [(0, 0, w), (b, b, w)]`` gives layers of w there.
     """
     patches.check(gear)
-    edge = 2 * patches.half_width / per_hat
-    places = [(arc - patches.half_width, arc + patches.half_width, edge / refine) for arc in patches.arcs]
+    places = [(start, stop, (stop - start) / (per_hat * refine)) for start, _, stop in patches.knots.T]
     layer = layer or min(gear.b / 12, gear.m_n)
     return solid(
         gear,
         layer=layer,
         loaded=patches.teeth,
         cracks=cracks,
-        extents=extents,
         patches=places,
         refine=refine,
         sizes=sizes,
@@ -132,8 +128,7 @@ def patch_loads(mesh, patches, tooth):
     """
     gear = mesh.gear
     rising = gear.outward * mesh.section.roll[tooth % gear.z]  # a ring's roll length falls from root to tip
-    knots = [patches.arcs + k * patches.half_width for k in (-1, 0, 1)]
-    cuts = gear.outward * roll_at_arc(gear, np.unique(np.concatenate(knots)))
+    cuts = gear.outward * roll_at_arc(gear, np.unique(patches.knots))
     edge, x, at, across = _points(rising, cuts, ROLL_POINTS)
     at = gear.outward * at
     layer, y, z, along = _points(mesh.levels, () if np.ndim(patches.axial) == 0 else patches.axial, HEIGHT_POINTS)
@@ -211,5 +206,5 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
         matrix = solve.gram(load[rows])
     if not np.isfinite(matrix).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
-    shape = len(patches.teeth), len(patches.arcs), patches.modes
+    shape = len(patches.teeth), patches.knots.shape[1], patches.modes
     return Influence(matrix.reshape(*shape, *shape), patches, rows.size, made, whole)

@@ -8,7 +8,7 @@ from numbers import Real
 
 import numpy as np
 
-from geometry.damage import Crack, check_apart
+from geometry.damage import Crack, check_apart, check_through
 from geometry.pit import Pit
 
 from .contact_cycle import overlap_ratio
@@ -18,7 +18,8 @@ from .energy.slices import FACES
 from .material import Material
 
 CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
-METHODS = ("auto", "ritz", "ritz3d", "fe", "coupled", *CLOSED)
+WIDE = ("ritz3d", "fe3d")  # in three dimensions
+METHODS = ("auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", *CLOSED)
 NO_VARIANTS = (
     *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
 )
@@ -56,12 +57,14 @@ def phase_array(phases, span, pair, overlap=0.0):
     return phases
 
 
-def choose(method, pair, pits, face, teeth):
+def choose(method, pair, cracks, pits, face, teeth):
     """The method that ``auto`` stands for, and why."""
     if method != "auto":
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
+    if not all(crack.through for own in cracks for crack in own):
+        return "ritz3d", "cracks change along the width"
     if any(pits):
         return "ritz3d", "pits change along the width"
     if face in ("helical", "herringbone") or (face is None and pair.gear_1.beta):
@@ -84,8 +87,10 @@ def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
         raise ValueError(f"method = {method!r} has no ring (its foundation does not hold for one): use method = 'ritz'")
     if damaged and method == "coupled":
         raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
-    if any(pits) and method not in (*CLOSED, "ritz3d"):
+    if any(pits) and method not in (*CLOSED, *WIDE):
         raise ValueError(f"pits with method = {method!r}, a transverse section: use 'ritz3d', 'textbook' or 'published'")
+    if method != "fe3d":
+        check_through([crack for own in cracks for crack in own], f"method = {method!r}")
     if teeth is not None and method != "fe":
         raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
     if variants and method not in CLOSED:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .bodies3d import between
 from .cell_sharing import line_cells
 from .contact_cycle import overlap_ratio
 from .corner3d import CornerLaw
@@ -88,7 +89,7 @@ class PhaseContact:
     def _carried(self, cells, bodies):
         """`Cells` with their loads under the whole force, and the approach [mm]; two halves alike are solved once."""
         first = cells.half == 0
-        if len(bodies) == 1 or bodies[0] is not bodies[1] or not _alike(cells, first):
+        if len(bodies) == 1 or not _same(*bodies) or not _alike(cells, first):
             return self._shared(cells, bodies, self.force)
         half, approach = self._shared(_some(cells, first), bodies, self.force / 2)
         return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach
@@ -105,12 +106,16 @@ class PhaseContact:
             at = self.law.ends(self.pair, cells)
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
         load, approach = line_cells(
-            _between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus,
+            between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus,
             block=cells.half, local=local,
         )  # fmt: skip
         pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
         pressure[(cells.corner > 0) & (load > 0)] = np.nan
         return replace(cells, load=load, pressure=pressure), approach / cos
+
+
+def _same(one, two):
+    return all(first is second for (first, _), (second, _) in zip(one, two, strict=True))
 
 
 def _alike(cells, first):
@@ -122,15 +127,3 @@ def _alike(cells, first):
 def _some(cells, which):
     names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner")
     return Cells(*(getattr(cells, name)[which] for name in names))
-
-
-def _between(cells, bodies):
-    """Approach ``(n, n)`` of the cells per unit normal force on each, half-space left out [mm/N]."""
-    out = np.zeros((cells.z.size,) * 2)
-    for half in np.unique(cells.half).tolist():
-        at = np.flatnonzero(cells.half == half)
-        block = 0.0
-        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
-            block = block + body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
-        out[np.ix_(at, at)] = (block + block.T) / 2
-    return out

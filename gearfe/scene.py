@@ -53,6 +53,8 @@ DAMAGE = {
         "start": (TEXT, "30deg"),
         "turning": (TRUTH, False),
         "tooth": (WHOLE, 0),
+        "width_mm": (TWO, None),
+        "ends": (TWO, [1.0, 1.0]),
     },
     "pits": {
         "case": (TEXT, REQUIRED),
@@ -212,7 +214,7 @@ def _cases(file, damage, gears, pair):
 
 def _crack(row):
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
-    return [Crack(**numbers, **{key: row[key] for key in ("start", "turning", "tooth")})]
+    return [Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends")})]
 
 
 def _pits(row):

@@ -17,7 +17,7 @@ from .contact import Mesh
 from .curve import StiffnessCurve
 from .energy import coupled, ritz
 from .energy.plain_sum import plain_sum
-from .inputs import CLOSED, METHODS, by_gear, choose, overlap, phase_array, refuse, two_materials, warn_if_unseen
+from .inputs import CLOSED, METHODS, WIDE, by_gear, choose, overlap, phase_array, refuse, two_materials, warn_if_unseen
 from .material import check_state
 from .wide import wide_curve
 
@@ -45,6 +45,7 @@ def mesh_stiffness(
     groove=0.0,
     error=False,
     cache=True,
+    tell=None,
 ):
     """Mesh stiffness of a gear pair over one mesh cycle.
 
@@ -58,11 +59,12 @@ def mesh_stiffness(
         Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
-    method : {"auto", "ritz", "ritz3d", "fe", "coupled", "textbook", "published"}
+    method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"}
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz`). ``ritz3d``: the same
         in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
         (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
         ``meta["why"]`` says why. ``fe``: finite elements of whole sections, the independent reference (`gearfe.fe`).
+        ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
         (`gearfe.energy.plain_sum`).
@@ -72,16 +74,16 @@ def mesh_stiffness(
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
         after it (where the damaged tooth is); in three dimensions pair 0 enters at one end at phase 0.
     damage : dict, optional
-        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: ``ritz``, ``ritz3d``, ``fe``
-        and the plain sums; pits: ``ritz3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces that the load presses
-        together are kept apart; ``meta["crack_closed_phases"]`` says where.
+        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
+        the width or sloping ones: ``fe3d``; pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces
+        that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
-        Let tip corners touch before the start and after the end of the path of contact (``ritz``, ``ritz3d`` and ``fe``;
-        the closed forms know no contact there).
+        Let tip corners touch before the start and after the end of the path of contact (all but the closed
+        forms, which know no contact there).
     state : {"plane strain", "plane stress"}
         For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
     refine : float
-        Resolution of ``ritz``, ``ritz3d`` and ``fe``: divides the edge lengths.
+        Resolution of ``ritz`` and ``fe``, also in three dimensions: divides the edge lengths.
     order : int, optional
         Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
@@ -90,14 +92,17 @@ def mesh_stiffness(
         For ``textbook`` and ``published``: options of `gearfe.energy.plain_sum.plain_sum` and of the formulas' ``components``
         (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
     face : {"spur", "helical", "herringbone"}, optional
-        For ``ritz3d`` and the plain sums: how the teeth run. Default: ``helical`` for gears with a helix angle in ``ritz3d``,
-        otherwise ``spur`` (of helical gears the transverse section, as a spur gear of the same width).
+        For ``ritz3d``, ``fe3d`` and the plain sums: how the teeth run. Default: ``helical`` for gears with a helix angle in
+        ``ritz3d`` and ``fe3d``, otherwise ``spur`` (of helical gears the transverse section, as a spur gear of the same width).
     groove : float
         Width of a herringbone pair's relief groove [mm], part of b.
     error : bool
-        For ``ritz``, ``ritz3d`` and ``fe``: estimate the discretisation error of every k from coarser solves (see `estimate`).
+        For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
+        `estimate` and `gearfe.wide.wide_curve`).
     cache : bool
-        Reuse a gear solved before in this process; for ``fe`` also an earlier one (see `gearfe.cache`).
+        Reuse a gear solved before in this process; for ``fe`` and ``fe3d`` also an earlier one (see `gearfe.cache`).
+    tell : callable, optional
+        For ``fe3d``: gets a line of text before each gear is solved, with the solver and the expected memory.
 
     Returns
     -------
@@ -107,6 +112,8 @@ def mesh_stiffness(
     ------
     ValueError
         If an input is impossible; the message says which.
+    RuntimeError
+        If a system of ``fe3d`` does not fit into memory, before it is solved; the message has the numbers.
     """
     if not isinstance(pair, GearPair):
         raise ValueError(f"pair = {pair!r}, but give a GearPair")
@@ -123,9 +130,9 @@ def mesh_stiffness(
     materials = two_materials(material)
     check_state(state)
     cracks, pits = by_gear(pair, damage)
-    method, why = choose(method, pair, pits, face, teeth)
+    method, why = choose(method, pair, cracks, pits, face, teeth)
     refuse(method, pair, cracks, pits, teeth, variants, face, groove)
-    if method == "ritz3d" and face is None:
+    if method in WIDE and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
     order = ORDERS.get(method) if order is None else order
@@ -138,8 +145,9 @@ def mesh_stiffness(
     elif method == "coupled":
         options = {"state": state}
         solve, details = _coupled(pair, materials, phase, state)
-    elif method == "ritz3d":
-        options = {"face": face, "groove": groove, "refine": float(refine), "order": order, "extended": bool(extended)}
+    elif method in WIDE:
+        options = {"face": face, "groove": groove, "refine": float(refine), "extended": bool(extended)}
+        options |= {"order": order} if method == "ritz3d" else {}
         solve, details = None, {}
     else:
         options = {"extended": bool(extended), **numeric}
@@ -151,9 +159,10 @@ def mesh_stiffness(
             for i, (name, sense) in enumerate((("pinion", 1), ("wheel", -1)))
         }
     options["why"] = why
-    if method == "ritz3d":
+    if method in WIDE:
         meta = _meta(pair, 0.0, materials, method, options | details)
-        curves = [wide_curve(pair, value, materials, phase, cracks, pits, meta, error) for value in forces.tolist()]
+        case = (materials, phase, cracks, pits, meta, error)
+        curves = [wide_curve(pair, value, *case, cache=cache, tell=tell) for value in forces.tolist()]
         return curves if np.ndim(force) else curves[0]
     curves = [
         _curve(pair, phase, value, solve, _meta(pair, value, materials, method, options | details)) for value in forces.tolist()

@@ -1,17 +1,21 @@
 """Stiffness curves of gears of finite width, from contact along their contact lines."""
 
 import time
+from functools import partial
 
 import numpy as np
 
+from .cache import solved_solid
 from .contact3d import pair_stiffness3d
 from .curve import StiffnessCurve
 
 MORE = 1.01  # load of the second solve that gives the tangent
+COARSER = 0.7  # resolution of the error estimate of finite elements, relative to that of the curve
+LESS = 2  # axial degrees less in it
 
 
-def wide_curve(pair, force, materials, phase, cracks, pits, meta, error):
-    """`StiffnessCurve` of a pair by the energy model in three dimensions.
+def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cache=True, tell=None):
+    """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
 
     Parameters
     ----------
@@ -23,9 +27,12 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error):
     cracks, pits : (tuple, tuple)
         In each gear's own frame.
     meta : dict
-        Holds ``face``, ``groove``, ``refine``, ``order`` and ``extended``.
+        Holds ``method``, ``face``, ``groove``, ``refine``, ``extended`` and (energy model) ``order``.
     error : bool
-        Estimate the discretisation error.
+        Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees.
+        Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
+    cache, tell
+        Of the finite elements, see `gearfe.cache.solved_solid`.
 
     Returns
     -------
@@ -33,10 +40,20 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error):
         `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
-    names = ("face", "groove", "refine", "order", "extended")
-    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in names}}
-    found = pair_stiffness3d(pair, force, materials, phase, error=error, **options)
+    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "extended")}}
+    brute = meta["method"] == "fe3d"
+    if brute:
+        model = partial(solved_solid, refine=meta["refine"], cache=cache, tell=tell)
+        options["model"] = model
+    else:
+        options |= {"refine": meta["refine"], "order": meta["order"]}
+    found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
+    doubt = found.error
+    if error and brute:
+        model = partial(solved_solid, refine=COARSER * meta["refine"], cache=cache, tell=tell, less=LESS)
+        away = np.abs(pair_stiffness3d(pair, force, materials, phase, **(options | {"model": model})).k - found.k)
+        doubt = np.maximum(away, away.mean())
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
@@ -52,6 +69,6 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error):
         order=found.order[used],
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
-        error=found.error,
-        meta=meta | {"force_N": force, "seconds_contact": time.perf_counter() - started},
+        error=doubt,
+        meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
     )

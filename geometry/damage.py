@@ -1,7 +1,7 @@
-"""`Crack`: a root crack of one tooth, where it starts and how it runs."""
+"""`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from numbers import Integral, Real
 
@@ -15,7 +15,7 @@ STARTS = ("30deg", "root", "middle")
 
 @dataclass(frozen=True, slots=True)
 class Crack:
-    """A crack through the root of one tooth, in the transverse section over the whole width.
+    """A crack through the root of one tooth, described in the transverse section.
 
     It starts on the fillet and runs at `angle` to the tooth centre-line down towards it. Its size is `length` [mm], or
     `level`: at 0.5 the straight crack reaches the centre-line, so a straight crack of level p is p / 0.5 times as long as
@@ -36,11 +36,19 @@ class Crack:
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (see `GearPair.contacts`).
     side : {"loaded", "unloaded"}
         Flank side on which it starts.
+    width : (float, float), optional
+        It is open between these heights z [mm], counted as those of a `Pit`; default the whole width, of both halves of a
+        herringbone gear.
+    ends : (float, float)
+        The part of its length over which it is open at the two ends of `width`, linear in between: ``(1, 0)`` runs out.
 
     Raises
     ------
     ValueError
         If the description is contradictory; a crack that leaves the body is refused when it meets its gear.
+
+    >>> Crack(level=0.6, width=(0.0, 12.5), ends=(1.0, 0.0)).width
+    (0.0, 12.5)
     """
 
     level: float | None = None
@@ -50,6 +58,8 @@ class Crack:
     turning: bool = False
     tooth: int = 0
     side: str = "loaded"
+    width: tuple[float, float] | None = None
+    ends: tuple[float, float] = (1.0, 1.0)
 
     def __post_init__(self):
         """Refuse contradictory descriptions."""
@@ -76,6 +86,63 @@ class Crack:
             raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
         if self.turning and self.length is not None:
             raise ValueError("a turning crack is given by its level, not its length")
+        if self.width is not None:
+            object.__setattr__(self, "width", _two("width", self.width))
+            if not 0 <= self.width[0] < self.width[1]:
+                raise ValueError(f"width = {self.width} mm, but a crack is open from a height z >= 0 to a greater one")
+        object.__setattr__(self, "ends", _two("ends", self.ends))
+        if not (min(self.ends) >= 0 and 0 < max(self.ends) <= 1):
+            raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not both 0")
+
+    @property
+    def through(self):
+        """Whether the crack is open over its whole length and over the whole width."""
+        return self.width is None and self.ends == (1.0, 1.0)
+
+
+def _two(name, values):
+    try:
+        values = tuple(values)
+    except TypeError:
+        values = (values,)
+    if len(values) != 2 or any(isinstance(v, bool) or not isinstance(v, Real) or not math.isfinite(v) for v in values):
+        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end")
+    return float(values[0]), float(values[1])
+
+
+def open_part(crack, b, z):
+    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
+    low, high = crack.width or (0.0, b)
+    part = crack.ends[0] + (crack.ends[1] - crack.ends[0]) * (np.asarray(z, dtype=float) - low) / (high - low)
+    return np.where((z >= low) & (z <= high), part, 0.0)
+
+
+def crack_in_band(crack, b, first, last):
+    """The crack of a gear of width `b` as a band of it sees it, heights counted from the band's end at z = `first` to `last`.
+
+    Parameters
+    ----------
+    crack : Crack
+    b, first, last : float
+        [mm]; `first` may be the higher one.
+
+    Returns
+    -------
+    Crack or None
+        None if it is not open anywhere in the band.
+    """
+    if crack.through:
+        return crack
+    low, high = crack.width or (0.0, b)
+    low, high = max(low, min(first, last)), min(high, max(first, last))
+    ends = tuple(open_part(crack, b, np.array([low, high])).tolist())
+    if not (low < high and max(ends) > 0):
+        return None
+    width, band = (low - first, high - first), abs(last - first)
+    if last < first:
+        width, ends = (first - high, first - low), ends[::-1]
+    whole = width[0] <= 1e-9 * band and width[1] >= (1 - 1e-9) * band
+    return replace(crack, width=None if whole else width, ends=ends)
 
 
 @lru_cache(maxsize=256)
@@ -121,17 +188,32 @@ def mirrored(gear, crack):
 
 
 def check_apart(gear, cracks):
-    """Raise ValueError if two cracks of one tooth meet, or nearly do."""
-    paths = [(crack.tooth % gear.z, crack.side, crack_path(gear, crack)) for crack in cracks]
-    for i, (tooth, side, path) in enumerate(paths):
-        for other_tooth, other_side, other in paths[:i]:
-            if tooth != other_tooth:
+    """Raise ValueError if a crack is open beyond the face, or if two cracks of one tooth meet, or nearly do."""
+    for crack in cracks:
+        if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
+            raise ValueError(
+                f"crack open from z = {crack.width[0]:g} to {crack.width[1]:g} mm, but the face ends at {gear.b:g} mm"
+            )
+    paths = [(crack.tooth % gear.z, crack.side, crack.width or (0.0, gear.b), crack_path(gear, crack)) for crack in cracks]
+    for i, (tooth, side, width, path) in enumerate(paths):
+        for other_tooth, other_side, other_width, other in paths[:i]:
+            if tooth != other_tooth or width[1] <= other_width[0] or other_width[1] <= width[0]:
                 continue
             if side == other_side:
                 raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
             near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
             if np.hypot(*near).min() < 0.1 * gear.m_n:
                 raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+
+
+def check_through(cracks, what):
+    """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
+    for crack in cracks:
+        if not crack.through:
+            raise ValueError(
+                f"crack open from z = {crack.width or 'end to end'} mm over parts {crack.ends} of its length, but {what} has "
+                "only cracks through the whole width: use method = 'fe3d' of mesh_stiffness"
+            )
 
 
 def _sampled(path, count=200):

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
-from .damage import check_apart, crack_path, mirrored, start_arc
+from .damage import check_apart, check_through, crack_path, mirrored, start_arc
 from .gear import Gear
 from .outline import along, held_circle, outline
 from .seam import open_seam
@@ -99,6 +99,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
     if len({tooth % gear.z for tooth in rolls}) != len(rolls):
         raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
     rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
+    check_through(cracks, "a mesh of the section")
     check_apart(gear, cracks)
     paths, marks, tips = {}, {}, {}
     for crack in cracks:

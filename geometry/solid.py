@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .damage import open_part
 from .gear import Gear
 from .outline import spaced
 from .quads import QuadSection, quad_section
@@ -21,27 +22,6 @@ HEX = (
     *((2, 2), (2, 0), (1, 2), (3, 2), (1, 0), (3, 0), (0, 2), (0, 0)),
     *((2, 1), (5, 2), (6, 2), (5, 0), (6, 0), (1, 1), (4, 2), (3, 1), (7, 2), (4, 0), (7, 0), (0, 1)),
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Extent:
-    """How far a crack is open along the width.
-
-    From `low` to `high` [mm] it is open over a part of its length that goes linearly from `first` to `last`. Outside it is
-    shut. Its front follows the element faces: a sloping front is a staircase of layers and crack edges.
-    """
-
-    low: float
-    high: float
-    first: float = 1.0
-    last: float = 1.0
-
-    def __post_init__(self):
-        """Refuse an empty extent."""
-        if not 0 <= self.low < self.high:
-            raise ValueError(f"crack from z = {self.low} to {self.high} mm, but it needs 0 <= low < high")
-        if not (0 <= self.first <= 1 and 0 <= self.last <= 1 and max(self.first, self.last) > 0):
-            raise ValueError(f"crack open over {self.first} to {self.last} of its length, but the parts lie between 0 and 1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +75,11 @@ def layers(b, size, *, breaks=(), fine=()):
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])
 
 
-def solid(gear, *, layer, loaded=(0,), cracks=(), extents=None, patches=(), refine=1.0, sizes=None, fine=()):
+def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
+
+    The front of a crack that changes along the width follows the element faces: a sloping one is a staircase of layers and
+    crack edges.
 
     Parameters
     ----------
@@ -105,8 +88,6 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), extents=None, patches=(), refi
         Height of the element layers [mm].
     loaded, cracks, patches, sizes
         As of `geometry.quads.quad_section`.
-    extents : dict of int to Extent, optional
-        By number in `cracks`: over which part of the width; the others are open over all of it.
     refine : float
         Divides all edge lengths, along the width too.
     fine : sequence of (float, float, float)
@@ -118,18 +99,12 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), extents=None, patches=(), refi
     """
     if not (math.isfinite(layer) and layer > 0):
         raise ValueError(f"layer = {layer} mm, but it must be positive")
-    extents = extents or {}
-    for number, extent in extents.items():
-        if not (0 <= number < len(cracks) and extent.low < gear.b):
-            raise ValueError(
-                f"extent of crack {number} from z = {extent.low} mm: there are {len(cracks)} cracks in b = {gear.b} mm"
-            )
     section = quad_section(gear, loaded=loaded, cracks=cracks, patches=patches, refine=refine, sizes=sizes)
-    breaks = [z for extent in extents.values() for z in (extent.low, extent.high)]
+    breaks = [z for crack in cracks for z in crack.width or ()]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
     made = extrude(section, levels, twist_rate(gear))
     for number, cut in enumerate(section.cuts):
-        made = _open(made, cut, number + 1, cracks, extents)
+        made = _open(made, cut, number + 1, cracks)
     return made
 
 
@@ -179,7 +154,7 @@ def _turned(points, heights, rate):
     return np.array([cos * x + sin * y, cos * y - sin * x, z]).reshape(3, -1)
 
 
-def _open(made, cut, part, cracks, extents):
+def _open(made, cut, part, cracks):
     """Double the nodes of the open faces of one parting line; the cells of the tooth above get the new ones."""
     faces = dict(made.faces)
     walls = faces.pop(f"cut {part - 1}")
@@ -188,7 +163,7 @@ def _open(made, cut, part, cracks, extents):
     for number in set(cut.crack.tolist()) - {-1}:
         own = cut.crack == number
         length = cut.depth[own].max()
-        reach = _reach(extents.get(number), height)
+        reach = open_part(cracks[number], made.gear.b, height)
         opened |= own[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():
@@ -204,12 +179,3 @@ def _open(made, cut, part, cracks, extents):
         if own.size:
             faces |= {f"crack {number} body": own, f"crack {number} tooth": double[own]}
     return replace(made, points=np.hstack([made.points, made.points[:, free]]), cells=cells, faces=faces)
-
-
-def _reach(extent, height):
-    """Open part of a crack's length at some heights; its edges are open up to the last whose middle is within."""
-    if extent is None:
-        return np.ones(height.size)
-    along = (height - extent.low) / (extent.high - extent.low)
-    reach = extent.first + (extent.last - extent.first) * along
-    return np.where((along > 0) & (along < 1), reach, 0.0)

@@ -62,7 +62,7 @@ def test_scenes_and_info(capsys):
     ("arguments", "message"),
     [
         (["stiffness", "nowhere"], "built in are"),
-        (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, coupled, textbook, published"),
+        (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
         (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import cell_sharing, contact3d, lines3d
-from gearfe.contact3d import pair_stiffness3d
+from gearfe import bodies3d, cell_sharing, lines3d
+from gearfe.contact3d import STEP, pair_stiffness3d
 from gearfe.energy import halfspace
 from gearfe.hertz import half_width
 from gearfe.sharing import share
@@ -41,7 +41,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
     found = lines3d.pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
     cells = lines3d.cells_of(pair, found, [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), 0.5)
-    gear = contact3d._gears(pair, "helical", 0.0)[face != "pinion"][0]
+    gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2
     for number in np.unique(cells.order):
         own = cells.order == number
@@ -178,7 +178,7 @@ def test_moving_pits_by_parts_of_a_cell():
     pair, drops = pair_of(30.0), []
     run["phases"] = np.array([1.1])
     pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in np.linspace(2.0, 27.7, 7)]
-    for step in (contact3d.STEP, contact3d.STEP / 4):
+    for step in (STEP, STEP / 4):
         healthy, pitted = (pair_stiffness3d(pair, 3800.0, STEEL, pits=(own, ()), step=step, **run).k[0] for own in ((), pits))
         drops.append(1 - pitted / healthy)
     assert drops[0] > 0.02

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe import cache, fe
 from gearfe.energy import ritz
-from geometry.damage import crack_path, start_arc
+from geometry.damage import check_apart, crack_in_band, crack_path, open_part, start_arc
 from geometry.mesher import section
 from geometry.outline import stations
 from geometry.tooth import cartesian, root_curve
@@ -250,3 +250,59 @@ def test_bad_damage(damage, message):
 def test_what_a_method_does_not_model_is_refused(damage, options, message):
     with pytest.raises(ValueError, match=message):
         stiffness(PAIR, 127.0, STEEL, damage={"pinion": damage}, **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"width": (3.0, 2.0)}, "from a height z >= 0 to a greater one"),
+        ({"width": (-1.0, 2.0)}, "from a height z >= 0 to a greater one"),
+        ({"width": (0.0, math.nan)}, "two finite numbers"),
+        ({"width": 3.0}, "two finite numbers"),
+        ({"width": (0.0, 1.0, 2.0)}, "two finite numbers"),
+        ({"ends": (0.0, 0.0)}, "not both 0"),
+        ({"ends": (0.5, 1.2)}, "from 0 to 1"),
+        ({"ends": (-0.1, 1.0)}, "from 0 to 1"),
+    ],
+)
+def test_impossible_widths_are_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        gf.Crack(level=0.3, **options)
+
+
+@pytest.mark.parametrize("method", ["ritz", "fe", "textbook", "published"])
+@pytest.mark.parametrize("options", [{"width": (0.0, 0.5)}, {"ends": (1.0, 0.0)}])
+def test_sections_refuse_cracks_of_part_of_the_width(method, options):
+    damage = {"pinion": [gf.Crack(level=0.3, **options)]}
+    with pytest.raises(ValueError, match=f"method = '{method}' has only cracks through the whole width"):
+        stiffness(PAIR, 127.0, STEEL, method=method, damage=damage)
+
+
+def test_cracks_beyond_the_face_are_refused():
+    with pytest.raises(ValueError, match=r"open from z = 0\.5 to 1.5 mm, but the face ends at 1 mm"):
+        stiffness(PAIR, 127.0, STEEL, damage={"wheel": [gf.Crack(level=0.3, width=(0.5, 1.5))]})
+    with pytest.raises(ValueError, match="only cracks through the whole width"):
+        gf.stress_intensity(PAIR.gear_1, gf.Crack(level=0.3, width=(0.0, 0.5)), 18.5, 100.0, STEEL)
+
+
+def test_two_cracks_of_one_side_lie_beside_each_other():
+    gear = replace(PAIR.gear_1, b=10.0)
+    check_apart(gear, [gf.Crack(level=level, width=width) for level, width in ((0.3, (0, 4)), (0.6, (4, 10)))])
+    with pytest.raises(ValueError, match="one is enough"):
+        check_apart(gear, [gf.Crack(level=level, width=width) for level, width in ((0.3, (0, 4)), (0.6, (3, 10)))])
+
+
+def test_bands_see_their_part_of_a_crack_from_their_own_end():
+    """Halves of 30 mm with a groove of 6 mm; the second one is seen from z = 30."""
+    sloping = gf.Crack(level=0.6, width=(6.0, 24.0), ends=(1.0, 0.4))
+    for first, last, sense in ((0.0, 12.0, 1), (30.0, 18.0, -1)):
+        seen = crack_in_band(sloping, 30.0, first, last)
+        assert seen.width == (6.0, 12.0)
+        z = np.linspace(0, 12, 49)
+        assert_allclose(open_part(seen, 12.0, z), open_part(sloping, 30.0, first + sense * z), atol=1e-12)
+    half = gf.Crack(level=0.6, width=(0.0, 12.0))
+    assert crack_in_band(half, 30.0, 0.0, 12.0) == gf.Crack(level=0.6), "open over all of the band"
+    assert crack_in_band(half, 30.0, 30.0, 18.0) is None
+    assert crack_in_band(gf.Crack(level=0.6), 30.0, 30.0, 18.0) == gf.Crack(level=0.6)
+    out = crack_in_band(gf.Crack(level=0.6, ends=(1.0, 0.0)), 30.0, 30.0, 18.0)
+    assert (out.width, out.ends) == (None, (0.0, 0.4))

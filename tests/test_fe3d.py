@@ -17,7 +17,7 @@ from gearfe.hexahedron import assemble, face_shapes, gauss, shapes, slopes_at
 from gearfe.solver import factor
 from geometry.mesher import section
 from geometry.outline import stations
-from geometry.solid import Extent, extrude, twist_rate
+from geometry.solid import extrude, twist_rate
 from geometry.tooth import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -30,7 +30,7 @@ W = 0.5
 
 def patches(gear, count=3, axial=1, teeth=(0,)):
     low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    return Patches(teeth, np.linspace(low + W, high - W, count), W, axial)
+    return Patches(teeth, np.linspace(low + W, high - W, count) + np.array([[-W], [0.0], [W]]), axial)
 
 
 def mesh_of(gear, found, **options):
@@ -183,9 +183,9 @@ def plane_reference(gear, found, steel, cracks=()):
     made = section(gear, {0: roll}, fillet_size=0.15, size=0.5, far_size=1.0, cracks=cracks)
 
     def pressure(arc):
-        return np.stack([np.maximum(1 - np.abs(part - top) / W, 0) / W for part, top in zip(arc, found.arcs, strict=True)])
+        return np.stack([np.maximum(1 - np.abs(part - top) / W, 0) / W for part, top in zip(arc, found.knots[1], strict=True)])
 
-    load = flank_load(made, 0, pressure, np.zeros(len(found.arcs), dtype=int), roll.size - 1)
+    load = flank_load(made, 0, pressure, np.zeros(found.knots.shape[1], dtype=int), roll.size - 1)
     return load.T @ Body(made.mesh, steel).solve(load)
 
 
@@ -204,10 +204,10 @@ def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):
 
 
 def test_crack_extents_lie_between_none_and_all(steel):
-    crack, found, sizes = gf.Crack(level=0.5), patches(GEAR, count=1), COARSE | {"crack tip": 0.15}
+    found, sizes = patches(GEAR, count=1), COARSE | {"crack tip": 0.15}
     values = []
-    for extents in (None, {0: Extent(0.0, 1.5)}, {0: Extent(0.0, 3.0)}):
-        mesh = mesh_of(GEAR, found, cracks=(crack,), extents=extents or {}, sizes=sizes)
+    for width in (None, (0.0, 1.5), (0.0, 3.0)):
+        mesh = mesh_of(GEAR, found, cracks=(gf.Crack(level=0.5, width=width),), sizes=sizes)
         values.append(influence(mesh, steel, found).matrix.item())
     none = influence(mesh_of(GEAR, found), steel, found).matrix.item()
     assert values[0] == pytest.approx(values[2], rel=1e-12)
@@ -216,8 +216,9 @@ def test_crack_extents_lie_between_none_and_all(steel):
 
 def test_bad_patches_are_refused():
     for change, message in (
-        ({"arcs": np.array([0.1])}, "leave the flank"),
-        ({"half_width": 0.0}, "at least one hat"),
+        ({"knots": np.array([[-0.4], [0.1], [0.6]])}, "leave the flank"),
+        ({"knots": np.array([[1.0], [1.0], [1.5]])}, "a top beyond it"),
+        ({"knots": np.zeros((3, 0))}, "each hat needs"),
         ({"axial": 0}, "at least one function"),
         ({"axial": np.array([0.0, 4.0])}, "knots rise within"),
     ):

@@ -9,6 +9,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe import flexibility3d
 from gearfe.energy import halfspace, panel3d, ritz, ritz3d
 from gearfe.hertz import half_plane, hat_logarithm
 from geometry.sector import sector
@@ -33,8 +34,8 @@ def test_loads_act_at_right_angles_to_the_helicoid(gear):
     order = 3
     made = sector(gear, sizes=ritz3d.SIZES)
     _, count, chain = panel3d._numbering(made, order)
-    force = panel3d._hats(gear, made, chain, count, ritz3d._knots(gear), order, gear.beta_b).sum(axis=0)
-    points, weight = halfspace.hat_points(ritz3d._knots(gear), 12)
+    force = panel3d._hats(gear, made, chain, count, flexibility3d.hats(gear), order, gear.beta_b).sum(axis=0)
+    points, weight = halfspace.hat_points(flexibility3d.hats(gear), 12)
     for i, (arc, share_of) in enumerate(zip(points, weight, strict=True)):
         roll, h = roll_at_arc(gear, arc), 1e-5
         along = (surface(gear, roll + h, 0.0) - surface(gear, roll - h, 0.0)) / (2 * h)
@@ -83,10 +84,10 @@ def test_rigid_motions_store_no_energy():
 def test_plane_strain_is_the_constant_along_the_width():
     """One axial mode on spur gears: patch to patch what `ritz` gives in the plane, logarithm and all, healthy and cracked."""
     gear = replace(GEAR, beta=0.0)
-    points, weight = halfspace.hat_points(ritz3d._knots(gear), 8)
+    points, weight = halfspace.hat_points(flexibility3d.hats(gear), 8)
     carry = ritz._carry(ritz._variable(gear, points.ravel())).reshape(*points.shape, -1)
     mean = np.einsum("hg,hgk->hk", weight, carry)
-    knots = ritz3d._knots(gear)
+    knots = flexibility3d.hats(gear)
     local = half_plane(STEEL) * hat_logarithm(knots, knots)
     for cracks in ((), (gf.Crack(level=0.5),)):
         plane = [ritz._panel(gear, STEEL, own, "plane strain", 6, 1.0) for own in (cracks, ())]
@@ -118,7 +119,7 @@ def test_even_load_on_a_wide_gear_is_the_plane_law():
 def test_mirrored_helix_has_mirrored_flexibility():
     right = ritz3d.flexibility3d(replace(GEAR, beta=-BETA), STEEL, order=2, axial=6)
     left = ritz3d.flexibility3d(GEAR, STEEL, order=2, axial=6)
-    sign = np.tile((-1.0) ** np.arange(left.degree + 1), ritz3d.PLACES)
+    sign = np.tile((-1.0) ** np.arange(left.degree + 1), flexibility3d.PLACES)
     for one, two in ((left.near[0], right.near[0]), (left.far[0, 1], right.far[0, 1])):
         assert_allclose(two, sign[:, None] * one * sign, atol=1e-9 * np.abs(one).max())
         assert np.abs(two - one).max() > 1e-3 * np.abs(one).max()

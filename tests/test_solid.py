@@ -12,7 +12,7 @@ import gearfe as gf
 from gearfe.hexahedron import gauss, shapes, slopes_at
 from geometry.damage import crack_path
 from geometry.quads import Cut, jacobian, quad_section
-from geometry.solid import HEX, Extent, extrude, layers, solid, twist_rate
+from geometry.solid import HEX, extrude, layers, solid, twist_rate
 from geometry.tooth import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -170,15 +170,14 @@ def faces_once(made):
 
 
 def test_extents_open_what_they_say():
-    crack = gf.Crack(level=0.4)
     opened, sizes = {}, COARSE | {"crack": 0.1}
     for name, extent in {
-        "whole": None,
-        "part": Extent(2.0, 4.5),
-        "sloping": Extent(0.0, 6.0, first=1.0, last=0.0),
-        "half": Extent(0.0, 6.0, first=0.5, last=0.5),
+        "whole": {},
+        "part": {"width": (2.0, 4.5)},
+        "sloping": {"ends": (1.0, 0.0)},
+        "half": {"width": (0.0, 6.0), "ends": (0.5, 0.5)},
     }.items():
-        made = solid(GEAR, layer=0.5, cracks=(crack,), extents={0: extent} if extent else {}, sizes=sizes)
+        made = solid(GEAR, layer=0.5, cracks=(gf.Crack(level=0.4, **extent),), sizes=sizes)
         body = made.faces["crack 0 body"]
         sides = np.linalg.norm(made.points[:, body[1]] - made.points[:, body[0]], axis=0)
         opened[name] = (sides * (made.points[2, body[3]] - made.points[2, body[0]])).sum()
@@ -198,9 +197,11 @@ def test_bad_input_is_refused():
         (lambda: solid(GEAR, layer=0.0), "layer = 0.0"),
         (lambda: solid(GEAR, layer=1.0, refine=-1.0), "edge lengths must be positive"),
         (lambda: solid(GEAR, layer=1.0, loaded=(0, 12)), "each once"),
-        (lambda: solid(GEAR, layer=1.0, extents={0: Extent(0, 1)}), "there are 0 cracks"),
-        (lambda: Extent(3.0, 2.0), "low < high"),
-        (lambda: Extent(0.0, 2.0, first=1.5), "between 0 and 1"),
+        (lambda: solid(GEAR, layer=1.0, cracks=[gf.Crack(level=0.4, width=(2.0, 6.5))]), "the face ends at 6 mm"),
+        (
+            lambda: solid(GEAR, layer=1.0, cracks=[gf.Crack(level=0.4, width=w) for w in ((0, 2), (3, 6))]),
+            "only one can be meshed",
+        ),
     ):
         with pytest.raises(ValueError, match=message):
             call()

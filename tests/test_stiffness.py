@@ -146,7 +146,7 @@ def test_energy_methods_are_plain_sums(pair, steel, method):
     [
         ({"force": 0.0}, "force = 0.0 N"),
         ({"force": math.nan}, "force = nan"),
-        ({"method": "magic"}, "ritz, ritz3d, fe, coupled, textbook, published"),
+        ({"method": "magic"}, "ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
         ({"phases": 0}, "phases = 0"),
         ({"phases": [0.1, math.nan]}, "finite"),
         ({"phases": []}, "non-empty"),

@@ -10,7 +10,7 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe import fe3d  # isort: skip
+from gearfe import fe3d, flexibility3d  # isort: skip
 from gearfe.energy import ritz, ritz3d  # isort: skip
 from gearfe.export import written  # isort: skip
 
@@ -46,12 +46,12 @@ def both(gear, cracks):
     width, axial = gear.b, ritz3d.axial_degree(gear.b, gear.m_n)
     panels = [ritz3d._panel(gear, STEEL, own, width, 3, axial, 1.0) for own in (cracks, ())]
     influence, _ = ritz._join(gear, {0: panels[0], 1: panels[1]}, panels[1])
-    knots = ritz3d._knots(gear)
-    hats = np.flatnonzero(np.isclose(np.diff(knots, axis=0), ritz3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))  # not cut off
-    at = hats * (axial + 1)
+    knots = flexibility3d.hats(gear)
+    whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))  # not cut off
+    at = whole * (axial + 1)
     model, next_tooth = (np.diag(influence[0, k][np.ix_(at, at)]) / width for k in (0, 1))
     seconds = [time.perf_counter() - started]
-    patches = fe3d.Patches((0, 1), knots[1, hats], ritz3d.HAT * gear.m_n * (1 - 1e-9), 1)
+    patches = fe3d.Patches((0, 1), knots[:, whole], 1)
     values, dofs, coupling = [], [], None
     for refine in REFINES:
         started = time.perf_counter()

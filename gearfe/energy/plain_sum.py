@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from geometry.damage import check_apart
+from geometry.damage import check_apart, check_through
 from geometry.pit import check_pits
 from geometry.tooth import flank
 
@@ -82,6 +82,7 @@ def plain_sum(
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
     gears = (pair.gear_1, pair.gear_2)
     for gear, own_cracks, own_pits in zip(gears, cracks, pits, strict=True):
+        check_through(own_cracks, "a plain sum")
         check_apart(gear, own_cracks)
         check_pits(gear, own_pits)
     bands = faces(pair, face, groove)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
+from geometry.damage import check_through
 from geometry.outline import stations
 from geometry.sector import sector
 from geometry.tooth import arc_at, roll_at_arc
@@ -51,11 +52,12 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     Raises
     ------
     ValueError
-        If `order` is out of range.
+        If `order` is out of range or a crack changes along the width.
     """
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
     options = (state, int(order), float(refine))
+    check_through(cracks, "the energy model of the section")
     if not cracks:
         return _healthy(gear, material, neighbours, *options)
     reach = max(1, neighbours - 1)

@@ -1,29 +1,24 @@
 """The energy model in three dimensions: helical and spur gears of any width, both end faces free.
 
 Curved triangles in the section times polynomials along the width (`panel3d`), all sectors joined exactly as in `ritz`. Loads are
-patches on the flank; what a patch does to itself like a half-space is taken out (`halfspace`), the rest is smooth.
+patches on the flank; see `gearfe.flexibility3d` for what is made of them.
 """
 
 import math
-from dataclasses import dataclass
 from functools import lru_cache
 from numbers import Integral
 
 import numpy as np
-from numpy.polynomial import chebyshev
 
-from geometry.gear import Gear
+from geometry.damage import check_through
 from geometry.sector import sector
-from geometry.tooth import arc_at, roll_at_arc
 
+from ..flexibility3d import PLACES, hats, parted, solved_teeth
 from ..hertz import half_plane, hat_logarithm
 from . import ritz
-from .halfspace import half_space, hat_points, modes, patch_kernel
+from .halfspace import hat_points
 from .panel3d import panel3d
 
-PLACES = 8  # hats on each flank
-HAT = 0.4  # half their width [m_n]
-OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.sector.SIZES`
 SIZES = {
@@ -37,74 +32,6 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.01,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Flexibility3D:
-    """Flexibility of one gear between loads anywhere on its loaded flanks, the half-space's part on the same flank left out.
-
-    A load is a force per width P(z) [N/mm], at right angles to the flank, on a line s(z) of it. The displacement against it is
-
-        u(z) = int P(z)' [bulk(s, z, s', z') + k / R] dz',    bulk = sum of p_a(z) c_i(s) B_ia,jb c_j(s') p_b(z')
-
-    with orthonormal Legendre polynomials p over the width, polynomials c through the hats, and R the flat distance.
-
-    Attributes
-    ----------
-    gear : Gear
-        Its `beta` says how the section turns.
-    width : float
-        [mm].
-    degree : int
-        Highest axial mode kept.
-    kernel : float
-        k of the half-space [mm**2/N].
-    near : dict of int to ndarray, shape (n, n)
-        B of each solved tooth, ``n = PLACES * (degree + 1)``, modes innermost [mm/N mm].
-    far : dict of (int, int) to ndarray, shape (n, n)
-        B between two teeth, nothing taken out; the second is further to the loaded side.
-    unknowns : int
-    healthy : Flexibility3D or None
-        Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
-    """
-
-    gear: Gear
-    width: float
-    degree: int
-    kernel: float
-    near: dict
-    far: dict
-    unknowns: int
-    healthy: object = None
-
-    def basis(self, roll, z):
-        """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
-        across, along = _carry(self.gear, roll), modes(z, self.width, self.degree)
-        return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
-
-    def between(self, first, second):
-        """B of a tooth, or between two teeth; None if they are too far apart to have been solved."""
-        z = self.gear.z
-        whole = self if self.healthy is None else self.healthy
-        if (second - first) % z == 0:
-            return self.near.get(first % z, whole.near[0])
-        for one, two, turned in ((first, second, False), (second, first, True)):
-            found = self.far.get((one % z, two % z), whole.far.get((0, (two - one) % z)))
-            if found is not None:
-                return found.T if turned else found
-        return None
-
-    def matrix(self, tooth, roll, z):
-        """Displacements ``(n, n)`` [mm/N] of loads at `roll`, `z` [mm] of teeth `tooth` on each other, half-space left out."""
-        tooth, rows = np.asarray(tooth), self.basis(roll, z)
-        out = np.zeros((tooth.size,) * 2)
-        members = {number: np.flatnonzero(tooth == number) for number in np.unique(tooth).tolist()}
-        for first, own in members.items():
-            for second, theirs in members.items():
-                kernel = self.between(first, second)
-                if kernel is not None:
-                    out[np.ix_(own, theirs)] = rows[own] @ kernel @ rows[theirs].T
-        return out
 
 
 def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=3, axial=None, refine=1.0):
@@ -148,10 +75,10 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
     options = (width, int(order), int(axial), float(refine))
-    neighbours = min(neighbours, gear.z - 1)
-    if cracks:
-        return _cracked(gear, material, tuple(cracks), neighbours, *options)
-    return _healthy(gear, material, neighbours, *options)
+    if not cracks:
+        return _healthy(gear, material, min(neighbours, gear.z - 1), *options)
+    check_through(cracks, "the energy model")
+    return _cracked(gear, material, tuple(cracks), min(neighbours, gear.z - 1), *options)
 
 
 def axial_degree(width, m_n):
@@ -162,22 +89,27 @@ def axial_degree(width, m_n):
 @lru_cache(maxsize=16)
 def _healthy(gear, material, neighbours, *options):
     one = _panel(gear, material, (), *options)
-    return _joined(gear, material, dict.fromkeys(range(neighbours + 1), one), one, {}, *options, None)
+    return _joined(gear, material, dict.fromkeys(solved_teeth(gear, (), neighbours), one), one, {}, *options, None)
 
 
 @lru_cache(maxsize=8)
 def _cracked(gear, material, cracks, neighbours, *options):
     one = _panel(gear, material, (), *options)
-    found = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in sorted({crack.tooth % gear.z for crack in cracks})}
-    panels = {(t + k) % gear.z: one for t in found for k in range(-neighbours, neighbours + 1)}
+    found = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
+    panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), one)
     panels |= {t: _panel(gear, material, own, *options) for t, own in found.items()}
-    healthy = _healthy(gear, material, neighbours, *options)
-    return _joined(gear, material, dict(sorted(panels.items())), one, found, *options, healthy)
+    return _joined(gear, material, panels, one, found, *options, _healthy(gear, material, neighbours, *options))
 
 
 @lru_cache(maxsize=16)
 def _panel(gear, material, cracks, width, order, axial, refine):
-    return panel3d(gear, _sector(gear, cracks, refine), material, _knots(gear), width, order=order, degree=axial)
+    return panel3d(gear, _sector(gear, cracks, refine), material, hats(gear), width, order=order, degree=axial)
+
+
+@lru_cache(maxsize=16)
+def _plane_panel(gear, material, cracks, order, refine):
+    options = {"order": order, "degree": 0, "plane": True}
+    return panel3d(gear, _sector(gear, cracks, refine), material, hats(gear), 1.0, **options)
 
 
 @lru_cache(maxsize=16)
@@ -190,18 +122,13 @@ def _joined(gear, material, panels, one, cracks, width, order, axial, refine, he
     degree = max(axial - LOST, 0)
     kept = (np.arange(PLACES)[:, None] * (axial + 1) + np.arange(degree + 1)).ravel()
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
-    local = half_space(material) * _own(gear, width, degree)
     missing = _missing(gear, material, (), order, refine)
-    local = local - np.kron(missing, np.eye(degree + 1))
-    near = {t: influence[t, t] - local for t in panels if healthy is not None or t == 0}
-    for t, own in cracks.items():
-        first = np.arange(PLACES) * (degree + 1)
-        near[t][np.ix_(first, first)] += _missing(gear, material, own, order, refine) - missing
-    far = {
-        (i, j): influence[i, j] for i in panels for j in panels if i != j and (j - i) % gear.z <= gear.z // 2
-        if healthy is not None or i == 0
-    }  # fmt: skip
-    return Flexibility3D(gear, width, degree, half_space(material), near, far, sum(p.unknowns for p in panels.values()), healthy)
+    for tooth in panels:
+        influence[tooth, tooth] = influence[tooth, tooth] + np.kron(missing, np.eye(degree + 1))
+    even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
+    for tooth, own in cracks.items():
+        influence[tooth, tooth][even] += _missing(gear, material, own, order, refine) - missing
+    return parted(gear, material, width, degree, influence, sum(p.unknowns for p in panels.values()), healthy)
 
 
 @lru_cache(maxsize=64)
@@ -211,13 +138,9 @@ def _missing(gear, material, cracks, order, refine):
     There `ritz` has it: it takes the singular fields of loads out. Near the tip corner the difference is that of all modes along
     the width, to a thousandth; what a crack adds to it is taken for the even mode only.
     """
-    panels = {}
-    for tooth, own in ((0, cracks), (1, ())):
-        options = {"order": order, "degree": 0, "plane": True}
-        panels[tooth] = panel3d(gear, _sector(gear, own, refine), material, _knots(gear), 1.0, **options)
+    panels = {tooth: _plane_panel(gear, material, own, order, refine) for tooth, own in ((0, cracks), (1, ()))}
     found = ritz._join(gear, panels, panels[1])[0][0, 0]
-    knots = _knots(gear)
-    return plane_hats(gear, material, cracks) + half_plane(material) * hat_logarithm(knots, knots) - found
+    return plane_hats(gear, material, cracks) + half_plane(material) * hat_logarithm(hats(gear), hats(gear)) - found
 
 
 @lru_cache(maxsize=64)
@@ -225,56 +148,13 @@ def plane_hats(gear, material, cracks=()):
     """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
     panels = {k: ritz._panel(gear, material, own, "plane strain", 4, 1.0) for k, own in enumerate((cracks, ()))}
     influence = ritz._join(gear, panels, panels[1])[0][0, 0]
-    points, weight = hat_points(_knots(gear), 12)
+    points, weight = hat_points(hats(gear), 12)
     carry = ritz._carry(ritz._variable(gear, points.ravel())).reshape(*points.shape, -1)
     mean = np.einsum("hg,hgk->hk", weight, carry)
     return mean @ (influence + influence.T) @ mean.T / 2
 
 
-def _own(gear, width, degree):
-    """Mean distance of each patch to the others of its flank, see `patch_kernel`: ``(n, n)``."""
-    knots = _knots(gear)
-    roll = roll_at_arc(gear, knots.mean(axis=0))
-    slope = math.tan(gear.beta) / gear.r * (roll[:, None] + roll) / 2
-    n = PLACES * (degree + 1)
-    return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
-
-
-def _scale(gear):
-    """Ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
-    return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), OFFSET * gear.m_n
-
-
-def _variable(gear, arc):
-    """Place on the flank in [-1, 1]: the logarithm of the distance to the tip corner."""
-    low, high, offset = _scale(gear)
-    away = high + offset - np.clip(arc, low, high)
-    return 2 * np.log(away / (high - low + offset)) / math.log(offset / (high - low + offset)) - 1
-
-
-@lru_cache(maxsize=64)
-def _knots(gear):
-    """Hats ``(3, PLACES)`` on the flank [mm]: at Chebyshev points of `_variable`, from root to tip, cut off at the ends."""
-    low, high, offset = _scale(gear)
-    part = (1 + chebyshev.chebpts1(PLACES)) / 2
-    middle = high + offset - (high - low + offset) * (offset / (high - low + offset)) ** part
-    reach = HAT * gear.m_n
-    return np.array([np.maximum(middle - reach, low), middle, np.minimum(middle + reach, high)])
-
-
-@lru_cache(maxsize=64)
-def _from_hats(gear):
-    """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hats."""
-    points, weight = hat_points(_knots(gear), 12)
-    return np.linalg.inv(np.einsum("hg,hgk->hk", weight, chebyshev.chebvander(_variable(gear, points), PLACES - 1)))
-
-
-def _carry(gear, roll):
-    """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm]."""
-    return chebyshev.chebvander(_variable(gear, arc_at(gear, np.asarray(roll, dtype=float))), PLACES - 1) @ _from_hats(gear)
-
-
 def clear():
     """Forget the gears kept in this process."""
-    for kept in (_healthy, _cracked, _panel, _sector, _missing, plane_hats, _knots, _from_hats):
+    for kept in (_healthy, _cracked, _panel, _plane_panel, _sector, _missing, plane_hats):
         kept.cache_clear()

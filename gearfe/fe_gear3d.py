@@ -1,0 +1,70 @@
+"""`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches that `energy.ritz3d` uses too."""
+
+import math
+
+import numpy as np
+
+from .fe3d import Patches, influence, mesh_patches
+from .flexibility3d import hats, parted, solved_teeth
+
+PER_HAT = 4  # edges across a hat
+LAYER = 1.0  # height of the element layers [m_n], at most a sixth of the width
+END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
+# edge lengths in modules, see `geometry.quads.SIZES`
+SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.5, "near": 0.7, "far": 1.6, "crack": 0.3, "crack tip": 0.06}
+
+
+def axial_modes(width, m_n):
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module, at least 6, as `ritz3d` keeps by default."""
+    return max(6, math.ceil(0.8 * width / m_n))
+
+
+def solid_flexibility(
+    gear, material, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, solver=None, tell=None, healthy=None
+):
+    """Flexibility of a gear of finite width by finite elements of all of it.
+
+    Parameters
+    ----------
+    gear : Gear
+        Bore or rim are held over the whole width, the end faces free.
+    material : Material
+    cracks : tuple of Crack
+        Their faces may pass through each other; those of part of the width or sloping ones follow the element faces.
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    degree : int, optional
+        Of the patches along the width; default `axial_modes`, `less` so many.
+    refine : float
+        Divides all edge lengths and the layers.
+    solver, tell
+        As in `gearfe.fe3d.influence`.
+    healthy : Flexibility3D, optional
+        Of the gear without cracks; needed if there are `cracks`.
+
+    Returns
+    -------
+    Flexibility3D
+
+    Raises
+    ------
+    ValueError
+        If an input is impossible.
+    RuntimeError
+        If the system does not fit into memory; the message has the numbers.
+    """
+    if not (math.isfinite(refine) and refine > 0):
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
+    degree = axial_modes(gear.b, gear.m_n) if degree is None else degree
+    degree -= less
+    teeth = tuple(solved_teeth(gear, cracks, neighbours))
+    patches = Patches(teeth, hats(gear), degree + 1)
+    layer = min(LAYER * gear.m_n, gear.b / 6)
+    fine = [(z, z, END * layer) for z in (0.0, gear.b)]
+    mesh = mesh_patches(gear, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)
+    found = influence(mesh, material, patches, solver=solver, tell=tell)
+    unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
+    size = unit.size
+    whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
+    between = {(i, j): whole[a, :, b] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
+    return parted(gear, material, gear.b, degree, between, found.dofs, healthy)
