@@ -34,7 +34,7 @@ def test_loads_act_at_right_angles_to_the_helicoid(gear):
     order = 3
     made = sector(gear, sizes=ritz3d.SIZES)
     _, count, chain = panel3d._numbering(made, order)
-    force = panel3d._hats(gear, made, chain, count, flexibility3d.hats(gear), order).sum(axis=0)
+    force = panel3d._hats(gear, made, chain, count, flexibility3d.hats(gear), order, gear.beta_b).sum(axis=0)
     points, weight = halfspace.hat_points(flexibility3d.hats(gear), 12)
     for i, (arc, share_of) in enumerate(zip(points, weight, strict=True)):
         roll, h = roll_at_arc(gear, arc), 1e-5

@@ -28,7 +28,7 @@ LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
 
 
-def panel3d(gear, sector, material, knots, width, *, order, degree):
+def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False):
     """Reduce a sector to its two helicoidal sides.
 
     Parameters
@@ -44,6 +44,8 @@ def panel3d(gear, sector, material, knots, width, *, order, degree):
         [mm]; both end faces are free.
     order, degree : int
         Of the polynomials in the section and along the width.
+    plane : bool
+        The transverse section as if it were a spur gear's: with degree 0 and width 1 it is in plane strain.
 
     Returns
     -------
@@ -52,10 +54,11 @@ def panel3d(gear, sector, material, knots, width, *, order, degree):
         innermost. Its `own` is the full displacement with the sides held, nothing taken out.
     """
     numbers, count, chain = _numbering(sector, order)
-    load = _hats(gear, sector, chain, count, knots, order)
+    tilt = 0.0 if plane else gear.beta_b
+    load = _hats(gear, sector, chain, count, knots, order, tilt)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     body = _body(sector, numbers, order, load, sides, chain(sector.held))
-    body.section = _section(sector, order, material, math.tan(gear.beta) / gear.r)
+    body.section = _section(sector, order, material, 0.0 if plane else math.tan(gear.beta) / gear.r)
     body.axial = _axial(width, degree)
     body.size[:] *= degree + 1
     ids, matrix = _front(body, np.arange(numbers.shape[1]))
@@ -120,8 +123,8 @@ def _section(sector, order, material, twist):
     return np.array([flat_stress @ flat, flat_stress @ along, along_stress @ along])
 
 
-def _hats(gear, sector, chain, count, knots, order):
-    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it).
+def _hats(gear, sector, chain, count, knots, order, tilt):
+    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it); `tilt` is beta_b.
 
     The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
     it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
@@ -138,7 +141,7 @@ def _hats(gear, sector, chain, count, knots, order):
                 roll = roll_at_arc(gear, arc)
                 place = 2 * (roll - sector.roll[k]) / (sector.roll[k + 1] - sector.roll[k]) - 1
                 height = 2 / (stop - start) * np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
-                normal = np.vstack([-math.cos(gear.beta_b) * flank_normal(gear, roll), np.full(arc.size, math.sin(gear.beta_b))])
+                normal = np.vstack([-math.cos(tilt) * flank_normal(gear, roll), np.full(arc.size, math.sin(tilt))])
                 shapes = lagrange(order, tuple(place.tolist()))
                 out[nodes, :, i] += (shapes * (weight * (b - a) / 2 * height)) @ normal.T
     return out
