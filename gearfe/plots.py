@@ -135,6 +135,60 @@ def plot_phase(portrait, section=None, unit="m", path=None):
     return figure
 
 
+def plot_phases(portraits, unit="m", path=None):
+    """Phase portraits with their Poincare points side by side, on common axes.
+
+    Parameters
+    ----------
+    portraits : dict of str to ((ndarray, ndarray), ndarray)
+        By case what `plot_phase` takes as portrait and section.
+    unit : str
+        Of the displacement.
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    columns = min(3, len(portraits))
+    rows = -(-len(portraits) // columns)
+    figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
+        place.plot(x, v, linewidth=0.3)
+        place.plot(*np.transpose(points), "k.", markersize=3)
+        place.set_title(name, fontsize=8)
+        place.tick_params(labelsize=7)
+    figure.supxlabel(f"displacement [{unit}]", fontsize=8)
+    figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=80)
+    return figure
+
+
+def plot_lengths(phase, lengths, others=None, path=None):
+    """Lengths of contact lines [mm] over the phase, by case; `others` dashed in the same colours."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 3.5), layout="constrained")
+    axes = figure.subplots()
+    for name, length in lengths.items():
+        (drawn,) = axes.plot(phase, length, label=name)
+        if name in (others or {}):
+            axes.plot(phase, others[name], "--", color=drawn.get_color(), linewidth=0.8)
+    axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
+    axes.set_ylabel("contact line [mm]")
+    axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=100)
+    return figure
+
+
 def plot_contact(pair, contact, phase=0, path=None):
     """Contact lines of one phase on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
 

@@ -4,7 +4,9 @@ import argparse
 import importlib
 
 PAGES = {
+    "machines": "every printed number of the four machines beside ours, with verdicts",
     "cracks": "crack reductions and their conventions",
+    "truth": "independent values of others, and CalculiX, beside ours",
     "slow": "the slow tests and what they print",
     "speed": "seconds against error of every method",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
