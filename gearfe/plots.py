@@ -85,7 +85,7 @@ def _binned(values, bins):
     return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]
 
 
-def plot_spectra(spectra, lines=None, path=None, top=None):
+def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
     """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
 
     Parameters
@@ -96,14 +96,17 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     path : path, optional
     top : float, optional
         Largest frequency or order; default 1.2 times the last line.
+    dpi : int
+        Dots per inch of the picture.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
     rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    largest = max(one.values.max() for one in spectra.values())
     for axes, (name, found) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(found.frequency, found.values, linewidth=0.8)
-        axes.set_ylim(bottom=1e-6 * max(one.values.max() for one in spectra.values()))
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
         axes.set_ylabel(f"{name} [{found.unit}]")
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
@@ -114,7 +117,7 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
     if path is not None:
         with written(path) as name:
-            figure.savefig(name, dpi=120)
+            figure.savefig(name, dpi=dpi)
     return figure
 
 

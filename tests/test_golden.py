@@ -8,7 +8,7 @@ import math
 import pytest
 from numpy.testing import assert_allclose
 
-from validation import machines, verdicts
+from validation import assumptions, machines, verdicts
 
 PAGES = list(machines.PAGES)
 
@@ -76,3 +76,18 @@ def test_simulated_rows_are_what_the_table_says(page):
         assert row.verdict == old.verdict, f"{row.id}, {row.case}"
         if "not reproduc" not in row.verdict:
             assert_allclose(row.ours, old.ours, rtol=1e-2, atol=1e-9, err_msg=f"{row.id}, {row.case}")
+
+
+def test_assumptions_page_is_not_stale():
+    assert assumptions.PAGE.read_text(encoding="utf-8") == assumptions.text(), "run python -m validation assumptions"
+    (name, pair, _, base) = assumptions.read()[0]
+    one = machines.gf.load_scene(name).pairs[pair]
+    assert_allclose(assumptions.mean(one), base, rtol=machines.GOLDEN_RTOL, err_msg="run python -m validation assumptions")
+    softer = next(row for row in assumptions.read() if row[2] == "bores halved")
+    changes = [{"r_bore": 0.5 * gear.r_bore} for gear in (one.pair.gear_1, one.pair.gear_2)]
+    assert_allclose(100 * (assumptions.mean(one, changes) / base - 1), softer[3], rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", sorted(machines.gf.load_scene(page).name for page in machines.PAGES.values()))
+def test_every_assumption_says_what_depends_on_it(name):
+    assert not [one["what"] for one in machines.gf.load_scene(name).assumptions if not one["depends"]]

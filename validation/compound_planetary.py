@@ -8,7 +8,7 @@ import numpy as np
 import gearfe as gf
 from gearfe.compound import compound_planetary
 
-from .simulated import amplitude, machine, noisy, record, scene, signal
+from .simulated import amplitude, machine, noisy, record, scene, signal, spectrum
 
 NAME = "compound_planetary"
 LEVELS = {"10 %": "crack10", "30 %": "crack30", "50 %": "crack50", "70 %": "crack70", "80 %": "crack80"}
@@ -23,7 +23,7 @@ PAIRS = {
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
 FINER = 5  # samples of the simulation between two of S2, averaged: its recorder has a filter
 NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
-SENSOR = "ring.y acceleration"
+SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
 
 
 @cache
@@ -149,7 +149,7 @@ def _made(case):
 
 @cache
 def heard(case):
-    """Acceleration of the ring at the rate of S2."""
+    """Angular acceleration of the ring at the rate of S2."""
     whole = signal(record(_made(case), SECONDS, FINER * RATE, SETTLE), SENSOR)
     mean = whole.values[: whole.values.size // FINER * FINER].reshape(-1, FINER).mean(axis=1)
     return gf.Signal(mean, RATE, whole.unit, case or "healthy")
@@ -194,7 +194,7 @@ def _stands_out(found, frequency, low=5.0, high=60.0):
 
 def _sideband(case, mesh, fault):
     """Amplitude of the first sidebands of a stage over its mesh line, without noise."""
-    found = gf.spectrum(heard(case))
+    found = spectrum(heard(case))
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
@@ -204,7 +204,7 @@ def statements():
     grown = [_sideband(case, mesh[1], fault[1]) for case in LEVELS.values()]
     healthy = _sideband(None, mesh[1], fault[1])
     one = _sideband("sun 1", mesh[0], fault[0]), _sideband(None, mesh[0], fault[0])
-    found = gf.spectrum(heard(None))
+    found = spectrum(heard(None))
     size = sum(amplitude(found, n * f) ** 2 for f in mesh for n in range(1, 13))
     squared = {case: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for case in ("sun 1", "crack80")}
     sun, planet = scene(NAME).gears["sun"], scene(NAME).gears["planet"]
@@ -234,7 +234,7 @@ def crack_levels():
 
 PICTURES = {
     "compound_planetary_k": "Stiffness of sun and planet over the engagement of a cracked tooth, converged energy model",
-    "compound_planetary_spectra": "Acceleration of the ring",
+    "compound_planetary_spectra": "Angular acceleration of the ring",
 }
 
 
@@ -249,8 +249,8 @@ def draw(folder):
     (one, two), (slow, quick) = frequencies()
     lines = {"f_m1": one, "f_m2": two, "f_m1 - f_1": one - slow, "f_m2 + f_2": two + quick, "2 f_m1": 2 * one, "2 f_m2": 2 * two}
     cases = {"healthy": None, "sun 1, 80 %": "sun 1", "sun 2, 30 %": "crack30", "sun 2, 80 %": "crack80"}
-    spectra = {name: gf.spectrum(heard(case)) for name, case in cases.items()}
-    plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", top=450.0)
+    spectra = {name: spectrum(heard(case)) for name, case in cases.items()}
+    plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70)
 
 
 QUICK = {

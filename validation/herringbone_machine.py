@@ -10,7 +10,7 @@ import gearfe as gf
 from gearfe.energy.beam import SAINSOT
 from gearfe.herringbone import MEMBERS
 
-from .simulated import amplitude, machine, periodic, record, scene, signal
+from .simulated import amplitude, machine, periodic, record, scene, signal, spectrum
 
 NAME = "herringbone"
 SECONDS, SETTLE = 0.3, 0.075  # 8 turns of the sun relative to the carrier, after 2
@@ -137,7 +137,7 @@ def measured_range():
 
 def healthy_spectrum():
     """Of the sun along x [um]."""
-    found, mesh = gf.spectrum(signal(_record(None), SUN)), speeds()[2]
+    found, mesh = spectrum(signal(_record(None), SUN)), speeds()[2]
     return {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
 
 
@@ -234,13 +234,13 @@ def poincare_points(case):
 
 
 def _line(case, frequency, channel=TURNING):
-    return amplitude(gf.spectrum(signal(_record(case), channel)), frequency)
+    return amplitude(spectrum(signal(_record(case), channel)), frequency)
 
 
 def statements():
     """What S4 says of its motions and spectra; see the scene for the words."""
     _, _, mesh, fault = speeds()
-    found = gf.spectrum(signal(_record(None), TURNING))
+    found = spectrum(signal(_record(None), TURNING))
     own = sum(amplitude(found, n * mesh) ** 2 for n in range(1, 31)) / 2
     side = {name: (_line(case, mesh - fault) + _line(case, mesh + fault)) / 2 for name, case in STATES.items()}
     points = {name: poincare_points(case) for name, case in STATES.items()}
@@ -270,8 +270,8 @@ def draw(folder):
     from gearfe.plots import plot_phases, plot_spectra
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
-    spectra = {name: gf.spectrum(signal(_record(case), TURNING)) for name, case in STATES.items()}
-    plot_spectra(spectra, lines, folder / "herringbone_machine_spectra.png", top=1300.0)
+    spectra = {name: spectrum(signal(_record(case), TURNING)) for name, case in STATES.items()}
+    plot_spectra(spectra, lines, folder / "herringbone_machine_spectra.png", 1300.0, dpi=60)
     portraits = {}
     for name, case in STATES.items():
         x, v = signal(_record(case), "sunL.theta"), signal(_record(case), "sunL.theta velocity")

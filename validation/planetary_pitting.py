@@ -9,7 +9,7 @@ from gearfe.contact_law import hertz_coefficient
 from geometry.lines import total_length
 from geometry.pit import Pit
 
-from .simulated import amplitude, knocked, machine, periodic, record, scene, signal
+from .simulated import amplitude, knocked, machine, periodic, record, scene, signal, spectrum
 
 NAME = "planetary_pitting"
 CASES = ("mild", "moderate", "severe")
@@ -143,7 +143,7 @@ def _values(case, impact, channel=FORCE):
 
 @cache
 def _spectrum(case, impact, channel=FORCE):
-    return gf.spectrum(signal(_record(case, impact), channel))
+    return spectrum(signal(_record(case, impact), channel))
 
 
 def sc_simulated():
@@ -193,7 +193,7 @@ def folded():
     start = periodic(NAME)
     out = []
     for rate in (10000.0, RATE):
-        found = gf.spectrum(signal(record(machine(NAME), 0.3, rate, SETTLE, start), FORCE))
+        found = spectrum(signal(record(machine(NAME), 0.3, rate, SETTLE, start), FORCE))
         out.append(amplitude(found, 240.0) / amplitude(found, 280.0))
     return out
 
@@ -235,7 +235,7 @@ def draw(folder):
     plot_lengths(phase, ours, printed, folder / "planetary_pitting_lines.png")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
-    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", top=800.0)
+    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=70)
 
 
 QUICK = {

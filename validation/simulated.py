@@ -48,6 +48,11 @@ def signal(response, channel, name=None):
     return gf.Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name or channel)
 
 
+def spectrum(one):
+    """Amplitude spectrum of the oscillation about the mean."""
+    return gf.spectrum(replace(one, values=one.values - one.values.mean()))
+
+
 def noisy(one, level, seed=0):
     """The signal with Gaussian noise of `level` times its standard deviation."""
     noise = level * one.values.std() * np.random.default_rng(seed).standard_normal(one.values.size)

@@ -85,6 +85,8 @@ def _ordered(printed, ours):
 
 
 def _difference(reference, ours, target):
+    if abs(ours - target) <= 1e-9 * abs(target):
+        return 0.0
     if reference.unit == "statement" or reference.relative is None:
         return ours - target
     return 100 * (ours / target - 1) if target else math.nan
@@ -154,9 +156,10 @@ def text(references, rows):
 
 
 def _told(reference, rows):
-    size = "" if reference.unit == "statement" else f" {_tolerance(reference)}: {reference.tolerance}."
+    silent = reference.unit == "statement" or all(row.verdict == FORMULA for row in rows)
+    size = "" if silent else f" {_tolerance(reference)} ({reference.tolerance})."
     parts = [f"{reference.source}.{size}"]
-    parts += [reference.note + "."] if reference.note else []
+    parts += [_sentence(reference.note)] if reference.note else []
     found = {}
     for row in rows:
         why = reason(reference, row)
@@ -164,11 +167,17 @@ def _told(reference, rows):
             found.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
     for (word, why), cases in found.items():
         which = "" if len(cases) == len(rows) else f" ({'; '.join(cases)})"
-        parts.append(f"{word[0].upper()}{word[1:]}{which}: {why}.")
+        parts.append(f"{_sentence(word)[:-1]}{which}: {why}.")
     return " ".join(parts)
 
 
+def _sentence(words):
+    return f"{words[0].upper()}{words[1:]}."
+
+
 def _tolerance(reference):
+    if (reference.absolute if reference.relative is None else reference.relative) < 1e-8:
+        return "Exactly"
     if reference.relative is None:
         return f"Within {reference.absolute:g} {reference.unit}".rstrip()
     return f"Within {100 * reference.relative:g} %"
