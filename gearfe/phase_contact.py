@@ -1,4 +1,4 @@
-"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach closes the gap, and their loads."""
+"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach closes the gap; their loads."""
 
 import math
 from dataclasses import replace

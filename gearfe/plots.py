@@ -125,7 +125,7 @@ def plot_errors(errors, rows, columns, path=None, largest=30.0):
     return figure
 
 
-def plot_spectra(spectra, lines=None, path=None, top=None):
+def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
     """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
 
     Parameters
@@ -136,14 +136,17 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     path : path, optional
     top : float, optional
         Largest frequency or order; default 1.2 times the last line.
+    dpi : int
+        Dots per inch of the picture.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
     rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    largest = max(one.values.max() for one in spectra.values())
     for axes, (name, found) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(found.frequency, found.values, linewidth=0.8)
-        axes.set_ylim(bottom=1e-6 * max(one.values.max() for one in spectra.values()))
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
         axes.set_ylabel(f"{name} [{found.unit}]")
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
@@ -154,7 +157,7 @@ def plot_spectra(spectra, lines=None, path=None, top=None):
     rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
     if path is not None:
         with written(path) as name:
-            figure.savefig(name, dpi=120)
+            figure.savefig(name, dpi=dpi)
     return figure
 
 
@@ -200,6 +203,60 @@ def plot_phase(portrait, section=None, unit="m", path=None):
     if path is not None:
         with written(path) as name:
             figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_phases(portraits, unit="m", path=None):
+    """Phase portraits with their Poincare points side by side, on common axes.
+
+    Parameters
+    ----------
+    portraits : dict of str to ((ndarray, ndarray), ndarray)
+        By case what `plot_phase` takes as portrait and section.
+    unit : str
+        Of the displacement.
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    columns = min(3, len(portraits))
+    rows = -(-len(portraits) // columns)
+    figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
+        place.plot(x, v, linewidth=0.3)
+        place.plot(*np.transpose(points), "k.", markersize=3)
+        place.set_title(name, fontsize=8)
+        place.tick_params(labelsize=7)
+    figure.supxlabel(f"displacement [{unit}]", fontsize=8)
+    figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=80)
+    return figure
+
+
+def plot_lengths(phase, lengths, others=None, path=None):
+    """Lengths of contact lines [mm] over the phase, by case; `others` dashed in the same colours."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 3.5), layout="constrained")
+    axes = figure.subplots()
+    for name, length in lengths.items():
+        (drawn,) = axes.plot(phase, length, label=name)
+        if name in (others or {}):
+            axes.plot(phase, others[name], "--", color=drawn.get_color(), linewidth=0.8)
+    axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
+    axes.set_ylabel("contact line [mm]")
+    axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=100)
     return figure
 
 

@@ -16,7 +16,8 @@ from gearfe.dynamics import simulate
 from gearfe.herringbone import herringbone_planetary, pitted_helical
 from gearfe.machine import natural_frequencies, pulses
 from gearfe.meshing import Samples, cycle_table
-from gearfe.models import Member, pitted_planetary, planetary, stage_phases
+from gearfe.models import pitted_planetary, stage_phases
+from validation.reference import lin_parker
 
 WAVE = 1 + 0.15 * np.cos(2 * math.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * math.pi * np.arange(64) / 64)
 STEEL = gf.Material(E=207e3, nu=0.25)
@@ -47,17 +48,6 @@ def spur_stage():
 def herringbone(stage, damage=None, **options):
     stiffness = {"sun_planet": 6e8 * WAVE, "planet_ring": 7e8 * WAVE}
     return herringbone_planetary(stage, stiffness, damage=damage, **options)
-
-
-def lin_parker(n=3, k_ru=1e9):
-    def member(mass, inertia, diameter, turn=0.0):
-        r = diameter / 2e3
-        return Member(mass, inertia * r**2, 1e8, r, turn * r**2)
-
-    sun, planet, ring = member(0.4, 0.39, 77.4), member(0.66, 0.61, 100.3), member(2.35, 3.0, 275.0, k_ru)
-    both = {"sun_planet": 5e8, "planet_ring": 5e8}
-    carrier = member(5.43, 6.29, 176.8)
-    return planetary(sun, planet, ring, carrier, n_planets=n, alpha=(math.radians(24.6),) * 2, stiffness=both)
 
 
 def test_frequencies_of_lin_and_parker():

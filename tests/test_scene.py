@@ -20,7 +20,7 @@ def test_built_in_scene():
         scene.pair().case("broken")
 
 
-@pytest.mark.parametrize(("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 4)])
+@pytest.mark.parametrize(("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8)])
 def test_the_other_machines(name, cases):
     pair = gf.load_scene(name).pair()
     assert len(pair.damage) == cases

@@ -79,7 +79,7 @@ def found():
         "stiffness_analytical": values("published", "mean [N/m]"),
         "stiffness_fe": values(reference, "mean [N/m]"),
         "stiffness_error": {key: round(100 * abs(pairs[0][key] - pairs[1][key]) / pairs[0][key], 2) for key in pairs[0]},
-        "reduction": values(reference, "largest drop", 100.0),
+        "stiffness_reduction": values(reference, "largest drop", 100.0),
     }
 
 
@@ -107,7 +107,7 @@ def drop_table():
     """Reductions as Markdown: largest over the cycle, of the mean, and of the damaged tooth's own pair, by method."""
     rows = [row for row in load(SCENE) if row["case"] != "healthy"]
     methods = list(dict.fromkeys(row["method"] for row in rows))
-    printed = next(one for one in gf.load_scene(SCENE).references if one.id == "reduction")
+    printed = next(one for one in gf.load_scene(SCENE).references if one.id == "stiffness_reduction")
     printed = {(row.case, row.pair): row.value for row in printed.rows}
     head = " | ".join(f"`{name}` largest | mean | tooth" for name in methods)
     lines = [f"| pair | case | printed | {head} |", "|---" * (3 + 3 * len(methods)) + "|"]

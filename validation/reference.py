@@ -12,6 +12,7 @@ from gearfe.energy import textbook
 from gearfe.energy.beam import load_angle
 from gearfe.hertz import half_plane, linear_hertz, weber_line
 from gearfe.iso import theoretical_stiffness, virtual_teeth
+from gearfe.models import Member, planetary
 from geometry.tooth import flank
 
 STEEL = gf.Material(E=206e3, nu=0.3)
@@ -152,3 +153,53 @@ def crack_reduction(row, method="ritz", **crack):
     whole = gf.mesh_stiffness(pair, source["line_load"], steel, **run).k
     damage = {"pinion": [gf.Crack(**({"level": row["level"]} | crack))]}
     return float((1 - gf.mesh_stiffness(pair, source["line_load"], steel, damage=damage, **run).k / whole).max())
+
+
+def iso_mesh():
+    """Single and mesh stiffness of the ISO/TR example, after ISO 6336-1 with rack D and solid discs [N/(mm um)]."""
+    rack = {"m_n": 8.0, "alpha_n": math.radians(20), "beta": math.radians(15.8), "b": 100.0, "dedendum": 1.4, "tip_radius": 0.25}
+    pair = gf.GearPair(gf.Gear(z=17, x=0.145, r_bore=20.0, **rack), gf.Gear(z=103, r_bore=60.0, **rack), 500.0)
+    basic_rack = 1 + 0.5 * (1.2 - pair.gear_1.dedendum)
+    single = theoretical_stiffness(pair) * 0.8 * basic_rack * math.cos(pair.gear_1.beta)
+    mesh = single * (0.75 * pair.eps_alpha + 0.25)
+    return {"c_prime": single, "c_gamma_alpha": mesh, "c_gamma_beta": 0.85 * mesh}
+
+
+def lin_parker(n=3, k_ru=1e9):
+    """The planetary stage of Lin and Parker's Table 1."""
+
+    def member(mass, inertia, diameter, turn=0.0):
+        r = diameter / 2e3
+        return Member(mass, inertia * r**2, 1e8, r, turn * r**2)
+
+    sun, planet, ring = member(0.4, 0.39, 77.4), member(0.66, 0.61, 100.3), member(2.35, 3.0, 275.0, k_ru)
+    both = {"sun_planet": 5e8, "planet_ring": 5e8}
+    carrier = member(5.43, 6.29, 176.8)
+    return planetary(sun, planet, ring, carrier, n_planets=n, alpha=(math.radians(24.6),) * 2, stiffness=both)
+
+
+def natural_frequencies():
+    """Of `lin_parker`: rotational modes, then translational ones [Hz], told apart by the motion of the central bodies."""
+    stage = lin_parker()
+    values, modes = gf.natural_frequencies(stage)
+    places = [stage.dofs.index(f"{body}.{axis}") for body in ("sun", "ring", "carrier") for axis in "xy"]
+    moved = np.abs(modes[places]).max(axis=0) > 1e-6 * np.abs(modes).max(axis=0)
+    return [*values[~moved], *values[moved][::2]]
+
+
+def stage(table):
+    """f_m, sun and planet fault frequency, carrier [Hz], contact ratios of a stage in the tables."""
+    teeth, module, rpm, a = {
+        "stage_17_37_91": ((17, 37, 91), 5.0, 800, None),
+        "stage_21_31_84": ((21, 31, 84), 1.5, 600, 39.750056),
+    }[table]
+    rack = {"m_n": module, "alpha_n": math.radians(20), "b": 10.0}
+    sun, planet = (gf.Gear(z=z, r_bore=0.15 * module * z, **rack) for z in teeth[:2])
+    ring = gf.Gear(z=teeth[2], r_rim=module * (teeth[2] / 2 + 5), tip_radius=0.2, **rack)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        outer, inner = gf.GearPair(sun, planet, a), gf.GearPair(planet, ring, a)
+    carrier = rpm / 60 * teeth[0] / (teeth[0] + teeth[2])
+    mesh = carrier * teeth[2]
+    ring_ratio = inner.eps_alpha_of(planet.roll_a, ring.roll_a)  # before the ring's tip is trimmed
+    return mesh, 3 * mesh / teeth[0], mesh / teeth[1], carrier, outer.eps_alpha, ring_ratio

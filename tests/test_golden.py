@@ -1,0 +1,93 @@
+"""Committed tables: cheap rows computed again, and pages that are what their tables say.
+
+Made anew by ``python -m validation machines``.
+"""
+
+import math
+
+import pytest
+from numpy.testing import assert_allclose
+
+from validation import assumptions, machines, verdicts
+
+PAGES = list(machines.PAGES)
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_printed_number_has_a_function_and_rows(page):
+    asked, rows = machines.references(page), verdicts.read(page)
+    assert {one.id for one in asked} == set(machines.functions(page)), "a reference without function, or a function without one"
+    wanted = [(one.id, row.case, row.pair or "") for one in asked for row in one.rows]
+    assert [row[:3] for row in rows] == wanted, "run python -m validation machines"
+    printed = [row.value for one in asked for row in one.rows]
+    assert_allclose([row.printed for row in rows], printed, rtol=1e-5, err_msg="run python -m validation machines")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_what_is_not_reproduced_has_a_reason(page):
+    by_id = {one.id: one for one in machines.references(page)}
+    for row in verdicts.read(page):
+        if row.verdict not in (verdicts.REPRODUCED, verdicts.FORMULA):
+            assert verdicts.reason(by_id[row.id], row), f"{row.id}, {row.case}: {row.verdict} without reason or correction"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_cheap_rows_are_what_the_table_says(page):
+    quick = set(machines.functions(page, quick=True))
+    known = {row[:3]: row for row in verdicts.read(page)}
+    for row in machines.computed(page, quick):
+        old = known[row[:3]]
+        assert row.verdict == old.verdict, f"{row.id}, {row.case}"
+        assert math.isnan(row.ours) == math.isnan(old.ours)
+        assert_allclose(row.ours, old.ours, rtol=machines.GOLDEN_RTOL, atol=1e-12, err_msg=f"{row.id}, {row.case}")
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_verdicts_follow_from_the_numbers(page):
+    rows = verdicts.read(page)
+    for one in machines.references(page):
+        own = [row for row in rows if row.id == one.id]
+        found = {(row.case, row.pair) if row.pair else row.case: None if math.isnan(row.ours) else row.ours for row in own}
+        assert [row.verdict for row in verdicts.judge(one, found)] == [row.verdict for row in own], one.id
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages_are_not_stale(page):
+    on_disk = (machines.FOLDER / f"{page}.md").read_text(encoding="utf-8")
+    assert on_disk == machines.text(page), f"{page}.md is stale: run python -m validation machines"
+    for name in machines.module(page).PICTURES:
+        picture = machines.FOLDER / f"{name}.png"
+        assert picture.is_file(), f"{name}.png is missing: run python -m validation machines"
+        assert picture.stat().st_size < 120_000
+
+
+def test_references_computed_elsewhere_exist():
+    ids = {one.id for page in PAGES for one in machines.gf.load_scene(machines.PAGES[page]).references}
+    assert set(machines.ELSEWHERE) <= ids
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES)
+def test_simulated_rows_are_what_the_table_says(page):
+    known = {row[:3]: row for row in verdicts.read(page)}
+    simulated = set(machines.functions(page)) - set(machines.functions(page, quick=True))
+    for row in machines.computed(page, simulated):
+        old = known[row[:3]]
+        assert row.verdict == old.verdict, f"{row.id}, {row.case}"
+        if "not reproduc" not in row.verdict:
+            assert_allclose(row.ours, old.ours, rtol=1e-2, atol=1e-9, err_msg=f"{row.id}, {row.case}")
+
+
+def test_assumptions_page_is_not_stale():
+    assert assumptions.PAGE.read_text(encoding="utf-8") == assumptions.text(), "run python -m validation assumptions"
+    (name, pair, _, base) = assumptions.read()[0]
+    one = machines.gf.load_scene(name).pairs[pair]
+    assert_allclose(assumptions.mean(one), base, rtol=machines.GOLDEN_RTOL, err_msg="run python -m validation assumptions")
+    softer = next(row for row in assumptions.read() if row[2] == "bores halved")
+    changes = [{"r_bore": 0.5 * gear.r_bore} for gear in (one.pair.gear_1, one.pair.gear_2)]
+    assert_allclose(100 * (assumptions.mean(one, changes) / base - 1), softer[3], rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", sorted(machines.gf.load_scene(page).name for page in machines.PAGES.values()))
+def test_every_assumption_says_what_depends_on_it(name):
+    assert not [one["what"] for one in machines.gf.load_scene(name).assumptions if not one["depends"]]
