@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from geometry.pit import check_pits
 
@@ -276,7 +276,11 @@ def _smoother(ends, line, reach):
 def _free(total, offset, load, active):
     """Forces ``(n,)`` of the active cells and their common approach, whatever their signs."""
     at = np.flatnonzero(active)
-    solved = cho_solve(cho_factor(total[np.ix_(at, at)]), np.column_stack([np.ones(at.size), offset[at]]))
+    try:
+        factored = cho_factor(total[np.ix_(at, at)])
+    except LinAlgError as error:
+        raise RuntimeError("bodies too coarse: some load along the contact lines would gain energy; raise refine") from error
+    solved = cho_solve(factored, np.column_stack([np.ones(at.size), offset[at]]))
     ones, gaps = solved.sum(axis=0)
     approach = (load + gaps) / ones
     new = np.zeros(offset.size)
