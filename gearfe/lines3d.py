@@ -29,8 +29,8 @@ class Cells:
 
     `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in `geometry.pair.Contacts`); `z`
     their middles along the width from the end at z = 0 [mm], `width` their extent along it [mm]; `depth` the distance from the
-    end that touches first [mm]; `nominal` the abscissa on the line of action [mm], `roll_1`, `roll_2` roll lengths of the touching
-    points [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0, or 1 or 2 for the gear whose tip corner
+    end that touches first [mm]; `nominal` the abscissa on the line of action [mm], `roll_1`, `roll_2` roll lengths where they
+    touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0, or 1 or 2 for the gear whose tip corner
     touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's [MPa], nan at a corner.
     """
 
