@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from .contact import CLOSED
 from .energy.halfspace import line_kernel, pair_kernel, strip
 from .hertz import half_width
 from .sharing import share
@@ -11,7 +12,6 @@ MOST = 60  # steps, the second half of them with exact contact problems
 WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
 SMOOTH = 8.0  # the width of the strip follows the line load's mean over so many half widths: it knows no sharper peaks
 SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
-OVERLAP = 1e-6  # of the approach: what faces of cracks may pass through each other
 FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
 
@@ -52,8 +52,8 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
 
     Returns
     -------
-    force : ndarray, shape (n,)
-        [N].
+    force : ndarray, shape (n + m,)
+        Of the cells, then of the faces [N].
     approach : float
         [mm].
 
@@ -97,14 +97,15 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         if attempt < MOST // 2:
             new, approach = _free(total, gap, load, active, blocks, weight)
             rests = total @ np.maximum(new, 0.0) + gap - approach * weight
-            wanted = np.where(active, new > 0, rests < -approach * np.where(weight > 0, 1e-12, OVERLAP))
+            let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, CLOSED * np.abs(rests[n:]).max(initial=0.0)))
+            wanted = np.where(active, new > 0, rests < -let)
         else:
             new, approach = share(total, gap, load, weight)
             wanted = active = new > 0
         settled = (wanted == active).all() and np.abs(new - force).max() < SETTLED * load
         active, force = wanted, np.maximum(new, 0.0)
         if settled:
-            return force[:n], float(approach)
+            return force, float(approach)
         if not active[:n].any():
             active[:n] = True
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")

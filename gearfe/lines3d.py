@@ -178,9 +178,14 @@ def _covered(pair, pits, band, piece, slope):
     """Intervals of depth that pits take from a piece."""
     numbers = (piece.order, -piece.order)
     gears = (pair.gear_1, pair.gear_2)
+    middle = band[0] + math.copysign((piece.first + piece.last) / 2, band[1] - band[0])
     own = [
         [p for p in found if p.side == "loaded" and (p.tooth - number) % gear.z == 0]
         for gear, found, number in zip(gears, pits, numbers, strict=True)
+    ]
+    own = [
+        [p for p in found if abs(middle + offset - p.z) < p.reach[1] + (piece.last - piece.first) / 2]
+        for found, offset in zip(own, _offsets(pair), strict=True)
     ]
     if not any(own):
         return []
@@ -189,10 +194,9 @@ def _covered(pair, pits, band, piece, slope):
     at = (nominal, pair.mate_roll(nominal)) if piece.corner == 0 else touching(pair, nominal)[:2]
     z = band[0] + math.copysign(1.0, band[1] - band[0]) * depth
     covered = []
-    for gear, found, roll in zip(gears, own, at, strict=True):
-        offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    for gear, found, roll, offset in zip(gears, own, at, _offsets(pair), strict=True):
         for pit in found:
-            low, high = sorted(rolls(gear, pit))
+            low, high = _rolls(gear, pit)
             for k in range(depth.size - 1):
                 ends, heights = roll[k : k + 2], z[k : k + 2] + offset
                 apart = np.abs(heights.mean() - pit.z) > pit.reach[1] + np.ptp(heights) / 2
@@ -200,6 +204,17 @@ def _covered(pair, pits, band, piece, slope):
                     step = depth[k + 1] - depth[k]
                     covered += [(depth[k] + a * step, depth[k] + b * step) for a, b in crossing(gear, pit, ends, heights)]
     return covered
+
+
+def _offsets(pair):
+    """Where the common width begins on both gears [mm]."""
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    return (pair.gear_1.b - common) / 2, (pair.gear_2.b - common) / 2
+
+
+@lru_cache(maxsize=256)
+def _rolls(gear, pit):
+    return sorted(rolls(gear, pit).tolist())
 
 
 def cells_of(pair, pieces, bands, slope, step):

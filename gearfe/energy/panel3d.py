@@ -18,6 +18,7 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg import block_diag, cholesky, solve_triangular
+from scipy.linalg.blas import dsyrk
 
 from geometry.tooth import arc_at, flank_normal, roll_at_arc
 from geometry.triangle import BULGE, jacobians, lagrange, table
@@ -28,7 +29,7 @@ from .panel import Panel, _numbering
 LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
 CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
-NEAR_TIP = 0.04  # faces closer to a crack's tip than this part of its length cannot be seen to touch
+NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
 def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False, parts=(), tree=None):
@@ -287,9 +288,16 @@ def _front(body, tree):
     if first:
         lower = cholesky(matrix[:first, :first], lower=True, check_finite=False)
         across = solve_triangular(lower, matrix[:first, first:], lower=True, check_finite=False)
-        matrix = matrix[first:, first:]
-        matrix -= across.T @ across
+        matrix = matrix[first:, first:] - _square(across)
     return ids[gone.sum() :], matrix
+
+
+def _square(across):
+    """``across' across``, half of it computed."""
+    upper = dsyrk(1.0, across, trans=1)
+    out = upper + upper.T
+    out[np.diag_indices_from(out)] /= 2
+    return out
 
 
 def _add(matrix, part, at):
