@@ -222,7 +222,7 @@ def cells_of(pair, pieces, bands, slope, step):
     rows = []
     for piece in pieces:
         a, b = piece.first, piece.last
-        longest = min(step, (b - a) / BEYOND) if piece.corner and slope > 1e-12 else step
+        longest = min(step, max((b - a) / BEYOND, END * step)) if piece.corner and slope > 1e-12 else step
         fine = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
         edge = spaced(a, b, longest, fine, 1, GROWTH)
         middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)

@@ -9,7 +9,7 @@ from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import flexibility3d
+from gearfe import fe3d, flexibility3d
 from gearfe.energy import halfspace, panel3d, ritz, ritz3d
 from gearfe.energy.axial import axial
 from gearfe.hertz import half_plane, hat_logarithm
@@ -148,6 +148,29 @@ def test_a_crack_over_parts_of_the_width():
     )
     sign = np.tile((-1.0) ** np.arange(left.degree + 1), flexibility3d.PLACES)
     assert_allclose(right.near[0], sign[:, None] * left.near[0] * sign, atol=1e-7 * np.abs(left.near[0]).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beta", [0.0, BETA])
+def test_what_half_a_crack_adds_is_that_of_hexahedra(beta):
+    """Under even and linear loads on two hats next to the tip; the hexahedra are short where the crack ends inside the gear."""
+    gear, crack = replace(GEAR, beta=beta, b=8.0), gf.Crack(level=0.5, width=(0.0, 4.0))
+    knots, modes = flexibility3d.hats(gear), 2
+    full = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))[-2:]
+    patches = fe3d.Patches((0,), knots[:, full], modes)
+    one = ritz3d._panel(gear, STEEL, (), 8.0, 3, 9, 1.0)
+    found = []
+    for own in ((), (crack,)):
+        panels = {0: ritz3d._panel(gear, STEEL, own, 8.0, 3, 9, 1.0), 1: one}
+        made = ritz._join(gear, panels, one)[0][0, 0].reshape(flexibility3d.PLACES, 10, flexibility3d.PLACES, 10)
+        scale = 1 / np.sqrt((2 * np.arange(modes) + 1) * gear.b)  # from orthonormal polynomials to those of unit resultant
+        model = np.einsum("iaia->ia", made)[full][:, :modes] * scale**2
+        mesh = fe3d.mesh_patches(gear, patches, cracks=own, refine=0.7, fine=[(4.0, 4.0, 0.2)])
+        found.append((model, np.einsum("iaia->ia", fe3d.influence(mesh, STEEL, patches).matrix[0, :, :, 0])))
+    added = np.array(found[1]) - np.array(found[0])
+    print(np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds;", np.round(100 * added[1] / found[0][1], 1))
+    assert (added[1] > 0.1 * found[0][1]).all()
+    assert_allclose(added[0], added[1], rtol=0.03)
 
 
 @pytest.mark.parametrize(
