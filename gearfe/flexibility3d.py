@@ -156,6 +156,7 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy)
 
 
+@lru_cache(maxsize=8)
 def _own(gear, width, degree):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
     knots = hats(gear)
