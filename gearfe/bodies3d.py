@@ -7,6 +7,7 @@ its own frame, is the opposite one; also a ring's, whose frame is mirrored.
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from geometry.damage import check_single, crack_in_band
 
@@ -70,3 +71,24 @@ def between(cells, bodies):
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
             out[np.ix_(at, at)] += body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
     return (out + out.T) / 2
+
+
+def faces_of(cells, bodies):
+    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+
+    Returns
+    -------
+    (ndarray (m, n), ndarray (m, m), ndarray (m,)) or None
+        Opening under unit normal forces on the cells, and of unit forces that push the faces apart [mm/N], and the half.
+    """
+    rows, own, halves = [], [], []
+    for half in np.unique(cells.half).tolist():
+        at = np.flatnonzero(cells.half == half)
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+            if body.seam is not None and body.seam.influence.size:
+                row = np.zeros((body.seam.influence.shape[0], cells.z.size))
+                row[:, at] = body.opening(sense * cells.order[at], roll[at], cells.depth[at] + offset)
+                rows.append(row)
+                own.append(body.seam.influence)
+                halves.append(np.full(row.shape[0], half))
+    return (np.concatenate(rows), block_diag(*own), np.concatenate(halves)) if rows else None

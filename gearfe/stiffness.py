@@ -22,6 +22,7 @@ from .material import check_state
 from .wide import wide_curve
 
 COARSER = (0.5, 0.7)  # resolutions of the error estimate, relative to that of the curve
+ORDERS = {"ritz": 4, "ritz3d": 3}  # of the polynomials
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
@@ -37,7 +38,7 @@ def mesh_stiffness(
     extended=True,
     state="plane strain",
     refine=1.0,
-    order=4,
+    order=None,
     teeth=None,
     variants=None,
     face=None,
@@ -60,9 +61,10 @@ def mesh_stiffness(
         Of both gears, or of pinion and wheel.
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"}
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz`). ``ritz3d``: the same
-        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact, contact on the
-        path of contact only (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
-        ``meta["why"]`` says why. ``fe``: finite elements of whole sections, the independent reference (`gearfe.fe`).
+        in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
+        (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says why. To
+        compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
+        sections, the independent reference (`gearfe.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
@@ -77,14 +79,14 @@ def mesh_stiffness(
         the width or sloping ones: ``fe3d``; pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces
         that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
-        Let tip corners touch before the start and after the end of the path of contact (``ritz`` and ``fe``;
-        the closed forms know no contact there).
+        Let tip corners touch before the start and after the end of the path of contact (all but the closed
+        forms, which know no contact there).
     state : {"plane strain", "plane stress"}
         For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
     refine : float
         Resolution of ``ritz`` and ``fe``, also in three dimensions: divides the edge lengths.
-    order : int
-        Polynomial order of ``ritz``, 2 to 8.
+    order : int, optional
+        Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
         For ``fe``: only so many teeth on a plain rim; default all.
     variants : dict, optional
@@ -134,6 +136,7 @@ def mesh_stiffness(
     if method in WIDE and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
+    order = ORDERS.get(method) if order is None else order
     numeric = {"state": state, "refine": float(refine)} | ({"teeth": teeth} if method == "fe" else {"order": order})
     if method in CLOSED:
         options = dict(variants or {})
@@ -144,8 +147,9 @@ def mesh_stiffness(
         options = {"state": state}
         solve, details = _coupled(pair, materials, phase, state)
     elif method in WIDE:
-        options = {"face": face, "groove": groove, "refine": float(refine)}
-        solve, details = None, {"extended": False}
+        options = {"face": face, "groove": groove, "refine": float(refine), "extended": bool(extended)}
+        options |= {"order": order} if method == "ritz3d" else {}
+        solve, details = None, {}
     else:
         options = {"extended": bool(extended), **numeric}
         case = (pair, materials, phase, extended, cracks, method, cache)

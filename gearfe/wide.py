@@ -27,7 +27,7 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     cracks, pits : (tuple, tuple)
         In each gear's own frame.
     meta : dict
-        Holds ``method``, ``face``, ``groove`` and ``refine``.
+        Holds ``method``, ``face``, ``groove``, ``refine``, ``extended`` and (energy model) ``order``.
     error : bool
         Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees.
         Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
@@ -37,16 +37,16 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     Returns
     -------
     StiffnessCurve
-        `pressure` is the largest of each pair's contact line.
+        `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
-    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove")}}
+    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "extended")}}
     brute = meta["method"] == "fe3d"
     if brute:
         model = partial(solved_solid, refine=meta["refine"], cache=cache, tell=tell)
         options["model"] = model
     else:
-        options["refine"] = meta["refine"]
+        options |= {"refine": meta["refine"], "order": meta["order"]}
     found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
     doubt = found.error
@@ -57,9 +57,12 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
-            own = cells.pressure[cells.order == order]
-            pressure[i, k] = own.max(initial=0.0)
+            own = cells.pressure[(cells.order == order) & (cells.load > 0)]
+            flat = own[np.isfinite(own)]
+            pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
     used = found.load.max(axis=0) > 0
+    if any(cracks) and not brute:
+        meta = meta | {"crack_closed_phases": phase[list(found.closed)].tolist()}
     return StiffnessCurve(
         phase=phase,
         k=found.k,

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import bodies3d, contact3d, lines3d
-from gearfe.contact3d import pair_stiffness3d
+from gearfe import bodies3d, cell_sharing, lines3d
+from gearfe.contact3d import STEP, pair_stiffness3d
 from gearfe.energy import halfspace
 from gearfe.hertz import half_width
 from gearfe.sharing import share
@@ -39,7 +39,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
     pair = pair_of(20.0)
     if face == "ring":
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
-    found = lines3d.lines_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
+    found = lines3d.pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
     cells = lines3d.cells_of(pair, found, [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), 0.5)
     gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2
@@ -70,6 +70,37 @@ def test_no_helix_is_the_limit_of_a_small_one():
     assert_allclose(slight.k, spur.k, rtol=1e-4)
 
 
+@pytest.mark.parametrize("line_load", [20.0, 150.0, 600.0])
+def test_corner_contact_of_a_wide_spur_pair_is_that_of_the_plane(line_load):
+    """At the ends of the path and beyond them, where a tip corner carries up to all of the load; elsewhere, too."""
+    pair = pair_of(400.0, 0.0)
+    phases = np.array([-0.02, 0.0, 0.01, 0.3, 0.57, 0.58, 0.6, 0.62, 0.8])
+    force = 400.0 * line_load
+    plane, without = (gf.mesh_stiffness(pair, force, STEEL, phases=phases, extended=e, method="ritz").k for e in (True, False))
+    solid = pair_stiffness3d(pair, force, STEEL, phases, face="spur", axial=0, step=20.0)
+    print(np.round(100 * (solid.k / plane - 1), 2), np.round(100 * (plane / without - 1), 1))
+    assert_allclose(solid.k, plane, rtol=4e-3)
+    assert (plane / without).max() > 1.02
+    if line_load > 100.0:
+        touching = [set(own.corner[own.load > 0].tolist()) for own in solid.cells]
+        assert {1, 2} <= set().union(*touching), "both gears' corners are seen"
+
+
+def test_helical_contact_goes_on_beyond_the_path():
+    """Lines end where the gap is the approach, loads stay positive, and more contact is stiffer."""
+    pair, phases = pair_of(20.0), np.linspace(0, 1, 5)[:-1]
+    run = {"order": 2, "axial": 8}
+    inside, beyond = (pair_stiffness3d(pair, 3000.0, STEEL, phases, extended=e, **run) for e in (False, True))
+    assert (beyond.k > 1.003 * inside.k).all()
+    assert (beyond.k > 1.02 * inside.k).any()
+    fine = pair_stiffness3d(pair, 3000.0, STEEL, phases, step=0.15, **run)
+    assert_allclose(beyond.k, fine.k, rtol=2e-3)
+    for own, approach in zip(beyond.cells, beyond.approach, strict=True):
+        assert (own.gap[own.load > 0] < approach).all()
+        assert ((own.gap == 0) == (own.corner == 0)).all()
+        assert own.load[own.corner > 0].sum() > 0.005 * own.load.sum()
+
+
 def test_herringbone_is_twice_a_half():
     run = {"order": 2, "axial": 6, "phases": 4}
     half = pair_stiffness3d(pair_of(), 1500.0, STEEL, **run)
@@ -98,10 +129,10 @@ def test_loads_satisfy_the_contact_conditions():
         gap = 10 ** rng.uniform(-4, -1) * rng.random(n)
         load, radius, modulus, k = n * 10 ** rng.uniform(-2, 4), rng.uniform(1, 10, n), 1.1e5, 2.8e-6
         ends = edge[:-1], edge[1:]
-        force, approach = contact3d.line_cells(matrix, gap, load, k, ends, line, radius, modulus)
-        reach = contact3d.SMOOTH * half_width(load / np.diff(edge).sum(), radius.mean(), modulus)
-        mean = np.maximum(contact3d._smoother(ends, line, reach) @ force, 1e-9 * load / np.diff(edge))
-        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), contact3d._pieces(ends, line) / 2)
+        force, approach = cell_sharing.line_cells(matrix, gap, load, k, ends, line, radius, modulus)
+        reach = cell_sharing.SMOOTH * half_width(load / np.diff(edge).sum(), radius.mean(), modulus)
+        mean = np.maximum(cell_sharing.smoother(ends, line, reach) @ force, 1e-9 * load / np.diff(edge))
+        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), cell_sharing.pieces(ends, line) / 2)
         total = matrix + k * np.where(line[:, None] == line, halfspace.line_kernel(*ends, x), 0.0)
         closed = total @ force + gap
         close = (
@@ -120,15 +151,15 @@ def test_cells_that_cannot_touch_are_as_good_as_absent():
     some = np.isfinite(gap)
     args = np.full(20, 3.0), 1.1e5
     line = np.zeros(20, dtype=int)
-    force, approach = contact3d.line_cells(np.full((20, 20), 1e-6), gap, 500.0, 2.8e-6, (edge[:-1], edge[1:]), line, *args)
-    few = contact3d.line_cells(
+    force, approach = cell_sharing.line_cells(np.full((20, 20), 1e-6), gap, 500.0, 2.8e-6, (edge[:-1], edge[1:]), line, *args)
+    few = cell_sharing.line_cells(
         np.full((17, 17), 1e-6), gap[some], 500.0, 2.8e-6, (edge[:-1][some], edge[1:][some]), line[some], args[0][some], args[1]
     )
     assert_allclose(force[some], few[0], rtol=1e-9)
     assert approach == few[1]
     assert (force[~some] == 0).all()
     with pytest.raises(RuntimeError, match="no cell can touch"):
-        contact3d.line_cells(
+        cell_sharing.line_cells(
             np.eye(2), np.full(2, np.inf), 1.0, 1e-6, (np.arange(2.0), np.arange(2.0) + 1), np.zeros(2), 1.0, 1.0
         )
 
@@ -147,7 +178,7 @@ def test_moving_pits_by_parts_of_a_cell():
     pair, drops = pair_of(30.0), []
     run["phases"] = np.array([1.1])
     pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in np.linspace(2.0, 27.7, 7)]
-    for step in (contact3d.STEP, contact3d.STEP / 4):
+    for step in (STEP, STEP / 4):
         healthy, pitted = (pair_stiffness3d(pair, 3800.0, STEEL, pits=(own, ()), step=step, **run).k[0] for own in ((), pits))
         drops.append(1 - pitted / healthy)
     assert drops[0] > 0.02
@@ -186,7 +217,7 @@ def test_plane_strain_is_too_stiff_by(ratio, want):
     """Away from tip corners, against an earlier study whose pair and load are not stated."""
     pair, phase = pair_of(2.0 * ratio, 0.0), np.linspace(0.1, 0.9, 9)
     plane = gf.mesh_stiffness(pair, 400.0 * ratio, STEEL, phases=phase, extended=False, order=6).k
-    solid = pair_stiffness3d(pair, 400.0 * ratio, STEEL, phase, face="spur").k
+    solid = pair_stiffness3d(pair, 400.0 * ratio, STEEL, phase, face="spur", extended=False).k
     print(f"b/m = {ratio}: {100 * (solid.mean() / plane.mean() - 1):.2f} %")
     assert_allclose(solid.mean() / plane.mean() - 1, want, atol=0.002)
 
@@ -225,6 +256,32 @@ def test_crack_lowers_a_spur_pair_as_in_the_plane():
     assert abs(other.k[1] / solid[0][1] - 1) < 0.1
 
 
+@pytest.mark.parametrize("side", ["loaded", "unloaded"])
+def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
+    """On a wide spur pair: the same phases as in the plane, and the same k within what wide spur pairs differ without cracks."""
+    pair, phases = pair_of(200.0, 0.0), np.array([-0.2, 0.1, 0.9, 1.7])
+    crack = gf.Crack(level=0.3, side=side)
+    plane = gf.mesh_stiffness(pair, 3e4, STEEL, phases=phases, method="ritz", damage={"pinion": [crack]})
+    solid = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0, cracks=((crack,), ()))
+    assert_allclose(solid.k, plane.k, rtol=4e-3)
+    assert phases[list(solid.closed)].tolist() == plane.meta["crack_closed_phases"]
+    healthy = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0)
+    assert (solid.k < 0.85 * healthy.k).any() == (side == "loaded")
+
+
+def test_crack_in_one_half_of_a_herringbone_pair():
+    """Each half bears its share at one approach: k is the sum of a healthy and a cracked half's at their own loads."""
+    pair, run = pair_of(24.0), {"order": 2, "axial": 6, "face": "herringbone", "phases": np.array([0.9])}
+    crack = gf.Crack(level=0.5)
+    cases = [(), (replace(crack, width=(0.0, 12.0)),), (replace(crack, width=(12.0, 24.0)),), (crack,)]
+    healthy, first, second, both = (pair_stiffness3d(pair, 3000.0, STEEL, cracks=(own, ()), **run).k[0] for own in cases)
+    assert_allclose(first, second, rtol=1e-9)
+    assert both < 0.97 * first < 0.97 * 0.97 * healthy
+    assert_allclose(first, (healthy + both) / 2, rtol=5e-3)
+    part = pair_stiffness3d(pair, 3000.0, STEEL, cracks=((replace(crack, width=(0.0, 6.0)),), ()), **run).k[0]
+    assert first < part < healthy
+
+
 def test_a_piece_that_vanishes_takes_its_load_with_it():
     """A short piece of line beside a long one: what it carries falls to nothing with its length."""
     edge = np.linspace(0, 10, 26)
@@ -232,7 +289,7 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
     for length in (0.1, 0.01, 0.001):
         ends = np.append(edge[:-1], 12.0), np.append(edge[1:], 12.0 + length)
         line = np.zeros(26, dtype=int)
-        force, _ = contact3d.line_cells(
+        force, _ = cell_sharing.line_cells(
             np.full((26, 26), 1e-6), np.zeros(26), 1500.0, 2.8e-6, ends, line, np.full(26, 3.0), 1.1e5
         )
         carried.append(force[-1])

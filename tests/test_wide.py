@@ -45,7 +45,7 @@ def test_meta_says_what_was_done(healthy):
     meta = healthy.meta
     assert (meta["method"], meta["why"]) == ("ritz3d", "asked for")
     assert (meta["face"], meta["groove"], meta["refine"]) == ("helical", 0.0, 0.6)
-    assert (meta["force_N"], meta["width_mm"], meta["extended"]) == (FORCE, 8.0, False)
+    assert (meta["force_N"], meta["width_mm"], meta["extended"]) == (FORCE, 8.0, True)
 
 
 def test_no_pair_is_pressed_less_than_by_an_even_load(healthy, steel):
@@ -55,9 +55,11 @@ def test_no_pair_is_pressed_less_than_by_an_even_load(healthy, steel):
     radius = max(float(pair.relative_radius(*pair.curvature_radii(p))) for p in np.linspace(0, pair.eps_alpha, 20))
     line = healthy.force / math.cos(beta_b) / (8.0 / math.cos(beta_b))
     least = peak_pressure(line, radius / math.cos(beta_b), contact_modulus((steel, steel)))
-    assert (healthy.pressure >= 1e6 * least).all()
-    assert (healthy.pressure < 5e9).all()
-    assert ((healthy.pressure > 0) == (healthy.force > 0)).all()
+    flat = np.isfinite(healthy.pressure)  # nan: nothing but a tip corner touches
+    assert flat.mean() > 0.8
+    assert (healthy.pressure[flat] >= 1e6 * least[flat]).all()
+    assert (healthy.pressure[flat] < 5e9).all()
+    assert ((healthy.pressure > 0) == (healthy.force > 0))[flat].all()
 
 
 def test_several_forces_give_a_list(healthy, steel):

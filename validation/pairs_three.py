@@ -79,7 +79,7 @@ def damage(pair, case):
 
 def curve(pair, case, **options):
     """Stiffness curve over the engagement of tooth 0."""
-    run = {"phases": PHASES, "span": "tooth", "damage": damage(pair, case)}
+    run = {"phases": PHASES, "span": "tooth", "damage": damage(pair, case), "extended": False}
     return gf.mesh_stiffness(pair, LOAD * pair.gear_1.b, STEEL, **(run | options))
 
 

@@ -144,3 +144,15 @@ def line_kernel(start, stop, x):
     across = twice(stop, start)
     kernel = across + across.T - twice(start, start) - twice(stop, stop)
     return kernel / np.outer(stop - start, stop - start)
+
+
+def pair_kernel(ends, i, j, x):
+    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]."""
+    start, stop = ends
+    least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
+
+    def twice(apart):
+        return apart * np.arcsinh(apart / least) - np.hypot(apart, least)
+
+    kernel = twice(stop[i] - start[j]) + twice(stop[j] - start[i]) - twice(start[i] - start[j]) - twice(stop[i] - stop[j])
+    return kernel / ((stop[i] - start[i]) * (stop[j] - start[j]))
