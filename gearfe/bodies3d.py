@@ -7,8 +7,9 @@ its own frame, is the opposite one; also a ring's, whose frame is mirrored.
 from dataclasses import replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
-from geometry.damage import crack_in_band
+from geometry.damage import check_single, crack_in_band
 
 
 def seen_gears(pair, face, groove):
@@ -47,13 +48,15 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
     Raises
     ------
     ValueError
-        If a crack lies in the relief groove.
+        If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
     gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, strict=True))
     for gear, (body, _), _, own in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
+        for band in bands:
+            check_single(body, seen_cracks(gear, own, body, band))
     return [
         [(flexible(body, material, seen_cracks(gear, own, body, band)), offset) for gear, (body, offset), material, own in gears]
         for band in bands
@@ -68,3 +71,24 @@ def between(cells, bodies):
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
             out[np.ix_(at, at)] += body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
     return (out + out.T) / 2
+
+
+def faces_of(cells, bodies):
+    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+
+    Returns
+    -------
+    (ndarray (m, n), ndarray (m, m), ndarray (m,)) or None
+        Opening under unit normal forces on the cells, and of unit forces that push the faces apart [mm/N], and the half.
+    """
+    rows, own, halves = [], [], []
+    for half in np.unique(cells.half).tolist():
+        at = np.flatnonzero(cells.half == half)
+        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
+            if body.seam is not None and body.seam.influence.size:
+                row = np.zeros((body.seam.influence.shape[0], cells.z.size))
+                row[:, at] = body.opening(sense * cells.order[at], roll[at], cells.depth[at] + offset)
+                rows.append(row)
+                own.append(body.seam.influence)
+                halves.append(np.full(row.shape[0], half))
+    return (np.concatenate(rows), block_diag(*own), np.concatenate(halves)) if rows else None

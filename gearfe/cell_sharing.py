@@ -1,8 +1,9 @@
 """Load sharing over the cells of contact lines: cells push, do not pull, and each is a strip of Hertz's pressure."""
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
+from .contact import CLOSED
 from .energy.halfspace import line_kernel, pair_kernel, strip
 from .hertz import half_width
 from .sharing import share
@@ -15,7 +16,7 @@ FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
 
 
-def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=None, local=None, start=None):
+def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=None, local=None, faces=None):
     """Share a load over cells of contact lines that can push but not pull.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
@@ -45,13 +46,14 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         Number of the bodies each cell is on: `matrix` is zero between different ones.
     local : callable, optional
         From line loads ``(n,)`` [N/mm] to what each cell's ``ln(2 / a) + 1/2`` is more than Hertz's ``(n,)``.
-    start : ndarray, shape (n,), optional
-        Forces to begin with [N].
+    faces : (ndarray (m, n), ndarray (m, m), ndarray (m,)), optional
+        Faces of cracks that must not pass through each other: their opening by the cells' forces and by unit forces that push
+        them apart [mm/N], and the block of each.
 
     Returns
     -------
-    force : ndarray, shape (n,)
-        [N].
+    force : ndarray, shape (n + m,)
+        Of the cells, then of the faces [N].
     approach : float
         [mm].
 
@@ -68,15 +70,20 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         few = matrix[np.ix_(able, able)], gap[able], load, kernel, [end[able] for end in ends], line[able], radius[able], modulus
         force[able], approach = line_cells(*few)
         return force, approach
-    length = ends[1] - ends[0]
-    force = load * length / length.sum() if start is None else start
+    n, length = gap.size, ends[1] - ends[0]
+    force = load * length / length.sum()
     mean = smoother(ends, line, SMOOTH * half_width(load / length.sum(), radius.mean(), modulus))
     widest = pieces(ends, line) / 2  # a piece shorter than it is wide acts as one as wide as it is long
-    blocks = [np.arange(gap.size)] if block is None else [np.flatnonzero(block == number) for number in np.unique(block)]
-    active, x, total, near = np.ones(gap.size, dtype=bool), np.ones(gap.size), None, None
+    number = np.zeros(n, dtype=int) if block is None else block
+    if faces is not None:
+        matrix = np.block([[matrix, faces[0].T], [faces[0], faces[1]]])
+        gap, number = np.append(gap, np.zeros(faces[2].size)), np.append(number, faces[2])
+    force, weight = np.append(force, np.zeros(gap.size - n)), (np.arange(gap.size) < n).astype(float)
+    blocks = [np.flatnonzero(number == k) for k in np.unique(number)]
+    active, x, total, near = weight > 0, np.ones(n), None, None
     for attempt in range(MOST):
         if attempt < WIDTHS:
-            along = np.maximum(mean @ force, FLOOR * load / length)
+            along = np.maximum(mean @ force[:n], FLOOR * load / length)
             wide = strip(half_width(along, radius, modulus))
             if local is not None:
                 wide = wide * np.exp(-local(along))
@@ -88,18 +95,19 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
             i, j = near
             total[i, j] = matrix[i, j] + kernel * pair_kernel(ends, i, j, x)
         if attempt < MOST // 2:
-            new, approach = _free(total, gap, load, active, blocks)
-            rests = total @ np.maximum(new, 0.0) + gap
-            wanted = np.where(active, new > 0, rests < approach * (1 - 1e-12))
+            new, approach = _free(total, gap, load, active, blocks, weight)
+            rests = total @ np.maximum(new, 0.0) + gap - approach * weight
+            let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, CLOSED * np.abs(rests[n:]).max(initial=0.0)))
+            wanted = np.where(active, new > 0, rests < -let)
         else:
-            new, approach = share(total, gap, load)
+            new, approach = share(total, gap, load, weight)
             wanted = active = new > 0
         settled = (wanted == active).all() and np.abs(new - force).max() < SETTLED * load
         active, force = wanted, np.maximum(new, 0.0)
         if settled:
             return force, float(approach)
-        if not active.any():
-            active[:] = True
+        if not active[:n].any():
+            active[:n] = True
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
 
 
@@ -132,14 +140,17 @@ def smoother(ends, line, reach):
     return over / over.sum(axis=1, keepdims=True) / (ends[1] - ends[0])
 
 
-def _free(total, offset, load, active, blocks):
+def _free(total, offset, load, active, blocks, weight):
     """Forces ``(n,)`` of the active cells and their common approach, whatever their signs."""
     ones, gaps = np.zeros(offset.size), np.zeros(offset.size)
     for block in blocks:
         at = block[active[block]]
         if at.size:
             part = total if at.size == offset.size else total[np.ix_(at, at)]
-            solved = cho_solve(cho_factor(part), np.column_stack([np.ones(at.size), offset[at]]))
+            try:
+                solved = cho_solve(cho_factor(part), np.column_stack([weight[at], offset[at]]))
+            except LinAlgError as error:
+                raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine") from error
             ones[at], gaps[at] = solved.T
-    approach = (load + gaps.sum()) / ones.sum()
+    approach = (load + weight @ gaps) / (weight @ ones)
     return approach * ones - gaps, approach

@@ -27,7 +27,8 @@ class Contact3D:
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
     along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
-    of pinion and wheel; `error` (phases,) estimated discretisation error of k [N/m], or None.
+    of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
+    `error` (phases,) estimated discretisation error of k [N/m], or None.
     """
 
     phase: np.ndarray
@@ -37,6 +38,7 @@ class Contact3D:
     load: np.ndarray
     cells: tuple
     dofs: tuple
+    closed: tuple = ()
     error: np.ndarray | None = None
 
 
@@ -75,7 +77,7 @@ def pair_stiffness3d(
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
     pits, cracks : (sequence, sequence)
         Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
-        The faces of cracks may pass through each other.
+        Faces of cracks are kept from passing through each other if `model` gives their opening, as the energy model does.
     face : {"spur", "helical", "herringbone"}
         The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
         otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
@@ -136,9 +138,10 @@ def pair_stiffness3d(
 
 
 def _solved(contact, phase, bodies):
-    cells, approach, reach = [], np.zeros(phase.size), None
+    cells, approach, reach, closed = [], np.zeros(phase.size), None, []
     for i, at in enumerate(phase.tolist()):
-        own, approach[i] = contact.solve(at, bodies, reach)
+        own, approach[i], shut = contact.solve(at, bodies, reach)
+        closed += [i] if shut else []
         cells.append(own)
         reach = REACH * approach[i]
     orders = np.array(sorted({order for own in cells for order in own.order.tolist()}))
@@ -146,4 +149,4 @@ def _solved(contact, phase, bodies):
     for i, own in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
     dofs = tuple(body.unknowns for body, _ in bodies[0])
-    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs)
+    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs, tuple(closed))

@@ -3,7 +3,8 @@
 Close to its tip corner a tooth is a wedge, no half-space, and pressure ends at the corner. The plane resolves that contact hat
 by hat (`gearfe.contact`); how much more it closes there than Hertz's strip on a half-plane would, at the same line load and
 place, is a property of the section: a few tenths of a millimetre across, whatever the load does along the width. Contact in three
-dimensions adds it to the logarithm of its strips, so that in the plane limit both are the same contact.
+dimensions adds it to the logarithm of its strips, so that in the plane limit both are the same contact. For helical teeth the
+transverse section is taken for the normal one: widths and loads there differ by cos(beta_b).
 """
 
 import math

@@ -48,6 +48,8 @@ class Flexibility3D:
     unknowns : int
     healthy : Flexibility3D or None
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
+    seam : Faces or None
+        The faces of its cracks, if they are to be kept from passing through each other; B is that of faces that may.
     """
 
     gear: Gear
@@ -58,6 +60,7 @@ class Flexibility3D:
     far: dict
     unknowns: int
     healthy: object = None
+    seam: object = None
 
     def basis(self, roll, z):
         """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
@@ -87,6 +90,32 @@ class Flexibility3D:
                 if kernel is not None:
                     out[np.ix_(own, theirs)] = rows[own] @ kernel @ rows[theirs].T
         return out
+
+    def opening(self, tooth, roll, z):
+        """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
+        tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z)
+        out = np.zeros((self.seam.influence.shape[0], tooth.size))
+        for number in np.unique(tooth).tolist():
+            if number in self.seam.opening:
+                own = tooth == number
+                out[:, own] = self.seam.opening[number] @ rows[own].T
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """Points at which the faces of cracks may touch, k of them.
+
+    Attributes
+    ----------
+    opening : dict of int to ndarray, shape (k, n)
+        Under the patches of that tooth.
+    influence : ndarray, shape (k, k)
+        Of unit forces that push the faces apart at these points [mm/N].
+    """
+
+    opening: dict
+    influence: np.ndarray
 
 
 def solved_teeth(gear, cracks, neighbours):
@@ -118,7 +147,7 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     -------
     Flexibility3D
     """
-    local = half_space(material) * _own(gear, width, degree)
+    local = half_space(material) * own_distance(gear, width, degree)
     cracked = healthy is not None
     near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
     far = {
@@ -127,7 +156,8 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy)
 
 
-def _own(gear, width, degree):
+@lru_cache(maxsize=8)
+def own_distance(gear, width, degree):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
     knots = hats(gear)
     roll = roll_at_arc(gear, knots.mean(axis=0))

@@ -94,7 +94,7 @@ def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
         raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
     if any(pits) and method not in (*CLOSED, *WIDE):
         raise ValueError(f"pits with method = {method!r}, a transverse section: use 'ritz3d', 'textbook' or 'published'")
-    if method != "fe3d":
+    if method not in WIDE:
         check_through([crack for own in cracks for crack in own], f"method = {method!r}")
     if teeth is not None and method != "fe":
         raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")

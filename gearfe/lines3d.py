@@ -29,8 +29,8 @@ class Cells:
 
     `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in `geometry.pair.Contacts`); `z`
     their middles along the width from the end at z = 0 [mm], `width` their extent along it [mm]; `depth` the distance from the
-    end that touches first [mm]; `nominal` the abscissa on the line of action [mm], `roll_1`, `roll_2` rolls of the touching
-    points [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0, or 1 or 2 for the gear whose tip corner
+    end that touches first [mm]; `nominal` the abscissa on the line of action [mm], `roll_1`, `roll_2` roll lengths where they
+    touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0, or 1 or 2 for the gear whose tip corner
     touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's [MPa], nan at a corner.
     """
 
@@ -178,9 +178,14 @@ def _covered(pair, pits, band, piece, slope):
     """Intervals of depth that pits take from a piece."""
     numbers = (piece.order, -piece.order)
     gears = (pair.gear_1, pair.gear_2)
+    middle = band[0] + math.copysign((piece.first + piece.last) / 2, band[1] - band[0])
     own = [
         [p for p in found if p.side == "loaded" and (p.tooth - number) % gear.z == 0]
         for gear, found, number in zip(gears, pits, numbers, strict=True)
+    ]
+    own = [
+        [p for p in found if abs(middle + offset - p.z) < p.reach[1] + (piece.last - piece.first) / 2]
+        for found, offset in zip(own, _offsets(pair), strict=True)
     ]
     if not any(own):
         return []
@@ -189,10 +194,9 @@ def _covered(pair, pits, band, piece, slope):
     at = (nominal, pair.mate_roll(nominal)) if piece.corner == 0 else touching(pair, nominal)[:2]
     z = band[0] + math.copysign(1.0, band[1] - band[0]) * depth
     covered = []
-    for gear, found, roll in zip(gears, own, at, strict=True):
-        offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    for gear, found, roll, offset in zip(gears, own, at, _offsets(pair), strict=True):
         for pit in found:
-            low, high = sorted(rolls(gear, pit))
+            low, high = _rolls(gear, pit)
             for k in range(depth.size - 1):
                 ends, heights = roll[k : k + 2], z[k : k + 2] + offset
                 apart = np.abs(heights.mean() - pit.z) > pit.reach[1] + np.ptp(heights) / 2
@@ -202,12 +206,23 @@ def _covered(pair, pits, band, piece, slope):
     return covered
 
 
+def _offsets(pair):
+    """Where the common width begins on both gears [mm]."""
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    return (pair.gear_1.b - common) / 2, (pair.gear_2.b - common) / 2
+
+
+@lru_cache(maxsize=256)
+def _rolls(gear, pit):
+    return sorted(rolls(gear, pit).tolist())
+
+
 def cells_of(pair, pieces, bands, slope, step):
     """`Cells` of the pieces of one phase, at most `step` [mm] along the width."""
     rows = []
     for piece in pieces:
         a, b = piece.first, piece.last
-        longest = min(step, (b - a) / BEYOND) if piece.corner and slope > 1e-12 else step
+        longest = min(step, max((b - a) / BEYOND, END * step)) if piece.corner and slope > 1e-12 else step
         fine = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
         edge = spaced(a, b, longest, fine, 1, GROWTH)
         middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)

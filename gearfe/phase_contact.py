@@ -1,11 +1,11 @@
-"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach closes the gap; their loads."""
+"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach reaches, and their loads."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 
-from .bodies3d import between
+from .bodies3d import between, faces_of
 from .cell_sharing import line_cells
 from .contact_cycle import overlap_ratio
 from .corner3d import CornerLaw
@@ -13,6 +13,7 @@ from .hertz import contact_modulus, half_width, peak_pressure
 from .lines3d import Cells, bands_of, beyond, cells_of, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
+ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
 REACH = 1.3  # gaps up to so many times the approach of the phase before are looked at first
 
 
@@ -52,7 +53,7 @@ class PhaseContact:
         return beyond(self.pair, reach) if self.extended else (0.0, 0.0)
 
     def solve(self, phase, bodies, reach=None):
-        """`Cells` with their loads, and the approach in the transverse section [mm].
+        """`Cells` with their loads, the approach in the transverse section [mm], and whether faces of a crack touched.
 
         Parameters
         ----------
@@ -71,9 +72,9 @@ class PhaseContact:
         while True:
             cells = self._cells(phase, reach)
             if cells is not None:
-                cells, approach = self._carried(cells, bodies)
+                cells, approach, closed = self._carried(cells, bodies)
                 if not self.extended or approach <= reach or reach > self.furthest:
-                    return cells, approach
+                    return cells, approach, closed
             if reach > self.furthest:
                 raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
             reach = 2 * reach if cells is None else approach  # fewer cells approach more: enough
@@ -87,12 +88,12 @@ class PhaseContact:
         return cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest))
 
     def _carried(self, cells, bodies):
-        """`Cells` with their loads under the whole force, and the approach [mm]; two halves alike are solved once."""
+        """What `solve` gives, under the whole force; two halves alike are solved once."""
         first = cells.half == 0
         if len(bodies) == 1 or not _same(*bodies) or not _alike(cells, first):
             return self._shared(cells, bodies, self.force)
-        half, approach = self._shared(_some(cells, first), bodies, self.force / 2)
-        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach
+        half, approach, closed = self._shared(_some(cells, first), bodies[:1], self.force / 2)
+        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach, closed
 
     def _shared(self, cells, bodies, force):
         cos = math.cos(self.beta_b)
@@ -105,13 +106,13 @@ class PhaseContact:
         if self.law is not None:
             at = self.law.ends(self.pair, cells)
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
-        load, approach = line_cells(
-            between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus,
-            block=cells.half, local=local,
-        )  # fmt: skip
+        case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
+        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies)}
+        load, approach = line_cells(*case, **options)
+        load, closed = load[: line.size], bool(load[line.size :].any())
         pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
         pressure[(cells.corner > 0) & (load > 0)] = np.nan
-        return replace(cells, load=load, pressure=pressure), approach / cos
+        return replace(cells, load=load, pressure=pressure), approach / cos, closed
 
 
 def _same(one, two):
@@ -120,8 +121,10 @@ def _same(one, two):
 
 def _alike(cells, first):
     one, two = _some(cells, first), _some(cells, ~first)
+    if one.z.size != two.z.size:
+        return False
     names = ("order", "width", "depth", "nominal")
-    return all(np.array_equal(getattr(one, name), getattr(two, name)) for name in names)
+    return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=ALIKE) for name in names)
 
 
 def _some(cells, which):

@@ -76,11 +76,10 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     """
     if not duration > 0:
         raise ValueError(f"duration = {duration} s, but it must be positive")
-    impact = scene.machine.get("contact") == "impact"
-    damage = (
-        [] if impact else [one for pair in scene.pairs.values() for found in pair.damage.get(case, {}).values() for one in found]
-    )
-    curves = "ritz3d" if any(isinstance(one, Pit) for one in damage) else "auto"  # one method for what is compared
+    found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
+    damage = [] if scene.machine.get("contact") == "impact" else found
+    along = any(isinstance(one, Pit) or not one.through for one in damage)
+    curves = "ritz3d" if along else "auto"  # one method for what is compared
     out = {}
     for name in ("healthy", *([case] if case else [])):
         made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)

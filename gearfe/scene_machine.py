@@ -102,7 +102,7 @@ def _impact_pair(scene, case, speed):
 def curves(pair, case, options):
     """Curve of a scene's pair over one cycle, and that of its damaged tooth's engagement (None if healthy), by one method."""
     damage = pair.damage.get(case, {})
-    if options["method"] == "auto" and any(isinstance(one, Pit) for found in damage.values() for one in found):
+    if options["method"] == "auto" and any(isinstance(one, Pit) or not one.through for found in damage.values() for one in found):
         options = options | {"method": "ritz3d"}
     healthy = mesh_stiffness(**pair.case(), **options)
     return healthy, mesh_stiffness(**pair.case(case), **options, span="tooth") if damage else None

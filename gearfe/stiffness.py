@@ -62,8 +62,9 @@ def mesh_stiffness(
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"}
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz`). ``ritz3d``: the same
         in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
-        (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``;
-        ``meta["why"]`` says why. ``fe``: finite elements of whole sections, the independent reference (`gearfe.fe`).
+        (`gearfe.contact3d`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says why. To
+        compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
+        sections, the independent reference (`gearfe.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.coupled`). All with line
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs

@@ -61,6 +61,8 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
             flat = own[np.isfinite(own)]
             pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
     used = found.load.max(axis=0) > 0
+    if any(cracks) and not brute:
+        meta = meta | {"crack_closed_phases": phase[list(found.closed)].tolist()}
     return StiffnessCurve(
         phase=phase,
         k=found.k,

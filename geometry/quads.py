@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .damage import check_apart, crack_path, mirrored, start_arc
+from .damage import check_apart, check_single, crack_path, mirrored, start_arc
 from .gear import Gear
 from .mesher import quadrangulate
 from .outline import spaced
@@ -110,8 +110,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     if not loaded or len({tooth % gear.z for tooth in loaded}) != len(loaded):
         raise ValueError(f"teeth {sorted(loaded)} are not distinct teeth of a gear of z = {gear.z}: name at least one, each once")
     check_apart(gear, cracks)
-    if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
-        raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
+    check_single(gear, cracks)
     teeth = [tooth % gear.z for tooth in loaded]
     for finer, algorithm in ATTEMPTS:
         edges = {name: value / refine / finer for name, value in size.items()}

@@ -256,6 +256,32 @@ def test_crack_lowers_a_spur_pair_as_in_the_plane():
     assert abs(other.k[1] / solid[0][1] - 1) < 0.1
 
 
+@pytest.mark.parametrize("side", ["loaded", "unloaded"])
+def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
+    """On a wide spur pair: the same phases as in the plane, and the same k within what wide spur pairs differ without cracks."""
+    pair, phases = pair_of(200.0, 0.0), np.array([-0.2, 0.1, 0.9, 1.7])
+    crack = gf.Crack(level=0.3, side=side)
+    plane = gf.mesh_stiffness(pair, 3e4, STEEL, phases=phases, method="ritz", damage={"pinion": [crack]})
+    solid = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0, cracks=((crack,), ()))
+    assert_allclose(solid.k, plane.k, rtol=4e-3)
+    assert phases[list(solid.closed)].tolist() == plane.meta["crack_closed_phases"]
+    healthy = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0)
+    assert (solid.k < 0.85 * healthy.k).any() == (side == "loaded")
+
+
+def test_crack_in_one_half_of_a_herringbone_pair():
+    """Each half bears its share at one approach: k is the sum of a healthy and a cracked half's at their own loads."""
+    pair, run = pair_of(24.0), {"order": 2, "axial": 6, "face": "herringbone", "phases": np.array([0.9])}
+    crack = gf.Crack(level=0.5)
+    cases = [(), (replace(crack, width=(0.0, 12.0)),), (replace(crack, width=(12.0, 24.0)),), (crack,)]
+    healthy, first, second, both = (pair_stiffness3d(pair, 3000.0, STEEL, cracks=(own, ()), **run).k[0] for own in cases)
+    assert_allclose(first, second, rtol=1e-9)
+    assert both < 0.97 * first < 0.97 * 0.97 * healthy
+    assert_allclose(first, (healthy + both) / 2, rtol=5e-3)
+    part = pair_stiffness3d(pair, 3000.0, STEEL, cracks=((replace(crack, width=(0.0, 6.0)),), ()), **run).k[0]
+    assert first < part < healthy
+
+
 def test_a_piece_that_vanishes_takes_its_load_with_it():
     """A short piece of line beside a long one: what it carries falls to nothing with its length."""
     edge = np.linspace(0, 10, 26)

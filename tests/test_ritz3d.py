@@ -9,8 +9,9 @@ from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import flexibility3d
+from gearfe import fe3d, flexibility3d
 from gearfe.energy import halfspace, panel3d, ritz, ritz3d
+from gearfe.energy.axial import axial
 from gearfe.hertz import half_plane, hat_logarithm
 from geometry.sector import sector
 from geometry.tooth import cartesian, flank, flank_normal, roll_at_arc
@@ -51,9 +52,11 @@ def test_rigid_motions_store_no_energy():
     made = sector(GEAR, sizes=coarse)
     made = replace(made, bulge={edge: 0 * curve for edge, curve in made.bulge.items()})  # nodes at the middles
     numbers, count, _ = panel3d._numbering(made, order)
-    body = panel3d._body(made, numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int))
+    body = panel3d._body(numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int), [])
     body.section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
-    body.axial = panel3d._axial(width, degree)
+    body.axial = axial(width, degree)
+    body.kind = np.zeros(body.size.size, dtype=int)
+    body.size = body.size * (degree + 1)
     stiffness = panel3d._leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
     straight = np.zeros((2, count))
     straight[:, numbers[:3]] = made.points[:, made.triangles]
@@ -123,6 +126,63 @@ def test_mirrored_helix_has_mirrored_flexibility():
     for one, two in ((left.near[0], right.near[0]), (left.far[0, 1], right.far[0, 1])):
         assert_allclose(two, sign[:, None] * one * sign, atol=1e-9 * np.abs(one).max())
         assert np.abs(two - one).max() > 1e-3 * np.abs(one).max()
+
+
+@pytest.mark.slow
+def test_a_crack_over_parts_of_the_width():
+    """From end to end it is the crack through the width; a longer part is softer; the mirrored one is the mirror image."""
+    gear, run = replace(GEAR, beta=0.0, b=10.0), {"order": 2, "axial": 8}
+    mean = np.ix_(*[np.arange(flexibility3d.PLACES) * 7] * 2)
+    healthy, through = (ritz3d.flexibility3d(gear, STEEL, own, **run).near[0][mean] for own in ((), (gf.Crack(level=0.5),)))
+    added = []
+    for width in ((0.0, 2.5), (0.0, 5.0), (0.0, 7.5), (0.0, 10.0)):
+        made = ritz3d.flexibility3d(gear, STEEL, (gf.Crack(level=0.5, width=width),), **run)
+        added.append(np.diag(made.near[0][mean] - healthy))
+        softer = np.linalg.eigvalsh(made.near[0] - ritz3d.flexibility3d(gear, STEEL, **run).near[0])
+        assert softer.min() > -0.01 * softer.max()
+    assert (np.diff(added, axis=0) > 0).all()
+    plane = ritz3d._missing(gear, STEEL, (gf.Crack(level=0.5),), 2, 1.0) - ritz3d._missing(gear, STEEL, (), 2, 1.0)
+    assert_allclose(added[-1], np.diag(through - healthy - plane), rtol=2e-3)
+    left, right = (
+        ritz3d.flexibility3d(gear, STEEL, (gf.Crack(level=0.5, width=width),), **run) for width in ((0.0, 4.0), (6.0, 10.0))
+    )
+    sign = np.tile((-1.0) ** np.arange(left.degree + 1), flexibility3d.PLACES)
+    assert_allclose(right.near[0], sign[:, None] * left.near[0] * sign, atol=1e-7 * np.abs(left.near[0]).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beta", [0.0, BETA])
+def test_what_half_a_crack_adds_is_that_of_hexahedra(beta):
+    """Under even and linear loads on two hats next to the tip; the hexahedra are short where the crack ends inside the gear."""
+    gear, crack = replace(GEAR, beta=beta, b=8.0), gf.Crack(level=0.5, width=(0.0, 4.0))
+    knots, modes = flexibility3d.hats(gear), 2
+    full = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))[-2:]
+    patches = fe3d.Patches((0,), knots[:, full], modes)
+    one = ritz3d._panel(gear, STEEL, (), 8.0, 3, 9, 1.0)
+    found = []
+    for own in ((), (crack,)):
+        panels = {0: ritz3d._panel(gear, STEEL, own, 8.0, 3, 9, 1.0), 1: one}
+        made = ritz._join(gear, panels, one)[0][0, 0].reshape(flexibility3d.PLACES, 10, flexibility3d.PLACES, 10)
+        scale = 1 / np.sqrt((2 * np.arange(modes) + 1) * gear.b)  # from orthonormal polynomials to those of unit resultant
+        model = np.einsum("iaia->ia", made)[full][:, :modes] * scale**2
+        mesh = fe3d.mesh_patches(gear, patches, cracks=own, refine=0.7, fine=[(4.0, 4.0, 0.2)])
+        found.append((model, np.einsum("iaia->ia", fe3d.influence(mesh, STEEL, patches).matrix[0, :, :, 0])))
+    added = np.array(found[1]) - np.array(found[0])
+    print(np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds;", np.round(100 * added[1] / found[0][1], 1))
+    assert (added[1] > 0.1 * found[0][1]).all()
+    assert_allclose(added[0], added[1], rtol=0.03)
+
+
+@pytest.mark.parametrize(
+    ("cracks", "message"),
+    [
+        ((gf.Crack(level=0.5, ends=(1.0, 0.5)),), "cracks of one depth"),
+        ((gf.Crack(level=0.5, width=(0, 3)), gf.Crack(level=0.3, width=(6, 9))), "cracks of different shape"),
+    ],
+)
+def test_cracks_the_energy_model_has_not(cracks, message):
+    with pytest.raises(ValueError, match=message):
+        ritz3d.flexibility3d(GEAR, STEEL, cracks)
 
 
 @pytest.mark.parametrize(

@@ -65,13 +65,22 @@ def cases():
     for level in (0.8, 0.95):
         crack = {"pinion": [gf.Crack(level=level)]}
         yield f"crack {100 * level:g} %", lambda crack=crack: {"pair": pair(), "phases": PITTED, "damage": crack}
-    yield (
-        "herringbone of 28 mm, groove 4 mm, crack 80 % in both halves",
-        lambda: {
-            "pair": pair(28.0), "phases": PITTED, "face": "herringbone", "groove": 4.0, "force": 2400.0,
-            "damage": {"pinion": [gf.Crack(level=0.8)]},
-        },
-    )  # fmt: skip
+    parts = {
+        "crack 80 %, half the width from the end z = 0": gf.Crack(level=0.8, width=(0.0, 6.0)),
+        "crack 80 %, the middle third of the width": gf.Crack(level=0.8, width=(4.0, 8.0)),
+        "crack 80 % on the unloaded side, pressed shut": gf.Crack(level=0.8, side="unloaded"),
+        "crack that runs out along the width": gf.Crack(level=0.8, ends=(1.0, 0.0)),
+    }
+    for name, crack in parts.items():
+        yield name, lambda crack=crack: {"pair": pair(), "phases": PITTED, "damage": {"pinion": [crack]}}
+    for name, width in (("both halves", None), ("one half only", (0.0, 12.0))):
+        yield (
+            f"herringbone of 28 mm, groove 4 mm, crack 80 % in {name}",
+            lambda width=width: {
+                "pair": pair(28.0), "phases": PITTED, "face": "herringbone", "groove": 4.0, "force": 2400.0,
+                "damage": {"pinion": [gf.Crack(level=0.8, width=width)]},
+            },
+        )  # fmt: skip
     yield "spur, b/m = 0.5", lambda: {"pair": pair(1.0, 0.0)}
     yield "b/m = 0.5", lambda: {"pair": pair(1.0)}
     for degrees in (0.0, 0.01, 45.0, 59.9, 60.0):
@@ -125,8 +134,8 @@ def run():
     lines += [
         "",
         "Thin helical gears are soft because their tooth force has an axial part, which bends a disc held at its bore; as thin",
-        "spur gears are not. Cracks run through the whole width, in herringbone gears through both halves: a crack in one half",
-        "only is not modelled. Rims are held outside: thinner ones are stiffer.",
+        "spur gears are not. Rims are held outside: thinner ones are stiffer. Where a pit takes all of a pair's contact line,",
+        "the next pairs carry the load beyond their path of contact, across the gap that their tip corners have there.",
     ]
     with written(PAGE) as name:
         Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")

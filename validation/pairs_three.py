@@ -24,9 +24,25 @@ COLUMNS = ("pair", "case", "refine", "dofs 1", "dofs 2", "seconds", "phase", "k 
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 100.0  # [N/mm]
 PHASES = 12  # of a mesh cycle, over the whole engagement of the damaged tooth
-MAIN, COARSE, FINE = 0.8, 0.55, 1.16  # resolutions; each about 1.45 times the one before
+MAIN, COARSE, FINE = 0.8, 0.55, 1.16  # resolutions, each about 1.45 times the one before; wide gears need more than the coarsest
 CASES = ("healthy", "crack 30 %", "crack 60 %", "7 pits")
 THREE = (("18/27", "healthy"), ("18/27", "crack 60 %"), ("12/20", "healthy"))  # with all three resolutions
+
+TEXT = f"""
+The finite elements (`method="fe3d"`, hexahedra of both whole gears) are in `tables/pairs_three.csv`; `--reference` computes what
+it lacks, case by case. {LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle over the whole engagement of the pinion's tooth 0,
+which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as lost contact.
+
+Mean and largest difference: `ritz3d` against the finest mesh, over all phases; bold beyond 0.5 % in the mean or 1 % at a phase.
+Last step: mean change of k from the mesh before to the finest, and the observed order of convergence where there are three.
+Drop: largest loss of k by the damage in the finite elements (resolution {MAIN:g}, or {COARSE:g} if there is no other), and by how
+much of itself that of `ritz3d` differs there and in the mean over the phases. Seconds: of the finest run, on a machine busy with
+other work; gears of earlier rows are known to it.
+
+What the table cannot show, because both have it: the contact lines, the half-space that is taken out of each patch, and the
+patches, 8 hats across the flank (along the width the finite elements have two more modes). With 12 narrower hats on finer
+triangles `ritz3d` finds k of the healthy 12/20 within 0.07 % of that with 8, but for two phases at the ends of the path, 0.3 %.
+"""
 
 
 def pairs():
@@ -63,14 +79,16 @@ def damage(pair, case):
 
 def curve(pair, case, **options):
     """Stiffness curve over the engagement of tooth 0."""
-    run = {"phases": PHASES, "span": "tooth", "damage": damage(pair, case)}
+    run = {"phases": PHASES, "span": "tooth", "damage": damage(pair, case), "extended": False}
     return gf.mesh_stiffness(pair, LOAD * pair.gear_1.b, STEEL, **(run | options))
 
 
 def wanted():
     """(pair, case, refine) of all runs, in order of importance."""
     every = [(name, case) for name in pairs() for case in CASES]
-    return [(*one, MAIN) for one in every] + [(*one, COARSE) for one in every] + [(*one, FINE) for one in THREE]
+    return (
+        [(*one, MAIN) for one in every] + [(*one, COARSE) for one in every if one[0] != "16/19"] + [(*one, FINE) for one in THREE]
+    )
 
 
 def stored():
@@ -135,8 +153,9 @@ def row(name, about, case, known, model):
         power = order(*(level["k"] for level in levels))
         step += f", order {power:.1f}" if power else ", no order"
     lost = ""
-    if case != "healthy" and (name, "healthy", MAIN) in known and (name, case, MAIN) in known:
-        healthy, damaged = (known[name, c, MAIN]["k"] for c in ("healthy", case))
+    both = [r for r in (MAIN, COARSE) if (name, "healthy", r) in known and (name, case, r) in known]
+    if case != "healthy" and both:
+        healthy, damaged = (known[name, c, both[0]]["k"] for c in ("healthy", case))
         loss, at_most, mean = drop(healthy, damaged, model["healthy"], model[case])
         lost = f"{100 * loss:.1f} % | {100 * at_most:+.1f} % | {100 * mean:+.1f} %"
     sizes = " / ".join(f"{sum(level['dofs']):,}" for level in levels)
@@ -152,15 +171,8 @@ def run():
     lines = [
         "# Pairs in three dimensions",
         "",
-        f"Made by `python -m validation pairs_three` on {machine.describe()}. The finite elements (`method='fe3d'`, hexahedra of",
-        "both whole gears) are in `tables/pairs_three.csv`; `--reference` computes what it lacks. Loads and phases:",
-        f"{LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle over the whole",
-        "engagement of the pinion's tooth 0, which bears the damage: full-width cracks, or 7 pits in a row at the pitch line.",
-        "Mean and largest difference: `ritz3d` against the finest mesh, over all phases. Last step: mean change of k from the",
-        "mesh before to the finest, and the observed order of convergence where there are three. Drop: largest loss of k by the",
-        f"damage in the finite elements (resolution {MAIN:g}), and by how much of itself that of `ritz3d` differs there and in",
-        "the mean over the phases. Seconds: of the finest run; gears of earlier rows are known to it. Both use the same contact",
-        "lines and the same patches; the bodies share only the drawing. Bold: beyond 0.5 % in the mean or 1 % at a phase.",
+        f"Made by `python -m validation pairs_three` on {machine.describe()}.",
+        *TEXT.strip().splitlines(),
         "",
         "| pair | case | unknowns, both gears | mean | largest | last step | drop | at most | mean drop | seconds |",
         "|---|---|---|---|---|---|---|---|---|---|",
@@ -168,8 +180,8 @@ def run():
     for name, (about, pair) in pairs().items():
         model = {}
         for case in CASES:
-            if (name, case, MAIN) in known:
-                model[case] = curve(pair, case, method="ritz3d", phases=known[name, case, MAIN]["phase"]).k
+            if any((name, case, resolution) in known for resolution in (MAIN, COARSE)):
+                model[case] = curve(pair, case, method="ritz3d").k
                 lines.append(row(name, about, case, known, model))
                 print(lines[-1], flush=True)
     with written(PAGE) as name:

@@ -6,8 +6,9 @@ In the frame that turns with the helix no coefficient depends on z: with x = R(w
     xx = v1_X, yy = v2_Y, zz = (D v)_3, xy = v1_Y + v2_X, xz = (D v)_1 + v3_X, yz = (D v)_2 + v3_Y
 
 so that the stiffness is exactly ``K00 x M + K01 x C + K01' x C' + K11 x Dz`` of three matrices of the plane section and three of
-the axial polynomials f: ``M = int f f'``, ``C = int f df'``, ``Dz = int df df'``. One polynomial over the whole width spans the
-same space in any basis; the orthonormal Legendre polynomials make M the identity and the loads those of each mode.
+the axial polynomials f: ``M = int f f'``, ``C = int f df'``, ``Dz = int df df'`` (`axial`). The two nodes that face each other
+in a crack open over a part of the width are replaced by their mean and their distance: the mean has the functions of all other
+nodes, the distance those of the opening.
 """
 
 import math
@@ -16,19 +17,22 @@ from types import SimpleNamespace
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import block_diag, cholesky, solve_triangular
+from scipy.linalg.blas import dsyrk
 
 from geometry.tooth import arc_at, flank_normal, roll_at_arc
 from geometry.triangle import BULGE, jacobians, lagrange, table
 
-from .halfspace import modes
+from .axial import axial
 from .panel import Panel, _numbering
 
 LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
+CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
+NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
-def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False):
+def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False, parts=(), tree=None):
     """Reduce a sector to its two helicoidal sides.
 
     Parameters
@@ -46,31 +50,118 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False)
         Of the polynomials in the section and along the width.
     plane : bool
         The transverse section as if it were a spur gear's: with degree 0 and width 1 it is in plane strain.
+    parts : tuple
+        Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
+    tree : tuple, optional
+        Of `dissect`.
 
     Returns
     -------
     Panel
         Unknowns are node by node, polar components (radial, tangential, axial), modes innermost; loads hat by hat, modes
-        innermost. Its `own` is the full displacement with the sides held, nothing taken out.
+        innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
+        at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
     numbers, count, chain = _numbering(sector, order)
     tilt = 0.0 if plane else gear.beta_b
     load = _hats(gear, sector, chain, count, knots, order, tilt)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
-    body = _body(sector, numbers, order, load, sides, chain(sector.held))
+    parts = parts or (None,) * len(sector.faces)
+    along = axial(width, degree, parts, gear.m_n)
+    apart, owner = (np.zeros((count, 3, 0)), []) if plane else _apart(sector, chain, count)
+    seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
+    seams = list(zip(seams[::2], seams[1::2], strict=True))
+    body = _body(numbers, order, np.concatenate([load, apart], axis=2), sides, chain(sector.held), seams)
     body.section = _section(sector, order, material, 0.0 if plane else math.tan(gear.beta) / gear.r)
-    body.axial = _axial(width, degree)
-    body.size[:] *= degree + 1
-    ids, matrix = _front(body, np.arange(numbers.shape[1]))
+    body.axial = along
+    kind = np.zeros(body.size.size, dtype=int)  # which functions along the width
+    for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):
+        kind[_near(gear, sector, body, sector.faces[i])] = 3 + 3 * i
+        kind[right] = 1 + 3 * i
+    kind[sides] = 0
+    kind[body.first_load + knots.shape[1] :] = [2 + 3 * i for i in owner]
+    body.kind = kind
+    body.size = body.size * np.array([own.size for own in along.sets])[kind]
+    ids, matrix = _front(body, dissect(sector) if tree is None else tree)
     at = _places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
     border = 3 * sides.size * (degree + 1)
     angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sides.size // 2)
     edge = _polar(angle, _polar(angle, matrix[:border, :border]).T)
     push = _polar(angle, matrix[:border, border:])
-    own = -matrix[border:, border:]
-    empty = np.zeros((border, 0)), np.zeros((0, own.shape[0])), np.zeros((0, 0))
-    return Panel((edge + edge.T) / 2, push, (own + own.T) / 2, *empty, 3 * count * (degree + 1))
+    own = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
+    n = knots.shape[1] * (degree + 1)
+    points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
+    return Panel(
+        stiffness=(edge + edge.T) / 2,
+        push=push[:, :n],
+        own=own[:n, :n],
+        open_push=push[:, n:] @ points.T,
+        open_own=points @ own[n:, :n],
+        open_open=points @ own[n:, n:] @ points.T,
+        unknowns=3 * count * (degree + 1),
+    )
+
+
+def _apart(sector, chain, count):
+    """Forces ``(count, 3, k)`` that push facing nodes of the cracks apart, and the crack of each; those next to tips left out."""
+    columns, owner = [], []
+    for i, (left, right) in enumerate(sector.faces):
+        places = sector.points[:, left]
+        ahead = np.diff(places, axis=1)
+        lengths = np.hypot(*ahead)
+        normal = np.array([-ahead[1], ahead[0]]) / lengths
+        pairs = np.array([chain(left), chain(right)])[:, :-1]
+        each = pairs.shape[1] // lengths.size
+        to_tip = np.cumsum(lengths[::-1])[::-1]
+        for k in range(pairs.shape[1]):
+            if to_tip[k // each] > NEAR_TIP * lengths.sum():
+                force = np.zeros((count, 3))
+                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // each], -normal[:, k // each]
+                columns.append(force)
+                owner.append(i)
+    return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
+
+
+def _near(gear, sector, body, face):
+    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack."""
+    line = sector.points[:, face[0]]
+    part = np.arange(8) / 8
+    line = (line[:, :-1, None] + np.diff(line, axis=1)[..., None] * part).reshape(2, -1)
+    away = np.hypot(*(sector.points[:, :, None] - line[:, None, :])).min(axis=1)
+    close = (away < CLOSE * gear.m_n)[sector.triangles].any(axis=0)
+    return np.unique(body.numbers[:, close])
+
+
+def dissect(sector):
+    """Nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty where few are left."""
+    centre = sector.points[:, sector.triangles].mean(axis=1)
+
+    def parted(own):
+        if own.size <= LEAF:
+            return own, (), ()
+        one, two = _halves(sector.triangles, centre, own)
+        return own, parted(one), parted(two)
+
+    return parted(np.arange(sector.triangles.shape[1]))
+
+
+def _halves(triangles, centre, own):
+    """Two parts of a set of triangles, on both sides of the straight cut through the fewest vertices."""
+    fewest, halves = np.inf, None
+    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])
+    for turn in np.arange(CUTS) * math.pi / CUTS:
+        order = own[np.argsort(np.array([math.cos(turn), math.sin(turn)]) @ centre[:, own], kind="stable")]
+        found, place = np.unique(triangles[:, order], return_inverse=True)
+        rank = np.broadcast_to(np.arange(own.size), (3, own.size)).ravel()
+        first, last = np.full(found.size, own.size), np.zeros(found.size, dtype=int)
+        np.minimum.at(first, place.ravel(), rank)
+        np.maximum.at(last, place.ravel(), rank)
+        shared = ((first < cuts[:, None]) & (last >= cuts[:, None])).sum(axis=1)
+        best = int(shared.argmin())
+        if shared[best] < fewest:
+            fewest, halves = shared[best], (order[: cuts[best]], order[cuts[best] :])
+    return halves
 
 
 def _polar(angle, matrix):
@@ -78,17 +169,6 @@ def _polar(angle, matrix):
     sin, cos = np.sin(angle)[:, None], np.cos(angle)[:, None]
     x, y, z = matrix.reshape(angle.size, 3, -1).transpose(1, 0, 2)
     return np.stack([sin * x + cos * y, cos * x - sin * y, z], axis=1).reshape(matrix.shape)
-
-
-def _axial(width, degree):
-    """``M, C, Dz`` of the modes over the width."""
-    gauss, weight = legendre.leggauss(degree + 1)
-    value = modes((1 + gauss) / 2 * width, width, degree)
-    scale = np.sqrt((2 * np.arange(degree + 1) + 1) / width) * 2 / width
-    slope = legendre.legvander(gauss, degree)[:, :degree] @ legendre.legder(np.eye(degree + 1)) if degree else 0 * value
-    slope = slope * scale
-    weight = (weight * width / 2)[:, None]
-    return np.eye(degree + 1), value.T @ (weight * slope), slope.T @ (weight * slope)
 
 
 def _section(sector, order, material, twist):
@@ -147,10 +227,12 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     return out
 
 
-def _body(sector, numbers, order, load, sides, held):
+def _body(numbers, order, load, sides, held, seams):
     """All that the elimination looks up.
 
-    It numbers the nodes from 0, then the insides of the triangles, and the loads from `first_load`; `size` is in modes.
+    It numbers the nodes from 0, then the insides of the triangles, and the loads from `first_load`; `size` is in modes. `touch`
+    are the numbers a triangle is coupled to; in `seams`, pairs of facing nodes, the first number stands for their mean and the
+    second for their distance.
     """
     count, _, n = load.shape
     triangles = numbers.shape[1]
@@ -162,35 +244,41 @@ def _body(sector, numbers, order, load, sides, held):
     stays, there = np.zeros(first_load + n, dtype=bool), np.ones(first_load + n, dtype=bool)
     stays[sides] = stays[first_load:] = True
     there[held] = False
+    partner = np.arange(first_load)
+    for left, right in seams:
+        partner[left], partner[right] = right, left
+    touch = [np.union1d(own, partner[own]) for own in every.T]
     return SimpleNamespace(
         numbers=every,
-        centre=sector.points[:, sector.triangles].mean(axis=1),
+        touch=touch,
+        seams=seams,
         owner=owner,
         load=np.concatenate([load, np.zeros((first_load - count, 3, n))]),
         first_load=first_load,
         size=np.append(np.full(first_load, 3), np.ones(n, dtype=int)),
-        uses=np.bincount(every.ravel(), minlength=first_load + n),
+        uses=np.bincount(np.concatenate(touch), minlength=first_load + n),
         stays=stays,
         there=there,
     )
 
 
-def _front(body, own):
+def _front(body, tree):
     """What a set of triangles is to the rest: numbers of the nodes and loads still coupled, and the matrix between them.
 
     Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
     unknowns that stay: at the end their block is minus the displacements under each other.
     """
-    parts = ()
-    if own.size <= LEAF:
-        ids = np.unique(body.numbers[:, own])
-        loads = body.load[ids[np.isin(body.owner[ids], own)]].any(axis=(0, 1))
+    parts, own = (), tree[0]
+    if not tree[1]:
+        nodes = np.unique(body.numbers[:, own])
+        loads = body.load[nodes[np.isin(body.owner[nodes], own)]].any(axis=(0, 1))
+        ids = np.unique(np.concatenate([body.touch[k] for k in own.tolist()]))
         ids = np.append(ids, body.first_load + np.flatnonzero(loads))
     else:
-        parts = [_front(body, half) for half in _halves(body, own)]
+        parts = [_front(body, half) for half in tree[1:]]
         ids = np.union1d(parts[0][0], parts[1][0])
     ids = ids[body.there[ids]]
-    used = np.bincount(body.numbers[:, own].ravel(), minlength=body.size.size)
+    used = np.bincount(np.concatenate([body.touch[k] for k in own.tolist()]), minlength=body.size.size)
     gone = (used[ids] == body.uses[ids]) & ~body.stays[ids]
     ids = np.append(ids[gone], ids[~gone])
     matrix = np.zeros((body.size[ids].sum(),) * 2) if parts else _leaf(body, own, ids)
@@ -200,9 +288,16 @@ def _front(body, own):
     if first:
         lower = cholesky(matrix[:first, :first], lower=True, check_finite=False)
         across = solve_triangular(lower, matrix[:first, first:], lower=True, check_finite=False)
-        matrix = matrix[first:, first:]
-        matrix -= across.T @ across
+        matrix = matrix[first:, first:] - _square(across)
     return ids[gone.sum() :], matrix
+
+
+def _square(across):
+    """``across' across``, half of it computed."""
+    upper = dsyrk(1.0, across, trans=1)
+    out = upper + upper.T
+    out[np.diag_indices_from(out)] /= 2
+    return out
 
 
 def _add(matrix, part, at):
@@ -212,19 +307,6 @@ def _add(matrix, part, at):
     for source, rows in runs:
         for across, columns in runs:
             matrix[rows, columns] += part[source, across]
-
-
-def _halves(body, own):
-    """Two parts of a set of triangles, on both sides of the straight cut through the fewest nodes."""
-    fewest, halves = np.inf, None
-    for turn in np.arange(CUTS) * math.pi / CUTS:
-        order = own[np.argsort(np.array([math.cos(turn), math.sin(turn)]) @ body.centre[:, own], kind="stable")]
-        for part in PARTS:
-            here = max(1, round(part * own.size))
-            cut = np.intersect1d(body.numbers[:, order[:here]], body.numbers[:, order[here:]]).size
-            if cut < fewest:
-                fewest, halves = cut, (order[:here], order[here:])
-    return halves
 
 
 def _places(body, ids, wanted):
@@ -237,20 +319,70 @@ def _places(body, ids, wanted):
 
 def _leaf(body, own, ids):
     """Matrix of a few triangles between `ids`: the section's is assembled first, then multiplied by the axial ones."""
-    nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load] - body.first_load
+    raw = np.unique(body.numbers[:, own])
+    nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
     index = np.full(body.first_load, -1)
-    index[nodes] = np.arange(nodes.size)
-    plane = np.zeros((3, 3 * nodes.size, 3 * nodes.size))
+    index[raw] = np.arange(raw.size)
+    plane = np.zeros((3, 3 * raw.size, 3 * raw.size))
     for triangle in own:
         at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        used = np.flatnonzero(at >= 0)
-        plane[(slice(None), *np.ix_(at[used], at[used]))] += body.section[:, triangle][(slice(None), *np.ix_(used, used))]
-    one, slope, both = body.axial
-    first = 3 * nodes.size * one.shape[0]
-    out = np.zeros((first + loads.size * one.shape[0],) * 2)
-    mixed = np.kron(plane[1], slope)
-    out[:first, :first] = np.kron(plane[0], one) + mixed + mixed.T + np.kron(plane[2], both)
-    here = np.where(np.isin(body.owner[nodes], own)[:, None, None], body.load[nodes], 0.0)[:, :, loads]
-    out[:first, first:] = np.kron(here.reshape(3 * nodes.size, loads.size), one)
-    out[first:, :first] = out[:first, first:].T
+        plane[(slice(None), *np.ix_(at, at))] += body.section[:, triangle]
+    here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
+    turn = _seamed(body, raw, nodes)
+    here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
+    if np.isin(turn, (0.0, 1.0)).all():
+        at = (3 * np.searchsorted(raw, nodes)[:, None] + np.arange(3)).ravel()
+        plane = plane[:, at[:, None], at]
+    else:
+        turn = np.kron(turn, np.eye(3))
+        plane = turn.T @ plane @ turn
+    return _times(body, plane, here, nodes, loads)
+
+
+def _seamed(body, raw, nodes):
+    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves; others are themselves."""
+    out = (raw[:, None] == nodes).astype(float)
+    for left, right in body.seams:
+        mean, apart = (nodes == pair[:, None] for pair in (left, right))
+        for k in np.flatnonzero(mean.any(axis=1)):
+            for side, sign in ((left[k], 0.5), (right[k], -0.5)):
+                row = raw == side
+                if row.any():
+                    out[row] = mean[k] + sign * apart[k]
     return out
+
+
+def _times(body, plane, here, nodes, loads):
+    """The section's matrices and loads multiplied by those of the functions along the width, set by set."""
+    along, ids = body.axial, np.append(nodes, loads)
+    start = np.cumsum(body.size[ids]) - body.size[ids]
+    out = np.zeros((body.size[ids].sum(),) * 2)
+    kinds = np.unique(body.kind[nodes]).tolist()
+    groups = {}
+    for kind in kinds:
+        own = np.flatnonzero(body.kind[nodes] == kind)
+        size = along.sets[kind].size
+        rows = (start[own][:, None] + np.arange(3 * size)).ravel()
+        groups[kind] = along.sets[kind], (3 * own[:, None] + np.arange(3)).ravel(), rows
+    for f, at, rows in groups.values():
+        for g, others, columns in groups.values():
+            both = np.ix_(at, others)
+            block = np.kron(plane[0][both], along.mass[np.ix_(f, g)]) + np.kron(plane[2][both], along.slope[np.ix_(f, g)])
+            block += np.kron(plane[1][both], along.mixed[np.ix_(f, g)])
+            block += np.kron(plane[1].T[both], along.mixed.T[np.ix_(f, g)])
+            _put(out, rows, columns, block)
+        for k, load in enumerate(loads.tolist()):
+            pushed = along.sets[body.kind[load]]
+            first = start[nodes.size + k]
+            block = np.kron(here[at, k][:, None], along.mass[np.ix_(f, pushed)])
+            out[rows, first : first + pushed.size] = block
+            out[first : first + pushed.size, rows] = block.T
+    return out
+
+
+def _put(out, rows, columns, block):
+    """Write a block, at once if it is the top left of `out`."""
+    if rows[-1] == rows.size - 1 and columns[-1] == columns.size - 1:
+        out[: rows.size, : columns.size] = block
+    else:
+        out[np.ix_(rows, columns)] = block

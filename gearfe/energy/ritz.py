@@ -11,6 +11,7 @@ from numbers import Integral
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
+from scipy.linalg import cholesky, solve_triangular
 
 from geometry.damage import check_through
 from geometry.outline import stations
@@ -130,7 +131,8 @@ def _join(gear, panels, healthy):
             pushes[tooth] = slice(sum(p.shape[1] for p in loads), sum(p.shape[1] for p in loads) + push.shape[1])
             loads.append(push)
     loads = np.hstack(loads)
-    between = loads.T @ np.linalg.solve(total, loads)
+    halved = _halved(total, loads)
+    between = halved.T @ halved
     n = healthy.push.shape[1]
     for tooth in teeth:
         at, one = pushes[tooth], panels[tooth]
@@ -160,10 +162,16 @@ def _pair(one, two):
     h = one.shape[0] // 2
     middle = one[h:, h:] + two[:h, :h]
     coupling = np.hstack([one[h:, :h], two[:h, h:]])
-    out = -coupling.T @ np.linalg.solve(middle, coupling)
+    halved = _halved(middle, coupling)
+    out = -halved.T @ halved
     out[:h, :h] += one[:h, :h]
     out[h:, h:] += two[h:, h:]
     return (out + out.T) / 2
+
+
+def _halved(stiffness, loads):
+    """``L**-1 loads`` of ``stiffness = L L'``: its square is the displacement of the loads under each other."""
+    return solve_triangular(cholesky(stiffness, lower=True, check_finite=False), loads, lower=True, check_finite=False)
 
 
 def _limits(gear):

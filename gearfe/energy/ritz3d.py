@@ -5,19 +5,19 @@ patches on the flank; see `gearfe.flexibility3d` for what is made of them.
 """
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 from numbers import Integral
 
 import numpy as np
 
-from geometry.damage import check_through
 from geometry.sector import sector
 
-from ..flexibility3d import PLACES, hats, parted, solved_teeth
+from ..flexibility3d import PLACES, Faces, hats, parted, solved_teeth
 from ..hertz import half_plane, hat_logarithm
 from . import ritz
 from .halfspace import hat_points
-from .panel3d import panel3d
+from .panel3d import dissect, panel3d
 
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.sector.SIZES`
@@ -44,8 +44,8 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
         held over the whole width, the end faces free.
     material : Material
     cracks : tuple of Crack
-        Through the whole width, parallel to the teeth. Their faces may pass through each other. Their `tooth` counts to the
-        loaded side of this gear.
+        Parallel to the teeth, open over the whole width or parts of it, not sloping. Their `tooth` counts to the loaded side of
+        this gear.
     width : float, optional
         [mm], default ``gear.b``.
     neighbours : int
@@ -64,7 +64,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     Raises
     ------
     ValueError
-        If an option is out of range.
+        If an option is out of range, or a crack's depth changes along the width.
     """
     width = float(gear.b if width is None else width)
     if not (math.isfinite(width) and width > 0):
@@ -77,8 +77,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     options = (width, int(order), int(axial), float(refine))
     if not cracks:
         return _healthy(gear, material, min(neighbours, gear.z - 1), *options)
-    check_through(cracks, "the energy model")
-    return _cracked(gear, material, tuple(cracks), min(neighbours, gear.z - 1), *options)
+    return _cracked(gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
 
 
 def axial_degree(width, m_n):
@@ -101,24 +100,60 @@ def _cracked(gear, material, cracks, neighbours, *options):
     return _joined(gear, material, panels, one, found, *options, _healthy(gear, material, neighbours, *options))
 
 
+def _even(cracks):
+    """Cracks open over their whole length; ValueError if one is not so over all of its width."""
+    for crack in cracks:
+        if crack.ends != (1.0, 1.0):
+            raise ValueError(
+                f"crack open over parts {crack.ends} of its length, but the energy model has cracks of one depth: give "
+                "ends = (1, 1) and the level they have there, or use method = 'fe3d'"
+            )
+    return tuple(cracks)
+
+
+def _seams(cracks):
+    """Cracks of one tooth as the section has them, and where along the width each is open (None: everywhere).
+
+    Raises
+    ------
+    ValueError
+        If cracks on one side of a tooth are not parts of one crack.
+    """
+    found = {}
+    for crack in cracks:
+        found.setdefault(replace(crack, width=None), []).append(crack.width)
+    sides = [crack.side for crack in found]
+    if len(set(sides)) < len(sides):
+        raise ValueError(
+            f"cracks of different shape on the {sides[0]} side of a tooth: the energy model has one section for all of them; "
+            "give them the same level, start and angle, or use method = 'fe3d'"
+        )
+    return tuple(found), tuple(None if None in widths else tuple(widths) for widths in found.values())
+
+
 @lru_cache(maxsize=16)
 def _panel(gear, material, cracks, width, order, axial, refine):
-    return panel3d(gear, _sector(gear, cracks, refine), material, hats(gear), width, order=order, degree=axial)
+    shapes, parts = _seams(cracks)
+    section, tree = _sector(gear, shapes, refine)
+    options = {"order": order, "degree": axial, "parts": parts, "tree": tree}
+    return panel3d(gear, section, material, hats(gear), width, **options)
 
 
 @lru_cache(maxsize=16)
 def _plane_panel(gear, material, cracks, order, refine):
-    options = {"order": order, "degree": 0, "plane": True}
-    return panel3d(gear, _sector(gear, cracks, refine), material, hats(gear), 1.0, **options)
+    section, tree = _sector(gear, cracks, refine)
+    options = {"order": order, "degree": 0, "plane": True, "tree": tree}
+    return panel3d(gear, section, material, hats(gear), 1.0, **options)
 
 
 @lru_cache(maxsize=16)
 def _sector(gear, cracks, refine):
-    return sector(gear, cracks, refine=refine, sizes=SIZES)
+    made = sector(gear, cracks, refine=refine, sizes=SIZES)
+    return made, dissect(made)
 
 
 def _joined(gear, material, panels, one, cracks, width, order, axial, refine, healthy):
-    influence, _ = ritz._join(gear, panels, one)
+    influence, opening = ritz._join(gear, panels, one)
     degree = max(axial - LOST, 0)
     kept = (np.arange(PLACES)[:, None] * (axial + 1) + np.arange(degree + 1)).ravel()
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
@@ -127,8 +162,13 @@ def _joined(gear, material, panels, one, cracks, width, order, axial, refine, he
         influence[tooth, tooth] = influence[tooth, tooth] + np.kron(missing, np.eye(degree + 1))
     even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
     for tooth, own in cracks.items():
-        influence[tooth, tooth][even] += _missing(gear, material, own, order, refine) - missing
-    return parted(gear, material, width, degree, influence, sum(p.unknowns for p in panels.values()), healthy)
+        if all(crack.through for crack in own):
+            influence[tooth, tooth][even] += _missing(gear, material, own, order, refine) - missing
+    made = parted(gear, material, width, degree, influence, sum(p.unknowns for p in panels.values()), healthy)
+    if not cracks:
+        return made
+    faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
+    return replace(made, seam=faces)
 
 
 @lru_cache(maxsize=64)
