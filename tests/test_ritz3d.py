@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe import fe3d, flexibility3d
-from gearfe.energy import halfspace, panel3d, ritz, ritz3d
+from gearfe.energy import elimination, halfspace, panel3d, ritz, ritz3d
 from gearfe.energy.axial import axial
 from gearfe.hertz import half_plane, hat_logarithm
 from geometry.sector import sector
@@ -52,12 +52,12 @@ def test_rigid_motions_store_no_energy():
     made = sector(GEAR, sizes=coarse)
     made = replace(made, bulge={edge: 0 * curve for edge, curve in made.bulge.items()})  # nodes at the middles
     numbers, count, _ = panel3d._numbering(made, order)
-    body = panel3d._body(numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int), [])
+    body = elimination.body_of(numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int), [])
     body.section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
     body.axial = axial(width, degree)
     body.kind = np.zeros(body.size.size, dtype=int)
     body.size = body.size * (degree + 1)
-    stiffness = panel3d._leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
+    stiffness = elimination.leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
     straight = np.zeros((2, count))
     straight[:, numbers[:3]] = made.points[:, made.triangles]
     for k, (a, b) in enumerate(ENDS):

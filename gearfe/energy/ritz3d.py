@@ -16,8 +16,9 @@ from geometry.sector import sector
 from ..flexibility3d import PLACES, Faces, hats, parted, solved_teeth
 from ..hertz import half_plane, hat_logarithm
 from . import ritz
+from .elimination import dissect
 from .halfspace import hat_points
-from .panel3d import dissect, panel3d
+from .panel3d import panel3d
 
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.sector.SIZES`
