@@ -61,9 +61,24 @@ def element_stiffness(nodes, lam, mu):
     """
     points, weight = gauss(3)
     slopes, size = slopes_at(nodes, shapes(points)[1])
-    count = nodes.shape[2]
-    rows = slopes.reshape(count, 60, -1)
-    product = ((rows * (size * weight)[:, None, :]) @ rows.transpose(0, 2, 1)).reshape(count, 20, 3, 20, 3)
+    return stiffness_of(slopes, size * weight, lam, mu)
+
+
+def stiffness_of(slopes, volume, lam, mu):
+    """Stiffness matrices ``(m, k, 3, k, 3)`` [N/mm] of elements with k nodes.
+
+    Parameters
+    ----------
+    slopes : ndarray, shape (m, k, 3, q)
+        Of the shape functions at Gauss points [1/mm].
+    volume : ndarray, shape (m, q)
+        That each point stands for [mm**3].
+    lam, mu : float
+        Lame constants [MPa].
+    """
+    count, nodes = slopes.shape[:2]
+    rows = slopes.reshape(count, 3 * nodes, -1)
+    product = ((rows * volume[:, None, :]) @ rows.transpose(0, 2, 1)).reshape(count, nodes, 3, nodes, 3)
     local = lam * product + mu * product.transpose(0, 1, 4, 3, 2)
     trace = mu * np.trace(product, axis1=2, axis2=4)
     for d in range(3):
@@ -71,7 +86,7 @@ def element_stiffness(nodes, lam, mu):
     return local
 
 
-def assemble(points, cells, material, free):
+def assemble(points, cells, material, free, element=element_stiffness):
     """Lower triangle of the stiffness matrix of the nodes `free`, every node's x, y, z together [N/mm].
 
     Parameters
@@ -82,6 +97,8 @@ def assemble(points, cells, material, free):
     material : Material
     free : ndarray
         Nodes that can move, ascending.
+    element : callable
+        From nodes ``(3, k, m)`` and Lame constants to stiffness matrices, for elements of k nodes.
 
     Returns
     -------
@@ -93,7 +110,7 @@ def assemble(points, cells, material, free):
     keys, blocks = [], []
     for start in range(0, cells.shape[1], CHUNK):
         part = cells[:, start : start + CHUNK]
-        local = element_stiffness(points[:, part], lam, mu).transpose(0, 1, 3, 2, 4)
+        local = element(points[:, part], lam, mu).transpose(0, 1, 3, 2, 4)
         place = number[part].T
         row, column = np.broadcast_arrays(place[:, :, None], place[:, None, :])
         wanted = (row >= column) & (column >= 0)

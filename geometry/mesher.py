@@ -302,3 +302,127 @@ def quadrangulate(points, lines, surfaces, algorithm=8):
     place[found[~known]] = points.shape[1] + np.arange((~known).sum())
     points = np.hstack([points, coords.reshape(-1, 3)[~known, :2].T])
     return points, place[np.concatenate(cells)].T, np.repeat(np.arange(len(cells)), [len(c) for c in cells])
+
+
+@dataclass(frozen=True, slots=True)
+class Pieces:
+    """Tets of an extruded section, cut into pieces that share their nodes.
+
+    `points` (3, n) [mm]; `tets` (4, m) right-handed; `face` (m,) the face of the section a tet stands on; `plug` (m,) the
+    cylinder it is in, -1 outside of all; `volume` [mm**3] by (face, plug), that of the boundary representation.
+    """
+
+    points: np.ndarray
+    tets: np.ndarray
+    face: np.ndarray
+    plug: np.ndarray
+    volume: dict
+
+
+def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None, far, growth=0.5):
+    """Tets of an extruded section, with elliptic cylinders cut out and kept as pieces of their own.
+
+    Parameters
+    ----------
+    points : ndarray, shape (2, n)
+        Of the section [mm].
+    curves : list of (str, sequence of int)
+        ``line`` or ``arc`` (about the origin) between two points, ``spline`` through all of them.
+    faces : list of list of int
+        Numbers of the curves around each face; faces may share curves.
+    height : float
+        [mm].
+    cylinders : sequence of (ndarray, ndarray, ndarray)
+        Centre (3,) of a disk, its half axes (3, 2), by which vector (3,) it is pushed [mm]. What lies outside of the solid is
+        dropped; where cylinders overlap the first one has it.
+    fine : sequence of (float, float, float, float)
+        Circles of the section: x, y, radius and the edge length within [mm].
+    rim : float, optional
+        Edge length on the cylinders' edges [mm].
+    far : float
+        Largest edge length [mm].
+    growth : float
+        Of the edge length per length, away from fine places.
+
+    Returns
+    -------
+    Pieces
+    """
+    with gmsh_session() as gmsh:
+        occ, mesh = gmsh.model.occ, gmsh.model.mesh
+        tags = [occ.addPoint(x, y, 0.0) for x, y in points.T]
+        centre = occ.addPoint(0.0, 0.0, 0.0)
+        make = {
+            "line": lambda at: occ.addLine(*at),
+            "arc": lambda at: occ.addCircleArc(at[0], centre, at[1]),
+            "spline": lambda at: occ.addSpline(at),
+        }
+        lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
+        flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop])]) for loop in faces]
+        prisms = [next(one for one in occ.extrude([(2, face)], 0, 0, height) if one[0] == 3) for face in flat]
+        plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
+        if len(prisms) + len(plugs) > 1:
+            _, made = occ.fragment(prisms[:1], prisms[1:] + plugs)
+        else:
+            made = [prisms]
+        owner, outside = {}, set()
+        for face, own in enumerate(made[: len(prisms)]):
+            owner |= {tag: (face, -1) for _, tag in own}
+        for plug, own in reversed([*enumerate(made[len(prisms) :])]):
+            outside |= {tag for _, tag in own if tag not in owner}
+            owner |= {tag: (owner[tag][0], plug) for _, tag in own if tag in owner}
+        occ.remove([(3, tag) for tag in outside], recursive=True)
+        occ.remove([(0, centre)])
+        occ.synchronize()
+        volume = {}
+        for tag, piece in owner.items():
+            volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
+        inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
+        _sizes(gmsh, inner, fine, rim, far, growth)
+        mesh.generate(3)
+        found, coords, _ = mesh.getNodes()
+        place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
+        place[found] = np.arange(found.size)
+        cells = {piece: [] for piece in volume}
+        for tag, piece in owner.items():
+            cells[piece].append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4))
+    tets = np.concatenate([part for parts in cells.values() for part in parts])
+    label = np.repeat([*cells], [sum(map(len, parts)) for parts in cells.values()], axis=0)
+    used, tets = np.unique(tets, return_inverse=True)
+    return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
+
+
+def _cylinder(occ, centre, axes, push):
+    """Volume swept by an elliptic disk."""
+    size = np.linalg.norm(axes, axis=0)
+    axes, size = axes[:, np.argsort(-size)], np.sort(size)[::-1]
+    normal = np.cross(axes[:, 0], axes[:, 1])
+    disk = occ.addDisk(*centre, *size, zAxis=normal / np.linalg.norm(normal), xAxis=axes[:, 0] / size[0])
+    return next(one for one in occ.extrude([(2, disk)], *push) if one[0] == 3)
+
+
+def _sizes(gmsh, inner, fine, rim, far, growth):
+    """Background field: edge lengths that grow away from circles of the section and from the edges of pieces."""
+    field = gmsh.model.mesh.field
+    numbers = []
+    for x, y, radius, size in fine:
+        numbers.append(field.add("MathEval"))
+        away = f"sqrt((x-({x}))^2+(y-({y}))^2)-{radius}"
+        field.setString(numbers[-1], "F", f"{size}+{growth / 2}*(({away})+abs({away}))")
+    if inner:
+        edges = gmsh.model.getBoundary(
+            gmsh.model.getBoundary(inner, combined=False, oriented=False), combined=False, oriented=False
+        )
+        near = field.add("Distance")
+        field.setNumbers(near, "CurvesList", sorted({abs(tag) for dim, tag in edges if dim == 1}))
+        field.setNumber(near, "Sampling", 40)
+        numbers.append(field.add("Threshold"))
+        for name, value in (("InField", near), ("SizeMin", rim), ("SizeMax", far), ("DistMin", 0.0)):
+            field.setNumber(numbers[-1], name, value)
+        field.setNumber(numbers[-1], "DistMax", (far - rim) / growth)
+    least = field.add("Min")
+    field.setNumbers(least, "FieldsList", numbers)
+    field.setAsBackgroundMesh(least)
+    for name, value in (("MeshSizeMax", far), ("MeshSizeFromPoints", 0), ("MeshSizeExtendFromBoundary", 0)):
+        gmsh.option.setNumber(f"Mesh.{name}", value)
+    gmsh.option.setNumber("Mesh.Algorithm3D", 1)
