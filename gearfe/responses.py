@@ -142,7 +142,7 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
 
 
 def _lines(mesh, fault, turning, carrier, resolution):
-    """Expected lines: of the fault twice with two mesh harmonics, of the gear's turning (alone: as of the fault), of the carrier."""
+    """Expected lines of the fault with two mesh harmonics, of the gear's turning (alone: as of a fault) and of the carrier."""
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     if turning is not None:
         own = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
