@@ -37,6 +37,7 @@ def test_compiled_loop_is_the_same(monkeypatch):
     cases = [
         two_masses(error=((1e-6, 500.0, 0.3),)),
         two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5),
+        two_masses(error=((1e-6, 500.0, 0.3),), beta=1e-6, load=lambda t: 800 + 300 * np.sin(600 * t)),
         two_masses(load=pulses(500.0, 3000.0, 4e-3, 1e-3, 4), film=0.2, backlash=1e-4, beta=1e-6),
         two_masses(
             load=lambda t: 800 + 300 * np.sin(600 * t), backlash=np.inf, power=1.5, depth=5e-5, push=True, stiffness=300 * WAVE

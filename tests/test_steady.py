@@ -44,6 +44,20 @@ def test_multipliers_against_a_general_integrator():
     assert_allclose(np.sort_complex(got), np.sort_complex(want), rtol=1e-5)
 
 
+def test_multipliers_with_damping_in_proportion_to_stiffness():
+    """``m x'' + k(t) (x + beta x') = 0``, whose compressions and rates the fast path carries as one."""
+    k, frequency, beta = 1e8 * (1 + 0.3 * np.cos(2 * math.pi * np.arange(2048) / 2048)), 2900.0, 3e-6
+    got = floquet(single_mesh(1.0, k, frequency, beta=beta), dt=1 / frequency / 200)
+
+    def rate(t, y):
+        now = 1e8 * (1 + 0.3 * math.cos(2 * math.pi * frequency * t))
+        return [y[1], -now * (y[0] + beta * y[1])]
+
+    ends = [solve_ivp(rate, (0, 1 / frequency), start, "DOP853", rtol=1e-12, atol=1e-14).y[:, -1] for start in ([1, 0], [0, 1])]
+    want = np.linalg.eigvals(np.array(ends).T)
+    assert_allclose(np.sort_complex(got), np.sort_complex(want), rtol=1e-5)
+
+
 def test_steady_state_is_where_the_transient_ends():
     machine = two_masses(c=2000.0, zeta=0.1, error=((3e-6, 500.0, 0.3),))
     found = steady_state(machine, dt=2.5e-5)
