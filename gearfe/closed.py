@@ -113,7 +113,7 @@ def _set(out, values):
         out[i] = values[i]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def _changing(load, flat, values):
     """Loads with more than one knot."""
     place = 0

@@ -20,7 +20,7 @@ def _cubic(cells, place, count, at):
     return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def lookup(flat, t, k, e, rate, weight, load):
     """Fill in what acts at time t."""
     for i in range(k.size):
