@@ -59,34 +59,34 @@ def _run(E, Y, S, T, F, P, add, push, k0, damping, flat, z, h, start, every, sta
     y, x, x0, new = np.zeros(2 * m), np.zeros(m), np.dot(P, z), push.copy()
     k, e, rate, weight = np.zeros(m), np.zeros(m), np.zeros(m), np.zeros(0)
     every_load, load = np.zeros(flat.knot_place.size - 1), np.zeros(f - m)
-    slope, shift = np.zeros((2, m)), np.zeros((2, f))
+    slope, shift, before, after = np.zeros(m), np.zeros(f), y[:m], y[m:]
+    new_z, new_x, added = new[:n2], new[n2:], add[m:]
     lookup(flat, start, k, e, rate, weight, every_load)
     _changing(load, flat, every_load)
-    _lines(slope[1], shift[1], k0, damping, k, e, rate, load)
+    _lines(slope, shift, k0, damping, k, e, rate, load)
     states[0] = z
     for step in range((len(states) - 1) * every):
-        slope[0], shift[0] = slope[1], shift[1]
-        y[:] = add
+        _set(y, add)
         add_columns(y, Y, z)
-        _affine(f1, slope[0], x0, shift[0])
+        _affine(f1, slope, x0, shift)  # still those of the end of the step before
         lookup(flat, start + h * (step + 0.5), k, e, rate, weight, every_load)
         _changing(load, flat, every_load)
-        _lines(slope[1], shift[1], k0, damping, k, e, rate, load)
-        x[:] = y[:m]
+        _lines(slope, shift, k0, damping, k, e, rate, load)
+        _set(x, before)
         add_columns(x, S, f1)
-        _affine(f2, slope[1], x, shift[1])
-        x[:] = y[:m]
+        _affine(f2, slope, x, shift)
+        _set(x, before)
         add_columns(x, S, f2)
-        _affine(f3, slope[1], x, shift[1])
+        _affine(f3, slope, x, shift)
         lookup(flat, start + h * (step + 1), k, e, rate, weight, every_load)
         _changing(load, flat, every_load)
-        _lines(slope[1], shift[1], k0, damping, k, e, rate, load)
-        x[:] = y[m:]
+        _lines(slope, shift, k0, damping, k, e, rate, load)
+        _set(x, after)
         add_columns(x, T, f13)
-        _affine(f4, slope[1], x, shift[1])
+        _affine(f4, slope, x, shift)
         for i in range(f):
             f3[i] += f2[i]
-        new[:] = push
+        _set(new, push)
         add_columns(new, F, f134)
         if size == 2:
             for j in range(blocks):
@@ -97,17 +97,23 @@ def _run(E, Y, S, T, F, P, add, push, k0, damping, flat, z, h, start, every, sta
             for i in range(n2):
                 for j in range(n2):
                     new[i] += E[0, i, j] * z[j]
-        z[:] = new[:n2]
+        _set(z, new_z)
         for i in range(m):  # the loads in y are those of x4, in new those of the end
-            x0[i] = new[n2 + i] + y[m + i] - add[m + i]
+            x0[i] = new_x[i] + after[i] - added[i]
         if step % 64 == 0 and not np.isfinite(np.sum(z)):
             return step
         if (step + 1) % every == 0:
-            states[(step + 1) // every] = z
+            _set(states[(step + 1) // every], z)
     return (len(states) - 1) * every if np.isfinite(np.sum(z)) else (len(states) - 1) * every - 1
 
 
 @njit(cache=True, error_model="numpy")
+def _set(out, values):
+    for i in range(out.size):
+        out[i] = values[i]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
 def _changing(load, flat, values):
     """Loads with more than one knot."""
     place = 0
