@@ -21,6 +21,7 @@ CRACKS = (0.1, 0.6)
 GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # pits of a case and crack: a case of the scene
 SUN, TURNING = "sunL.x", "sunL.theta acceleration"
 UM = 1e6
+ROUNDING = 1e-9  # um: what cancels leaves 1e-13
 
 
 def speeds():
@@ -113,7 +114,7 @@ def _record(case):
 def _range(case):
     """Least and largest sun displacement along x [um]."""
     x = UM * signal(_record(case), SUN).values
-    return float(x.min()), float(x.max())
+    return tuple(float(end) if abs(end) > ROUNDING else 0.0 for end in (x.min(), x.max()))
 
 
 def displacement_upper():
@@ -139,7 +140,8 @@ def measured_range():
 def healthy_spectrum():
     """Of the sun along x [um]."""
     found, mesh = spectrum(signal(_record(None), SUN)), speeds()[2]
-    return {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
+    lines = {f"{n} f_m" if n > 1 else "f_m": UM * amplitude(found, n * mesh) for n in (1, 2, 3)}
+    return {name: value if value > ROUNDING else 0.0 for name, value in lines.items()}
 
 
 def largest_displacement():
