@@ -151,10 +151,10 @@ def _row(file, where, table, reference, pairs):
 
 def printed_stiffness(scene, pair, case=None):
     """Lines of text with the stiffnesses [N/m] that the sources of a scene print for a pair in a case (None: healthy)."""
-    out = []
+    out, damaged = [], scene.pair(pair).damage
     for one in scene.references:
         for row in one.rows if one.unit == "N/m" else ():
-            if (row.pair, row.case) == (pair, case or "healthy"):
+            if row.pair == pair and (row.case == case if case else row.case not in damaged):
                 more = "" if row.corrected is None else f"; {row.corrected:.4g} N/m after a correction: {row.correction}"
                 out.append(f"printed, {one.quantity}: {row.value:.4g} N/m ({one.source}){more}")
     return out

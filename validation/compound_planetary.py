@@ -1,9 +1,11 @@
 """The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
 
 import math
+from fractions import Fraction
 from functools import cache
 
 import numpy as np
+from scipy.signal import resample_poly
 
 import gearfe as gf
 from gearfe.compound import compound_planetary
@@ -21,7 +23,7 @@ PAIRS = {
     "s2_ring_planet": "planet_ring_2",
 }
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
-FINER = 5  # samples of the simulation between two of S2, averaged: its recorder has a filter
+SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
 NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
 SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
 
@@ -148,11 +150,18 @@ def _made(case):
 
 
 @cache
+def _whole(case):
+    """Angular acceleration of the ring as simulated."""
+    return signal(record(_made(case), SECONDS, SAMPLED, SETTLE), SENSOR)
+
+
+@cache
 def heard(case):
-    """Angular acceleration of the ring at the rate of S2."""
-    whole = signal(record(_made(case), SECONDS, FINER * RATE, SETTLE), SENSOR)
-    mean = whole.values[: whole.values.size // FINER * FINER].reshape(-1, FINER).mean(axis=1)
-    return gf.Signal(mean, RATE, whole.unit, case or "healthy")
+    """The same behind an anti-aliasing filter, at the rate of S2."""
+    ratio = Fraction(round(RATE), round(SAMPLED))
+    values = resample_poly(_whole(case).values, ratio.numerator, ratio.denominator)
+    cut = slice(round(0.05 * RATE), round((SECONDS - 0.05) * RATE))  # where the filter has its whole length
+    return gf.Signal(values[cut], RATE, _whole(case).unit, case or "healthy")
 
 
 @cache
@@ -194,7 +203,7 @@ def _stands_out(found, frequency, low=5.0, high=60.0):
 
 def _sideband(case, mesh, fault):
     """Amplitude of the first sidebands of a stage over its mesh line, without noise."""
-    found = spectrum(heard(case))
+    found = spectrum(_whole(case))
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
@@ -204,13 +213,13 @@ def statements():
     grown = [_sideband(case, mesh[1], fault[1]) for case in LEVELS.values()]
     healthy = _sideband(None, mesh[1], fault[1])
     one = _sideband("sun 1", mesh[0], fault[0]), _sideband(None, mesh[0], fault[0])
-    found = spectrum(heard(None))
-    size = sum(amplitude(found, n * f) ** 2 for f in mesh for n in range(1, 13))
+    found = spectrum(_whole(None))
+    size = sum(amplitude(found, n * f) ** 2 for f in mesh for n in range(1, 141))
     squared = {case: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for case in ("sun 1", "crack80")}
     sun, planet = scene(NAME).gears["sun"], scene(NAME).gears["planet"]
     return {
         "root circles smaller than base circles (external gears)": sun.r_f < sun.r_b and planet.r_f < planet.r_b,
-        "healthy: only mesh frequencies and their harmonics": size / 2 > 0.99 * heard(None).values.var(),
+        "healthy: only mesh frequencies and their harmonics": size / 2 > 0.99 * _whole(None).values.var(),
         "crack in sun 1: sidebands f_m1 +- 16.8 Hz": one[0] > 10 * one[1],
         "crack in sun 2: sidebands f_m2 +- 18.2 Hz": grown[3] > 10 * healthy,
         "sidebands grow with the crack": bool((np.diff(grown[:4]) > 0).all()),
@@ -249,7 +258,7 @@ def draw(folder):
     (one, two), (slow, quick) = frequencies()
     lines = {"f_m1": one, "f_m2": two, "f_m1 - f_1": one - slow, "f_m2 + f_2": two + quick, "2 f_m1": 2 * one, "2 f_m2": 2 * two}
     cases = {"healthy": None, "sun 1, 80 %": "sun 1", "sun 2, 30 %": "crack30", "sun 2, 80 %": "crack80"}
-    spectra = {name: spectrum(heard(case)) for name, case in cases.items()}
+    spectra = {name: spectrum(_whole(case)) for name, case in cases.items()}
     plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70)
 
 

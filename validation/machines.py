@@ -3,6 +3,7 @@
 import importlib
 import time
 import warnings
+from functools import cache
 from pathlib import Path
 
 import gearfe as gf
@@ -48,6 +49,12 @@ def computed(page, names):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return [row for one in references(page) if one.id in names for row in verdicts.judge(one, found[one.id]())]
+
+
+@cache
+def cheap(page):
+    """Rows of a page that need no simulation, by id, case and pair, computed once."""
+    return {row[:3]: row for row in computed(page, set(functions(page, quick=True)))}
 
 
 def text(page):

@@ -120,7 +120,7 @@ def _printed_chord(pair, phase, pit: Pit):
 
 def line_length():
     """Shortest and longest total contact line; with pits the shortest."""
-    _, ours, _ = lengths(2000)
+    _, ours, _ = lengths()
     out = {"double contact, no pits": ours["healthy"].max(), "single contact, no pits": ours["healthy"].min()}
     return out | {f"{case}, least": ours[case].min() for case in CASES}
 
@@ -222,7 +222,8 @@ def statements():
 
 
 PICTURES = {
-    "planetary_pitting_lines": "Contact line of the pitted sun tooth, with S0's half chord dashed",
+    "planetary_pitting_lines": "Total contact line of the pitted sun tooth, with S0's half chord dashed "
+    "(tables/planetary_pitting_lines.csv)",
     "planetary_pitting_spectra": "Force of a sun mesh, without impacts",
 }
 
@@ -233,6 +234,9 @@ def draw(folder):
 
     phase, ours, printed = lengths()
     plot_lengths(phase, ours, printed, folder / "planetary_pitting_lines.png")
+    names = ["phase", *(f"L {name} [mm]" for name in ours), *(f"L {name} by S0's chord [mm]" for name in printed)]
+    columns = np.transpose([phase, *ours.values(), *printed.values()])[::4]
+    np.savetxt(folder / "tables" / "planetary_pitting_lines.csv", columns, "%.6g", ",", header=",".join(names), comments="")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
     plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=70)

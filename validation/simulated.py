@@ -10,6 +10,8 @@ import gearfe as gf
 from gearfe.dynamics import default_step
 from gearfe.machine import pulses
 
+PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
+
 
 @cache
 def scene(name):
@@ -20,7 +22,7 @@ def scene(name):
 @cache
 def machine(name, case=None, method="ritz3d"):
     """Machine of a scene in a case of damage; one method for all that is compared."""
-    return gf.build_machine(scene(name), case, method=method)
+    return gf.build_machine(scene(name), case, method=method, phases=PHASES.get(name, 64))
 
 
 @cache
