@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.damage import Crack
-from geometry.holes import Holed, holed_sector
+from geometry.holes import Holed, holed_sector, skin
 from geometry.pit import Pit
 from geometry.solid import twist_rate
 from geometry.tooth import arc_at, flank_normal
 
 from .contact3d import Contact3D, pair_stiffness3d
+from .fields import Field
 from .hexahedron import assemble, stiffness_of
 from .inputs import by_gear, overlap, two_materials
 from .material import Material
@@ -24,6 +25,7 @@ from .solver import factor, plan
 SPREAD = 0.15  # of the load to either side of its line, in modules
 EDGES = ((0, 1), (1, 2), (0, 2), (0, 3), (1, 3), (2, 3))  # of a tet with a node in the middle, in VTK's order
 INNER, OUTER = (5 + 3 * math.sqrt(5)) / 20, (5 - math.sqrt(5)) / 20  # Gauss points of a tet, exact for squares
+BEND = math.radians(40)  # edges at which the surface bends by more are drawn
 PARTS = 5  # a loaded triangle is cut into the square of so many
 
 
@@ -64,12 +66,6 @@ class Pressed:
     extra: np.ndarray
     unknowns: int
 
-    @property
-    def mises(self):
-        """Von Mises stress ``(phases, n)`` [MPa]."""
-        xx, yy, zz, xy, yz, xz = self.stress.transpose(1, 0, 2)
-        return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
-
 
 def pressed_tooth(
     pair, force, material, damage, *, phases=None, face=None, groove=0.0, refine=1.0, teeth=3, removal=False, sizes=None, tell=None
@@ -79,7 +75,8 @@ def pressed_tooth(
     Parameters
     ----------
     pair, force, material, damage, face, groove
-        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone.
+        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone. Without any it is
+        tooth 0 of the pinion.
     phases : array, optional
         Default: the one of 16 at which the damaged tooth carries most.
     refine, teeth, sizes
@@ -103,14 +100,14 @@ def pressed_tooth(
     materials = two_materials(material)
     face = face or ("helical" if pair.gear_1.beta else "spur")
     cracks, pits = by_gear(pair, damage)
-    which = [i for i in (0, 1) if cracks[i] or pits[i]]
-    if len(which) != 1 or len(cracks[which[0]]) > 1:
+    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
+    if len(which) > 1 or len(cracks[which[0]]) > 1:
         raise ValueError("give pits, one crack or both, of one tooth of one gear: holes are cut into one tooth")
     side = which[0]
     gear, half, own_pits = _own(pair, side, face, groove, pits[side])
     crack = next(iter(cracks[side]), None)
     sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
-    tooth = next(one.tooth for one in (*pits[side], *cracks[side]))
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
     contact = _contact(pair, force, materials, phases, pits, cracks, face, groove, (1, -1)[side] * tooth)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
@@ -127,6 +124,38 @@ def pressed_tooth(
     load = np.array([sum(part[3].sum() for part in found.get(0, ())) for found in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
     return Pressed(sector, nodes, kept, contact, ("pinion", "wheel")[side], load, moved, stress, extra, unknowns)
+
+
+def tooth_field(pressed, phase=0):
+    """`gearfe.fields.Field` of the gear with holes at one of its phases, without the nodes inside of the pits."""
+    sector = pressed.sector
+    there, cells = np.unique(pressed.cells, return_inverse=True)
+    cells = cells.reshape(pressed.cells.shape)
+    place = np.full(pressed.nodes.shape[1], -1)
+    place[there] = np.arange(there.size)
+    points, moved = pressed.nodes[:, there], pressed.moved[phase][:, there]
+    body, tooth = (place[sector.faces.get(f"crack {name}", np.zeros((3, 0), dtype=int))] for name in ("body", "tooth"))
+    opening = np.linalg.norm(moved[:, tooth] - moved[:, body], axis=0).max(initial=0.0)
+    made = points, "tetra10", cells, moved, pressed.stress[phase][:, there], _edges(points, cells)
+    field = Field(*made, 0.0, float(opening))
+    return replace(field, root=float(field.mises[place[sector.faces["fillets 0"]]].max()))
+
+
+def _edges(points, cells):
+    """Pieces ``(2, k)`` of the edges at which the surface of tets bends by more than `BEND`."""
+    faces = skin(cells[:4])
+    a, b, c = points[:, faces].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a, axis=0)
+    normal /= np.linalg.norm(normal, axis=0)
+    sides = np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]])
+    order = np.lexsort(sides)
+    first, second = order[::2] % faces.shape[1], order[1::2] % faces.shape[1]
+    sharp = sides[:, order[::2]][:, np.abs((normal[:, first] * normal[:, second]).sum(axis=0)) < math.cos(BEND)]
+    middle = {}
+    for k, (i, j) in enumerate(EDGES):
+        middle |= dict(zip(map(tuple, np.sort(cells[[i, j]], axis=0).T.tolist()), cells[4 + k].tolist(), strict=True))
+    half = np.array([middle[tuple(side)] for side in sharp.T.tolist()], dtype=int)
+    return np.hstack([[sharp[0], half], [half, sharp[1]]])
 
 
 def _own(pair, side, face, groove, pits):

@@ -1,82 +1,236 @@
 """Pictures of stress fields (pyvista), without a screen."""
 
+import contextlib
 import ctypes
 import math
 import os
 import sys
+from pathlib import Path
 
 import numpy as np
 
-from geometry.mesher import section
-from geometry.outline import stations
-from geometry.tooth import arc_at
-
-from .elasticity import Body, von_mises
 from .export import written
-from .fe import EDGES, flank_load
-from .hertz import contact_modulus, half_width
-from .stiffness import mesh_stiffness
+from .fields import MISES, loaded_phase, stressed_gears, write_vtu
+from .holed import pressed_tooth, tooth_field
 
-STRESS = "von Mises stress [MPa]"
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
 )
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
+OPENING = 0.12  # of a crack in a picture, in modules
+STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
+DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
+FINE = {"tooth": 0.22, "fillet": 0.2, "tip": 0.1, "rim": 0.3}  # edge lengths of such a picture, see geometry.holes.SIZES
+# corners and middles of a second-order tet (VTK's order) to eight tets
+EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
 
-def render_stress(scene_pair, path, *, phase=0.0, size=(1400, 1050), refine=1.0):
-    """Render von Mises stress of both gears around the loaded teeth to a PNG, without a screen.
+def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050), refine=1.0, title=""):
+    """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
 
-    The contact forces are those of `mesh_stiffness` at `phase`; each presses with Hertz's ellipse on a surface meshed for
-    it.
+    Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.
+    Helical and herringbone gears and pits: the damaged tooth in three dimensions, pits as holes, with the load of the pair
+    along its contact lines (`gearfe.holed`). Displacements are enlarged if there is a crack, so that it opens; the picture says
+    how much.
 
     Parameters
     ----------
     scene_pair : ScenePair
     path : path
-        A ``.png`` file.
-    phase : float
+        A ``.png`` file, or ``.vtu``: mesh, displacement and stress.
+    case : str, optional
+        Case of damage of the pair; default healthy.
+    phase : float, optional
+        Mesh phase; default where the damaged tooth carries most, 0 for healthy spur gears.
     size : tuple of int
         Pixels.
+    refine : float
+        Divides the edge lengths.
+    title : str
+        First line of the text in the picture.
 
     Returns
     -------
-    float
-        Largest von Mises stress in the picture [MPa].
+    dict
+        What is shown: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        ``enlarged`` (by which displacements are), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
 
     Raises
     ------
     RuntimeError
         If pyvista or a renderer is missing; the message names what to install.
     """
+    suffix = Path(path).suffix
+    if suffix not in (".png", ".vtu"):
+        raise ValueError(f"output {path}: give a .png or a .vtu file")
+    if suffix == ".png":
+        _pyvista()
+    damage = scene_pair.case(case).get("damage")
+    wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
+    told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
+    told["text"] = _text(title or (case or ""), told)
+    if suffix == ".vtu":
+        write_vtu(path, fields)
+    else:
+        (_draw_tooth if wide else _draw_gears)(scene_pair.pair, fields, told, path, size)
+    return told
+
+
+def _gears(scene_pair, damage, phase, refine):
+    phase = loaded_phase(scene_pair, damage) if phase is None else phase
+    fields = stressed_gears(scene_pair, phase, refine, damage)
+    scale = enlarged(max(field.opening for field in fields), scene_pair.pair.gear_1.m_n)
+    return fields, {"phase": phase, "load": scene_pair.force, "enlarged": scale, "where": "on the pair"}
+
+
+def _tooth(scene_pair, damage, phase, refine):
+    phases = None if phase is None else [phase]
+    options = {"phases": phases, "face": scene_pair.face, "groove": scene_pair.groove, "refine": refine, "sizes": FINE}
+    made = pressed_tooth(scene_pair.pair, scene_pair.force, scene_pair.materials, damage, **options)
+    field = tooth_field(made)
+    told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
+    return [field], told | {"enlarged": enlarged(field.opening, made.sector.gear.m_n)}
+
+
+def enlarged(opening, module):
+    """Factor of displacements in a picture that opens a crack by about `OPENING` modules; 0 without a crack: not drawn."""
+    if opening <= 0:
+        return 0
+    power = math.floor(math.log10(OPENING * module / opening))
+    return int(max(1, max(s * 10.0**power for s in STEPS if s * 10.0**power <= OPENING * module / opening * (1 + 1e-9))))
+
+
+def _text(title, told):
+    lines = [title, f"phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}"]
+    if told["enlarged"]:
+        lines.append(f"displacements x {told['enlarged']}, which opens the crack")
+    return "\n".join(line for line in lines if line)
+
+
+def _pyvista():
     try:
         import pyvista
     except ImportError as error:
         raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
     _choose_window()
-    grids, outlines, root = stressed_gears(scene_pair, phase, refine)
-    largest = max(float(grid.point_data[STRESS].max()) for grid in grids)
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
+    return pyvista
+
+
+@contextlib.contextmanager
+def _picture(path, size, text, top):
+    """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
+    pyvista = _pyvista()
+    from pyvista.plotting.colors import get_cmap_safe
+
+    bright = get_cmap_safe("turbo")(np.linspace(0.07, 0.97, 256), bytes=True)
+    colours = ["#{:02x}{:02x}{:02x}".format(*row[:3]) for row in bright]
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
     try:
         plotter.set_background("white")
-        for grid, outline in zip(grids, outlines, strict=True):
-            actor = plotter.add_mesh(grid, scalars=STRESS, clim=[0, 1.1 * root], cmap="turbo", show_scalar_bar=False)
-            plotter.add_mesh(outline, color="black", line_width=2)
-        bar = {"color": "black", "background_color": "white", "fill": True, "position_x": 0.2, "width": 0.6, "fmt": "%.0f"}
-        plotter.add_scalar_bar(title=STRESS, mapper=actor.mapper, n_labels=6, title_font_size=22, label_font_size=20, **bar)
-        pair = scene_pair.pair
-        focus = (0.5 * pair.gear_1.m_n, pair.pitch_radius_1, 0)
-        plotter.view_xy()
-        plotter.camera.focal_point = focus
-        plotter.camera.position = (*focus[:2], 1)
-        plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = 3.6 * pair.gear_1.m_n
+        look = {"scalars": MISES, "clim": [0, top], "cmap": colours, "above_color": "#6b0000", "show_scalar_bar": False}
+        yield plotter, look
+        scale = size[1] / 1050
+        mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
+        fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
+        place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
+        plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
+        plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
+        words = plotter.actors[next(reversed(plotter.actors))].prop
+        words.SetFontSize(round(28 * scale))
+        words.SetVerticalJustificationToTop()
+        words.SetBackgroundColor(1.0, 1.0, 1.0)
+        words.SetBackgroundOpacity(0.8)
+        plotter.enable_anti_aliasing("ssaa")
         with written(path) as name:
             plotter.screenshot(name)
     finally:
         plotter.close()
-    return largest
+
+
+def _grid(field, scale):
+    """Pyvista grid of a field, displaced."""
+    import pyvista
+
+    kind = {"triangle6": pyvista.CellType.QUADRATIC_TRIANGLE, "tetra10": pyvista.CellType.QUADRATIC_TETRA}[field.kind]
+    grid = pyvista.UnstructuredGrid({kind: field.cells.T}, (field.points + scale * field.moved).T)
+    grid.point_data[MISES] = field.mises
+    return grid
+
+
+def _lines(field, scale, kept=None, lift=0.0):
+    import pyvista
+
+    pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
+    cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
+    return pyvista.PolyData((field.points + scale * field.moved).T + [0, 0, lift], lines=cells)
+
+
+def _round_up(value):
+    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
+
+
+def _draw_gears(pair, fields, told, path, size):
+    """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
+    scale, shown, focus = told["enlarged"], fields, (0.5 * pair.gear_1.m_n, pair.pitch_radius_1)
+    if scale:
+        shown = [field for field in fields if field.opening > 0]
+    with _picture(path, size, told["text"], _round_up(max(field.root for field in shown))) as (plotter, look):
+        for k, field in enumerate(shown):
+            plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
+            plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
+        for field in fields if scale else ():
+            plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
+        plotter.view_xy()
+        plotter.camera.focal_point = (*focus, 0)
+        plotter.camera.position = (*focus, 1)
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = (2.6 if scale else 3.6) * pair.gear_1.m_n
+
+
+def _draw_tooth(pair, fields, told, path, size):
+    """The loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
+    import pyvista
+
+    (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
+    x, y, z = field.points
+    rate = math.tan(gear.beta) / gear.r
+    angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
+    deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
+    linear = np.hstack([field.cells[list(part)] for part in EIGHT])
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: linear.T}, (field.points + scale * field.moved).T)
+    for name, values in ((MISES, field.mises), ("pitch", angle), ("deep", deep)):
+        grid.point_data[name] = values
+    for name, value, invert in (("pitch", 0.5, True), ("pitch", -0.5, False), ("deep", -DEEP, False)):
+        grid = grid.clip_scalar(scalars=name, value=value, invert=invert)
+    surface = grid.extract_surface(algorithm="dataset_surface").compute_normals(feature_angle=50, split_vertices=True)
+    turn = rate * gear.b / 2
+    out = np.array([math.cos(turn), -math.sin(turn), 0.0])
+    up = gear.outward * np.array([math.sin(turn), math.cos(turn), 0.0])
+    view = out + 0.45 * up + np.array([0, 0, 0.6])
+    view /= np.linalg.norm(view)
+    right = np.cross(up, view) / np.linalg.norm(np.cross(up, view))
+    plane = np.array([right, np.cross(view, right)])  # of the picture
+    low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
+    focus = plane.T @ ((low + high) / 2) + [0, 0, 0]
+    room = np.array([0.82 * size[0] / size[1], 0.78])  # text above, colour bar on the right
+    with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
+        plotter.add_mesh(surface, name="stress", ambient=0.55, diffuse=0.5, specular=0.0, **look)
+        kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
+        plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
+        half = ((high - low) / room).max() / 2
+        focus = focus + plane.T @ np.array([0.06 * half * size[0] / size[1], 0.12 * half])
+        plotter.camera.focal_point = focus
+        plotter.camera.position = focus + 200 * gear.m_n * view
+        plotter.camera.up = plane[1]
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = half
+        light = focus + 200 * gear.m_n * (view + 0.7 * up)
+        plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
+        plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
 
 
 def _choose_window():
@@ -91,76 +245,3 @@ def _choose_window():
         os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = window
         return
     raise RuntimeError(f"no display, and neither of {', '.join(OFFSCREEN)} can be loaded: {RENDERER_HELP}")
-
-
-def stressed_gears(scene_pair, phase=0.0, refine=1.0):
-    """Both gears in mesh at `phase` as pyvista grids with nodal displacement [mm] and von Mises stress [MPa].
-
-    Returns
-    -------
-    grids, outlines : lists of pyvista data sets, pinion first
-    root : float
-        Largest von Mises stress on the loaded fillets [MPa].
-    """
-    import pyvista
-
-    pair, materials = scene_pair.pair, scene_pair.materials
-    curve = mesh_stiffness(pair, scene_pair.force, materials, method="ritz", phases=[phase])
-    found = pair.contacts([phase])
-    forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
-    carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]
-    nominal = found.nominal[0, carrying[0][0]] - carrying[0][1] * pair.p_bt
-    modulus = contact_modulus(materials)
-    grids, outlines, root = [], [], 0.0
-    rolls = found.roll_1[0], found.roll_2[0]
-    mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
-    for gear, material, roll, turn, centre, mirror, ahead in zip(
-        (pair.gear_1, pair.gear_2), materials, rolls, pair.turn(nominal), centres, mirrors, (1, -1), strict=True
-    ):
-        loads = {}
-        for i, k in carrying:
-            radius = pair.relative_radius(found.roll_1[0, i], found.roll_2[0, i])
-            loads[ahead * k] = (roll[i], forces[k], float(half_width(forces[k], radius, modulus)))
-        mesh, moved, stress = _loaded_gear(gear, material, loads, refine)
-        shape = mesh.mesh.doflocs
-        cos, sin = math.cos(turn), math.sin(turn)
-        x, y = mirror * shape[0], shape[1]
-        points = np.array([cos * x + sin * y, cos * y - sin * x + centre, 0 * x]).T
-        cells = np.vstack([mesh.mesh.t[:3], mesh.mesh.nvertices + mesh.mesh.t2f]).T
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.QUADRATIC_TRIANGLE: cells}, points)
-        mises = von_mises(stress, material.nu, "plane strain")
-        grid.point_data[STRESS] = mises
-        u = moved.reshape(-1, 2) * [mirror, 1]
-        grid.point_data["displacement [mm]"] = np.array(
-            [cos * u[:, 0] + sin * u[:, 1], cos * u[:, 1] - sin * u[:, 0], 0 * u[:, 0]]
-        ).T
-        edges = np.concatenate([mesh.mesh.boundaries["rim"], mesh.mesh.boundaries["held"]])
-        start, stop = mesh.mesh.facets[:, edges]
-        middle = mesh.mesh.nvertices + edges
-        pieces = np.vstack([np.array([start, middle]).T, np.array([middle, stop]).T])
-        lines = np.hstack([np.full((pieces.shape[0], 1), 2), pieces]).ravel()
-        outlines.append(pyvista.PolyData(points + np.array([0, 0, 0.01]), lines=lines))
-        root = max(root, *(float(mises[chain].max()) for chain in mesh.fillet.values()))
-        grids.append(grid)
-    return grids, outlines, root
-
-
-def _loaded_gear(gear, material, loads, refine):
-    """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
-    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    rolls, arcs = {}, {}
-    for tooth, (roll, _, a) in loads.items():
-        top = arc_at(gear, gear.roll_a)
-        arcs[tooth] = min(arc_at(gear, roll), top - a)
-        rolls[tooth] = stations(gear, edge["flank"], patches=[(arcs[tooth] - 1.5 * a, arcs[tooth] + 1.5 * a, a / 6)])
-    mesh = section(gear, rolls, fillet_size=edge["fillet"] / 2, size=edge["near"] / 2, far_size=edge["far"])
-    body = Body(mesh.mesh, material)
-    force = 0.0
-    for tooth, (_, line_load, a) in loads.items():
-
-        def pressure(s, arc=arcs[tooth], a=a, line_load=line_load):
-            return 2 * line_load / (math.pi * a) * np.sqrt(np.maximum(1 - ((s - arc) / a) ** 2, 0.0))
-
-        force = force + flank_load(mesh, tooth, pressure, np.array([0]), rolls[tooth].size - 1)
-    moved = body.solve(force)[:, 0]
-    return mesh, moved, body.stress(moved)

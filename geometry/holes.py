@@ -38,7 +38,8 @@ class Holed:
         The pit a tet is in, -1 outside of all: the gear with holes is ``cells[:, plug < 0]``.
     faces : dict of str to ndarray, shape (3, k)
         Triangles by name: ``held`` (bore or outside of a ring), ``sides`` (where the sector was cut off), ``end 0``, ``end b``,
-        ``flank -1``, ``flank 0``, ... (loaded, without the pits), ``pits`` (walls and bottoms), ``crack body``, ``crack tooth``.
+        ``flank -1``, ``flank 0``, ... (loaded, without the pits), ``fillets 0`` (both of tooth 0), ``pits`` (walls and bottoms),
+        ``crack body``, ``crack tooth`` (facing each other).
     removed : (float, float, float)
         Volume of the pits [mm**3]: by the integral, cut, in the mesh.
     """
@@ -355,6 +356,10 @@ def _named(gear, points, cells, plug, teeth):
         "held": np.abs(radius - gear.held) < near,
         "sides": np.abs(np.abs(angle) - edge) * radius < near,
     }
+    curve = root_curve(gear, np.linspace(0.0, fillet_length(gear), 400))
+    order = np.argsort(curve[0])
+    off = np.abs(angle) - np.interp(radius, curve[0][order], curve[1][order])
+    on["fillets 0"] = (np.abs(off) * radius < 10 * near) & (gear.outward * (gear.r_form - radius) > -near)
     low, high = sorted((gear.roll_f, gear.roll_a))
     for tooth in range(-(teeth // 2), teeth // 2 + 1):
         off = angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1]
