@@ -31,10 +31,19 @@ def main(argv=None):
         "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
     )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
-    verb = _verb(verbs, "render", render, "von Mises stress of the loaded teeth, without a screen")
-    _scene_arguments(verb, phases=False)
-    verb.add_argument("--phase", type=float, default=0.0, help="mesh phase (default: 0, a pair enters)")
-    verb.add_argument("-o", "--output", metavar="FILE", required=True, help="picture: .png")
+    verb = _verb(verbs, "render", render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen")
+    _scene_arguments(verb, count=False)
+    verb.add_argument(
+        "--phase", type=float, metavar="X", help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)"
+    )
+    verb.add_argument(
+        "--what", choices=["stress", "contact"], default="stress",
+        help="von Mises stress (in three dimensions for pits and helical gears), or contact pressure along the contact lines and "
+        "load over the face width (default: stress)",
+    )  # fmt: skip
+    verb.add_argument(
+        "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
+    )
     verb = _verb(verbs, "dynamics", dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged")
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene with a machine, or a .toml file")
     verb.add_argument("--case", metavar="NAME", help="case of damage, compared with healthy (default: healthy alone)")
@@ -67,15 +76,14 @@ def _verb(verbs, name, run, text):
     return verb
 
 
-def _scene_arguments(verb, *, phases=True):
+def _scene_arguments(verb, *, count=True):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
     verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
-    if phases:
-        verb.add_argument("--case", metavar="NAME", help="case of damage (see 'gearfe scenes'; default: healthy)")
+    verb.add_argument("--case", metavar="NAME", help="case of damage (see 'gearfe scenes'; default: healthy)")
     verb.add_argument(
         "--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)"
     )
-    if phases:
+    if count:
         verb.add_argument("--phases", type=int, default=64, metavar="N", help="phases per mesh cycle (default: 64)")
 
 
@@ -157,13 +165,22 @@ def compare(arguments):
 
 def render(arguments):
     """``gearfe render``."""
-    from .render import render_stress
+    from .render import render_contact, render_stress
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)
-    with _working("stress of both gears"):
-        largest = render_stress(scene.pair(arguments.pair), arguments.output, phase=arguments.phase, refine=arguments.refine)
-    print(f"largest von Mises stress {largest:.0f} MPa (in the contact)\nwritten: {arguments.output}")
+    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
+    if arguments.what == "contact":
+        with _working("contact lines"):
+            told = render_contact(pair, arguments.output, **options)
+        print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
+    else:
+        name = ", ".join(part for part in (scene.name, arguments.pair, arguments.case) if part)
+        with _working("stress"):
+            told = render_stress(pair, arguments.output, refine=arguments.refine, title=name, **options)
+        print(told["text"])
+        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+    print(f"written: {arguments.output}")
 
 
 def dynamics(arguments):

@@ -108,7 +108,7 @@ def pressed_tooth(
     crack = next(iter(cracks[side]), None)
     sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
-    contact = _contact(pair, force, materials, phases, pits, cracks, face, groove, (1, -1)[side] * tooth)
+    contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, (1, -1)[side] * tooth)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
@@ -173,15 +173,16 @@ def _own(pair, side, face, groove, pits):
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
-def _contact(pair, force, materials, phases, pits, cracks, face, groove, order):
-    """Contact at `phases`, or at the one where pair `order` carries most."""
+def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order):
+    """`Contact3D` at `phases`, or at the one of 16 where pair `order` carries most; damage numbered in each gear's own frame."""
     options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove}
     if phases is not None:
         return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
     end = pair.eps_alpha + overlap(pair, face, groove)
     found = pair_stiffness3d(pair, force, materials, -order + end * (np.arange(16) + 0.5) / 16, **options)
     best = int(found.load[:, found.order == order].sum(axis=1).argmax())
-    return pair_stiffness3d(pair, force, materials, found.phase[[best]], **options)
+    numbers = {name: getattr(found, name)[[best]] for name in ("phase", "k", "approach", "load")}
+    return replace(found, cells=(found.cells[best],), **numbers)
 
 
 def _lines(pair, cells, side, tooth, half):

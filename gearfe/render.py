@@ -11,17 +11,18 @@ import numpy as np
 
 from .export import written
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
-from .holed import pressed_tooth, tooth_field
+from .holed import contact_of, pressed_tooth, tooth_field
+from .inputs import by_gear
 
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
 )
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
-OPENING = 0.12  # of a crack in a picture, in modules
+OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
-FINE = {"tooth": 0.22, "fillet": 0.2, "tip": 0.1, "rim": 0.3}  # edge lengths of such a picture, see geometry.holes.SIZES
+FINE = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "tip": 0.1, "rim": 0.3}  # edge lengths of such a picture, see geometry.holes.SIZES
 # corners and middles of a second-order tet (VTK's order) to eight tets
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
@@ -78,6 +79,28 @@ def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050),
     return told
 
 
+def render_contact(scene_pair, path, *, case=None, phase=None):
+    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`plots.plot_contact`).
+
+    Parameters as of `render_stress`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
+
+    Returns
+    -------
+    dict
+        ``phase``, ``k`` [N/m], ``pressure`` (the largest) [MPa].
+    """
+    from .plots import plot_contact
+
+    cracks, pits = by_gear(scene_pair.pair, scene_pair.case(case).get("damage"))
+    order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
+    face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
+    phases = None if phase is None else [phase]
+    run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
+    found = contact_of(*run, order)
+    plot_contact(scene_pair.pair, found, path=path, pits=pits[0])
+    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": float(found.cells[0].pressure.max())}
+
+
 def _gears(scene_pair, damage, phase, refine):
     phase = loaded_phase(scene_pair, damage) if phase is None else phase
     fields = stressed_gears(scene_pair, phase, refine, damage)
@@ -131,7 +154,7 @@ def _picture(path, size, text, top):
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": colours, "above_color": "#6b0000", "show_scalar_bar": False}
         yield plotter, look
-        scale = size[1] / 1050
+        scale = size[0] / 1400
         mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
         fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
@@ -215,14 +238,15 @@ def _draw_tooth(pair, fields, told, path, size):
     right = np.cross(up, view) / np.linalg.norm(np.cross(up, view))
     plane = np.array([right, np.cross(view, right)])  # of the picture
     low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
-    focus = plane.T @ ((low + high) / 2) + [0, 0, 0]
-    room = np.array([0.82 * size[0] / size[1], 0.78])  # text above, colour bar on the right
+    focus = plane.T @ ((low + high) / 2)
+    wide, tall = (high - low) / (0.82, 0.76)  # text above, colour bar on the right
+    size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
     with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
-        plotter.add_mesh(surface, name="stress", ambient=0.55, diffuse=0.5, specular=0.0, **look)
+        plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
         plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
-        half = ((high - low) / room).max() / 2
-        focus = focus + plane.T @ np.array([0.06 * half * size[0] / size[1], 0.12 * half])
+        half = max(tall, wide * size[1] / size[0]) / 2
+        focus = focus + plane.T @ np.array([0.06 * half * size[0] / size[1], 0.18 * half])
         plotter.camera.focal_point = focus
         plotter.camera.position = focus + 200 * gear.m_n * view
         plotter.camera.up = plane[1]

@@ -18,8 +18,10 @@ from .pit import centre_arc, check_pits, union_length
 from .solid import twist_rate
 from .tooth import arc_at, cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve, root_half_angle
 
-SIZES = {"far": 1.6, "tooth": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}  # in modules; the rim's in the smaller half axis
-CUT = 5e-3  # largest relative error of the removed volume, of which 1e-3 is that of the quadrature and of the splines
+# edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
+# of the smallest half axis
+SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
+CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
 MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
 GRID = 400  # points of the quadrature across a pit
 
@@ -177,9 +179,12 @@ def _half(gear, side, mark):
 
 
 def _fine(gear, crack, size):
-    """Circles of the section with smaller edges: the tooth, its fillets, the crack's tip."""
+    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip."""
     middle = (gear.r_a + gear.r_f) / 2
     out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]
+    for arc in np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 8):
+        x, y = cartesian(*flank(gear, roll_at_arc(gear, arc)))
+        out.append((float(x), float(y), 0.15 * gear.m_n, size["flank"]))
     for sign in (1, -1):
         x, y = cartesian(*root_curve(gear, 0.6 * fillet_length(gear)))
         out.append((sign * float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))

@@ -11,6 +11,8 @@ PAGES = {
     "map": "errors of the closed forms over thousands of gear pairs",
     "hard": "hard cases, each with its outcome",
     "three": "three dimensions: energy model against hexahedra of the whole gear",
+    "holes": "pits as real holes: volume cut, and what the missing material does to k",
+    "pictures": "stress pictures of every scene and damage case",
     "hard_three": "hard cases in three dimensions, each with its outcome",
     "speed_three": "seconds and memory against error in three dimensions",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",

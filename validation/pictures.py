@@ -1,0 +1,73 @@
+"""One picture of stress for every damage case of every scene, and one of the contact lines for every scene with pits."""
+
+from pathlib import Path
+
+from . import machine  # first: it sets the number of threads
+
+import gearfe as gf  # isort: skip
+from gearfe.export import written  # isort: skip
+from gearfe.render import render_contact, render_stress  # isort: skip
+from gearfe.scene import scene_names  # isort: skip
+
+FOLDER = Path(__file__).parent / "pictures"
+PAGE = Path(__file__).parent / "pictures.md"
+SIZE = (840, 630)
+LIMIT = 120_000  # bytes of a picture
+
+
+def caption(case, damage, told):
+    """What a picture of stress shows, in words."""
+    found = [one for own in damage.values() for one in own]
+    pits = [one for one in found if isinstance(one, gf.Pit)]
+    what = []
+    if pits:
+        shape = "{:g} x {:g} mm, {:g} mm deep".format(*(2 * v for v in pits[0].axes), pits[0].depth)
+        what.append(f"{len(pits)} pit{'s' if len(pits) > 1 else ''} of {shape}")
+    what += [f"crack of {100 * one.level:g} %" for one in found if isinstance(one, gf.Crack)]
+    opened = f"; displacements x {told['enlarged']}, which opens the crack" if told["enlarged"] else ""
+    return (
+        f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}; largest von Mises stress "
+        f"on the fillets {told['root']:.0f} MPa{opened}."
+    )
+
+
+def run():
+    """Write the pictures and `pictures.md`."""
+    FOLDER.mkdir(exist_ok=True)
+    lines = [
+        "# Pictures",
+        "",
+        f"Made by `python -m validation pictures` on {machine.describe()}; a larger one by",
+        "`gearfe render SCENE --case CASE -o x.png`, mesh, displacement and stress by `-o x.vtu`.",
+        "",
+        "Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact lines,",
+        "spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of cracks,",
+        "where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears without load.",
+        "",
+    ]
+    for name in scene_names():
+        scene = gf.load_scene(name)
+        pair_name = next(iter(scene.pairs))
+        pair = scene.pair(pair_name)
+        lines += [f"## {scene.title}", "", f"Pair `{pair_name}` of scene `{name}`.", ""]
+        for case, damage in pair.damage.items():
+            path = FOLDER / f"{name}_{case}.png"
+            told = render_stress(pair, path, case=case, size=SIZE, title=f"{name} {pair_name}, {case}")
+            lines += [f"![{name} {case}](pictures/{path.name})", "", caption(case, damage, told), ""]
+            _small(path)
+        if any(isinstance(one, gf.Pit) for one in damage.get("pinion", ())):
+            path = FOLDER / f"{name}_{case}_contact.png"
+            told = render_contact(pair, path, case=case)
+            text = f"`{case}`: contact lines on the unrolled flank and load over the width; phase {told['phase']:.3g}, k "
+            lines += [f"![{name} contact](pictures/{path.name})", "", text + f"{told['k']:.4g} N/m, largest pressure of Hertz "
+                      f"{told['pressure']:.0f} MPa.", ""]  # fmt: skip
+            _small(path)
+    with written(PAGE) as path:
+        Path(path).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+
+
+def _small(path):
+    size = path.stat().st_size
+    print(f"{path.name}: {size / 1e3:.0f} kB", flush=True)
+    if size > LIMIT:
+        raise RuntimeError(f"{path} has {size} bytes, more than {LIMIT}: draw it smaller")
