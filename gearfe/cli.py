@@ -31,10 +31,15 @@ def main(argv=None):
         "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
     )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
-    verb = _verb(verbs, "render", render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen")
+    verb = _verb(
+        verbs, "render", render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
+    )
     _scene_arguments(verb, count=False)
     verb.add_argument(
-        "--phase", type=float, metavar="X", help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)"
+        "--phase",
+        type=float,
+        metavar="X",
+        help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)",
     )
     verb.add_argument(
         "--what", choices=["stress", "contact"], default="stress",

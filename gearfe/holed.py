@@ -9,9 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.damage import Crack
 from geometry.holes import Holed, holed_sector, skin
-from geometry.pit import Pit
 from geometry.solid import twist_rate
 from geometry.tooth import arc_at, flank_normal
 
@@ -68,7 +66,19 @@ class Pressed:
 
 
 def pressed_tooth(
-    pair, force, material, damage, *, phases=None, face=None, groove=0.0, refine=1.0, teeth=3, removal=False, sizes=None, tell=None
+    pair,
+    force,
+    material,
+    damage,
+    *,
+    phases=None,
+    face=None,
+    groove=0.0,
+    refine=1.0,
+    teeth=3,
+    removal=False,
+    sizes=None,
+    tell=None,
 ):
     """Solve the damaged tooth of a pair with its pits as holes.
 

@@ -22,7 +22,13 @@ OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGL
 OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
-FINE = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "tip": 0.1, "rim": 0.3}  # edge lengths of such a picture, see geometry.holes.SIZES
+FINE = {
+    "tooth": 0.5,
+    "flank": 0.18,
+    "fillet": 0.22,
+    "tip": 0.1,
+    "rim": 0.3,
+}  # edge lengths of such a picture, see geometry.holes.SIZES
 # corners and middles of a second-order tet (VTK's order) to eight tets
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
@@ -187,7 +193,7 @@ def _lines(field, scale, kept=None, lift=0.0):
 
     pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
     cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
-    return pyvista.PolyData((field.points + scale * field.moved).T + [0, 0, lift], lines=cells)
+    return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
 
 
 def _round_up(value):
@@ -198,7 +204,9 @@ def _round_up(value):
 
 def _draw_gears(pair, fields, told, path, size):
     """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
-    scale, shown, focus = told["enlarged"], fields, (0.5 * pair.gear_1.m_n, pair.pitch_radius_1)
+    import pyvista
+
+    scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
     if scale:
         shown = [field for field in fields if field.opening > 0]
     with _picture(path, size, told["text"], _round_up(max(field.root for field in shown))) as (plotter, look):
@@ -207,11 +215,16 @@ def _draw_gears(pair, fields, told, path, size):
             plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
         for field in fields if scale else ():
             plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
+        half = (2.6 if scale else 3.6) * pair.gear_1.m_n
+        wide = half * size[0] / size[1]
+        middle = (focus[0] + 0.9 * wide, focus[1], 0.1)
+        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.21 * wide, j_size=3 * half)  # behind the colour bar
+        plotter.add_mesh(strip, color="white", lighting=False)
         plotter.view_xy()
         plotter.camera.focal_point = (*focus, 0)
         plotter.camera.position = (*focus, 1)
         plotter.camera.parallel_projection = True
-        plotter.camera.parallel_scale = (2.6 if scale else 3.6) * pair.gear_1.m_n
+        plotter.camera.parallel_scale = half
 
 
 def _draw_tooth(pair, fields, told, path, size):

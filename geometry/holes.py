@@ -291,7 +291,9 @@ def _check_volume(gear, pits, volumes, made):
     if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # nan fails too
         raise RuntimeError(
             f"the pits should take {want:.6g} mm**3 from the tooth of z = {gear.z}, but {cut:.6g} mm**3 were cut and "
-            f"{meshed:.6g} mm**3 meshed" + (f"; nothing of pit {missing[0]}" if missing else "") + ": a boolean operation failed or "
+            f"{meshed:.6g} mm**3 meshed"
+            + (f"; nothing of pit {missing[0]}" if missing else "")
+            + ": a boolean operation failed or "
             "the mesh is too coarse; change refine, or move the pits by a little"
         )
 

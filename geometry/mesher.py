@@ -409,7 +409,9 @@ def _sizes(gmsh, inner, fine, rim, far, growth):
         away = f"sqrt((x-({x}))^2+(y-({y}))^2)-{radius}"
         field.setString(numbers[-1], "F", f"{size}+{growth / 2}*(({away})+abs({away}))")
     if inner:
-        edges = gmsh.model.getBoundary(gmsh.model.getBoundary(inner, combined=False, oriented=False), combined=False, oriented=False)
+        edges = gmsh.model.getBoundary(
+            gmsh.model.getBoundary(inner, combined=False, oriented=False), combined=False, oriented=False
+        )
         near = field.add("Distance")
         field.setNumbers(near, "CurvesList", sorted({abs(tag) for dim, tag in edges if dim == 1}))
         field.setNumber(near, "Sampling", 40)

@@ -50,6 +50,38 @@ def test_render_makes_a_picture_of_stress(tmp_path, capsys):
     assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("case", ["minor", None])
+def test_render_shows_a_pitted_tooth_in_three_dimensions(case, tmp_path, capsys):
+    path = tmp_path / "tooth.png"
+    options = [] if case is None else ["--case", case]
+    assert main(["render", "helical_pitting", *options, "--refine", "0.5", "--phase", "1.2", "-o", str(path)]) == 0
+    from matplotlib.image import imread
+
+    picture = imread(path)
+    assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
+    assert "N on this tooth" in capsys.readouterr().out
+
+
+def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
+    import meshio
+
+    path = tmp_path / "cracked.vtu"
+    assert main(["render", "compound_planetary", "--case", "crack30", "--refine", "0.5", "-o", str(path)]) == 0
+    assert "which opens the crack" in capsys.readouterr().out
+    found = meshio.read(path)
+    assert set(found.cells_dict) == {"triangle6"}
+    assert {"displacement [mm]", "stress [MPa]", "von Mises stress [MPa]"} == set(found.point_data)
+    assert np.isfinite(found.point_data["stress [MPa]"]).all()
+
+
+def test_render_shows_contact_lines(tmp_path, capsys):
+    path = tmp_path / "contact.png"
+    assert main(["render", "planetary_pitting", "--case", "mild", "--what", "contact", "--phase", "0.7", "-o", str(path)]) == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+    assert "largest pressure" in capsys.readouterr().out
+
+
 def test_scenes_and_info(capsys):
     assert main(["scenes"]) == 0
     assert main(["info"]) == 0
@@ -65,6 +97,8 @@ def test_scenes_and_info(capsys):
         (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, coupled, textbook, published"),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
+        (["render", "planetary_pitting", "-o", "stress.jpg"], "give a .png or a .vtu"),
+        (["render", "planetary_pitting", "--case", "x", "-o", "s.png"], "no case 'x' of this pair"),
         (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
     ],
 )

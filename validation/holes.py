@@ -27,8 +27,8 @@ def row(scene, case):
     """Text of one layout, and by how much its missing material changes k at most, relative, on both meshes."""
     found = gf.load_scene(scene).pair()
     pits = {side: [one for one in own if isinstance(one, gf.Pit)] for side, own in found.damage[case].items()}
-    pair, run = found.pair, {"face": found.face, "groove": found.groove}
-    phases = (pair.eps_alpha + overlap(pair, found.face, found.groove)) * (np.arange(PHASES) + 0.5) / PHASES
+    pair, run = found.pair, {"face": found.face or "spur", "groove": found.groove}
+    phases = (pair.eps_alpha + overlap(pair, **run)) * (np.arange(PHASES) + 0.5) / PHASES
     own = by_gear(pair, pits)[1]
     k = [pair_stiffness3d(pair, found.force, found.materials, phases, pits=p, **run).k for p in (((), ()), own)]
     made, seconds = [], []
@@ -36,8 +36,7 @@ def row(scene, case):
         started = time.perf_counter()
         made.append(
             pressed_tooth(
-                pair, found.force, found.materials, pits, phases=phases, refine=refine, removal=True,
-                face=found.face or "spur", groove=found.groove,
+                pair, found.force, found.materials, pits, phases=phases, refine=refine, removal=True, **run
             )
         )  # fmt: skip
         seconds.append(time.perf_counter() - started)
@@ -61,18 +60,19 @@ def run():
         "# Pits as real holes",
         "",
         f"Made by `python -m validation holes` on {machine.describe()}.",
-        "Pits are cut out of the tooth as elliptic cylinders with a flat bottom, the tooth is meshed with straight second-order tets",
-        "(`geometry.holes`, `gearfe.holed`). Volume: an integral over the involutes parallel to the flank, which knows nothing of",
-        "the solid; cut: difference of the boundary representation from it (more than 0.2 % is an error, not a result); meshed: of",
-        "the tets, whose rims are polygons, on the two meshes.",
+        "Pits are cut out of the tooth as elliptic cylinders with a flat bottom, the tooth is meshed with straight second-order",
+        "tets (`geometry.holes`, `gearfe.holed`). Volume: an integral over the involutes parallel to the flank, which knows",
+        "nothing of the solid; cut: difference of the boundary representation from it (more than 0.2 % is an error, not a",
+        "result); meshed: of the tets, whose rims are polygons, on the two meshes.",
         "",
         "Everywhere else in gearfe pits take contact away and no material. What that leaves out: the tooth is solved with and",
-        f"without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits leave, at {PHASES}",
-        "phases of the engagement. The work of the load on the difference, over force times approach of the pair, is by how much k",
-        "would fall if the load did not redistribute: an upper bound of what the missing material does to k. The largest of all",
-        "phases is given, beside the largest drop of k by lost contact alone.",
+        "without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits leave,",
+        f"at {PHASES} phases of the engagement. The work of the load on the difference, over force times approach of the pair,",
+        "is by how much k would fall if the load did not redistribute: an upper bound of what the missing material does to k.",
+        "The largest of all phases is given, beside the largest drop of k by lost contact alone.",
         "",
-        "| layout | volume [mm3] | cut | meshed | tets | unknowns | seconds | k lost by contact | k lost by material, at most | at phase |",
+        "| layout | volume [mm3] | cut | meshed | tets | unknowns | seconds "
+        "| k lost by contact | k lost by material, at most | at phase |",
         "|---|---|---|---|---|---|---|---|---|---|",
     ]
     lines, largest = [], []
@@ -85,8 +85,8 @@ def run():
     most, _, name = max(largest)
     step = max(change for _, change, _ in largest)
     end = (
-        f"Pits only as lost contact leave out a change of k of at most {100 * most:.2f} % ({name}); between the two meshes it moves by "
-        f"no more than {100 * step:.3f} points."
+        f"Pits only as lost contact leave out a change of k of at most {100 * most:.2f} % ({name}); "
+        f"between the two meshes it moves by no more than {100 * step:.3f} points."
     )
     print(f"\n{end}")
     with written(PAGE) as path:

@@ -1,5 +1,7 @@
 """One picture of stress for every damage case of every scene, and one of the contact lines for every scene with pits."""
 
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from . import machine  # first: it sets the number of threads
@@ -12,6 +14,8 @@ from gearfe.scene import scene_names  # isort: skip
 FOLDER = Path(__file__).parent / "pictures"
 PAGE = Path(__file__).parent / "pictures.md"
 SIZE = (840, 630)
+COLOURS = 128
+REFINE = 0.8  # such small pictures show no more
 LIMIT = 120_000  # bytes of a picture
 
 
@@ -26,13 +30,34 @@ def caption(case, damage, told):
     what += [f"crack of {100 * one.level:g} %" for one in found if isinstance(one, gf.Crack)]
     opened = f"; displacements x {told['enlarged']}, which opens the crack" if told["enlarged"] else ""
     return (
-        f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}; largest von Mises stress "
-        f"on the fillets {told['root']:.0f} MPa{opened}."
+        f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}; largest von Mises "
+        f"stress on the fillets {told['root']:.0f} MPa{opened}."
     )
 
 
+def of_scene(name):
+    """Lines of the page for a scene; writes its pictures."""
+    scene = gf.load_scene(name)
+    pair_name = next(iter(scene.pairs))
+    pair = scene.pair(pair_name)
+    lines = [f"## {scene.title}", "", f"Pair `{pair_name}` of scene `{name}`.", ""]
+    for case, damage in pair.damage.items():
+        path = FOLDER / f"{name}_{case}.png"
+        told = render_stress(pair, path, case=case, size=SIZE, refine=REFINE, title=f"{name} {pair_name}, {case}")
+        lines += [f"![{name} {case}](pictures/{path.name})", "", caption(case, damage, told), ""]
+        _small(path)
+    if any(isinstance(one, gf.Pit) for one in damage.get("pinion", ())):
+        path = FOLDER / f"{name}_{case}_contact.png"
+        told = render_contact(pair, path, case=case)
+        numbers = f"phase {told['phase']:.3g}, k {told['k']:.4g} N/m, largest pressure of Hertz {told['pressure']:.0f} MPa."
+        text = f"`{case}`: contact lines on the unrolled flank and load over the width; {numbers}"
+        lines += [f"![{name} contact](pictures/{path.name})", "", text, ""]
+        _small(path)
+    return lines
+
+
 def run():
-    """Write the pictures and `pictures.md`."""
+    """Write the pictures, each scene in a process of its own, and `pictures.md`."""
     FOLDER.mkdir(exist_ok=True)
     lines = [
         "# Pictures",
@@ -40,33 +65,25 @@ def run():
         f"Made by `python -m validation pictures` on {machine.describe()}; a larger one by",
         "`gearfe render SCENE --case CASE -o x.png`, mesh, displacement and stress by `-o x.vtu`.",
         "",
-        "Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact lines,",
-        "spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of cracks,",
-        "where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears without load.",
+        "Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact",
+        "lines, spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of",
+        "cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.",
         "",
     ]
-    for name in scene_names():
-        scene = gf.load_scene(name)
-        pair_name = next(iter(scene.pairs))
-        pair = scene.pair(pair_name)
-        lines += [f"## {scene.title}", "", f"Pair `{pair_name}` of scene `{name}`.", ""]
-        for case, damage in pair.damage.items():
-            path = FOLDER / f"{name}_{case}.png"
-            told = render_stress(pair, path, case=case, size=SIZE, title=f"{name} {pair_name}, {case}")
-            lines += [f"![{name} {case}](pictures/{path.name})", "", caption(case, damage, told), ""]
-            _small(path)
-        if any(isinstance(one, gf.Pit) for one in damage.get("pinion", ())):
-            path = FOLDER / f"{name}_{case}_contact.png"
-            told = render_contact(pair, path, case=case)
-            text = f"`{case}`: contact lines on the unrolled flank and load over the width; phase {told['phase']:.3g}, k "
-            lines += [f"![{name} contact](pictures/{path.name})", "", text + f"{told['k']:.4g} N/m, largest pressure of Hertz "
-                      f"{told['pressure']:.0f} MPa.", ""]  # fmt: skip
-            _small(path)
+    with ProcessPoolExecutor(len(scene_names()), multiprocessing.get_context("spawn")) as pool:
+        for part in pool.map(of_scene, scene_names()):
+            lines += part
     with written(PAGE) as path:
         Path(path).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
 def _small(path):
+    """Reduce a picture to a palette, and refuse one that is still large."""
+    from PIL import Image
+
+    with Image.open(path) as picture:
+        reduced = picture.convert("RGB").quantize(COLOURS)
+    reduced.save(path, optimize=True)
     size = path.stat().st_size
     print(f"{path.name}: {size / 1e3:.0f} kB", flush=True)
     if size > LIMIT:
