@@ -160,7 +160,7 @@ def _picture(path, size, text, top):
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": colours, "above_color": "#6b0000", "show_scalar_bar": False}
         yield plotter, look
-        scale = size[0] / 1400
+        scale = (size[0] / 1400) ** 0.7  # small pictures keep letters that can be read
         mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
         fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
@@ -252,14 +252,14 @@ def _draw_tooth(pair, fields, told, path, size):
     plane = np.array([right, np.cross(view, right)])  # of the picture
     low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
     focus = plane.T @ ((low + high) / 2)
-    wide, tall = (high - low) / (0.82, 0.76)  # text above, colour bar on the right
+    wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
     with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
         plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
         half = max(tall, wide * size[1] / size[0]) / 2
-        focus = focus + plane.T @ np.array([0.06 * half * size[0] / size[1], 0.18 * half])
+        focus = focus + plane.T @ np.array([0.08 * half * size[0] / size[1], 0.18 * half])
         plotter.camera.focal_point = focus
         plotter.camera.position = focus + 200 * gear.m_n * view
         plotter.camera.up = plane[1]

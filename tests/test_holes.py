@@ -18,7 +18,7 @@ from gearfe.hexahedron import assemble
 from gearfe.holed import nodal_stress, pressed_tooth, second_order, tet_stiffness, tooth_field
 from geometry.holes import holed_sector, removed_volume
 from geometry.pit import centre_arc, pit_row
-from geometry.tooth import cartesian, flank, flank_normal, roll_at_arc
+from geometry.tooth import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
@@ -296,15 +296,17 @@ def test_halves_are_mirror_images(steel):
 
 @pytest.mark.slow
 def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel):
-    pair = gf.GearPair(replace(GEAR, b=20.0), replace(GEAR, b=20.0, z=27))
-    made = pressed_tooth(pair, 2500.0, steel, {}, phases=[0.75], sizes={"fillet": 0.12, "flank": 0.3})
-    assert made.load[0] == pytest.approx(2500.0), "one pair carries"
+    """The mean over the middle third of the width, in ten pieces of the fillet: the nodal peaks of so coarse tets scatter."""
+    pair = gf.GearPair(replace(GEAR, b=16.0), replace(GEAR, b=16.0, z=27))
+    made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes={"fillet": 0.2, "flank": 0.4})
+    assert made.load[0] == pytest.approx(2000.0), "one pair carries"
     field = tooth_field(made)
-    inside = np.flatnonzero(np.abs(field.points[2] - 10.0) < 3.0)
-    x, y, _ = field.points[:, inside]
+    arcs = np.linspace(0.0, fillet_length(pair.gear_1), 400)
+    curve = cartesian(*root_curve(pair.gear_1, arcs))
+    away = np.hypot(*(field.points[:2, :, None] - curve[:, None, :]))
+    on = (away.min(axis=1) < 0.02) & (np.abs(field.points[2] - 8.0) < 2.5)
+    tensor = field.stress[:, on][[[0, 3, 5], [3, 1, 4], [5, 4, 2]]].transpose(2, 0, 1)
+    piece = away[on].argmin(axis=1) // 40
+    means = [np.linalg.eigvalsh(tensor)[piece == k, 2].mean() for k in range(10)]
     radius = math.hypot(pair.gear_1.r_b, float(made.contact.cells[0].roll_1.mean()))
-    want = gf.root_stress(pair.gear_1, radius, 125.0, steel)
-    low = (np.hypot(x, y) < GEAR.r_form) & (x > 0) & (x < 3)
-    six = field.stress[:, inside[low]]
-    tensor = six[[[0, 3, 5], [3, 1, 4], [5, 4, 2]]].transpose(2, 0, 1)
-    assert_allclose(np.linalg.eigvalsh(tensor).max(), want, rtol=0.05)
+    assert_allclose(max(means), gf.root_stress(pair.gear_1, radius, 125.0, steel), rtol=0.04)

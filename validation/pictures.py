@@ -14,8 +14,8 @@ from gearfe.scene import scene_names  # isort: skip
 FOLDER = Path(__file__).parent / "pictures"
 PAGE = Path(__file__).parent / "pictures.md"
 SIZE = (840, 630)
-COLOURS = 128
-REFINE = 0.8  # such small pictures show no more
+COLOURS = 200
+REFINE = 0.7  # such small pictures show no more
 LIMIT = 120_000  # bytes of a picture
 
 
