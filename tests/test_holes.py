@@ -15,9 +15,11 @@ import gearfe as gf
 import geometry.holes as holes
 from gearfe.fields import write_vtu
 from gearfe.hexahedron import assemble
-from gearfe.holed import nodal_stress, pressed_tooth, second_order, tet_stiffness, tooth_field
-from geometry.holes import holed_sector, removed_volume
+from gearfe.holed import pressed_tooth, tooth_field
+from gearfe.tetrahedron import nodal_stress, second_order, tet_stiffness
+from geometry.holes import holed_sector
 from geometry.pit import centre_arc, pit_row
+from geometry.pit_volume import pit_frame, removed_volume
 from geometry.tooth import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -70,7 +72,7 @@ def test_pits_are_cut_along_the_normal_of_the_helicoid(beta, side):
     along = [surface(roll + a, one.z + b) - surface(roll - a, one.z - b) for a, b in ((step, 0), (0, step))]
     normal = np.cross(*along)
     normal *= np.sign(normal[0] * sign * math.cos(holes.twist_rate(gear) * one.z)) / np.linalg.norm(normal)
-    centre, _, push, _ = holes._frame(gear, one)
+    centre, _, push, _ = pit_frame(gear, one)
     ends = [holes._twisted(centre + step * k * push, holes.twist_rate(gear)) for k in (-1, 1)]
     assert_allclose((ends[1] - ends[0]) / (2 * step), -one.depth * normal, atol=1e-8)
 

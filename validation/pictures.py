@@ -14,7 +14,7 @@ from gearfe.scene import scene_names  # isort: skip
 FOLDER = Path(__file__).parent / "pictures"
 PAGE = Path(__file__).parent / "pictures.md"
 SIZE = (840, 630)
-COLOURS = 200
+COLOURS = 256
 REFINE = 0.7  # such small pictures show no more
 LIMIT = 120_000  # bytes of a picture
 
@@ -82,7 +82,7 @@ def _small(path):
     from PIL import Image
 
     with Image.open(path) as picture:
-        reduced = picture.convert("RGB").quantize(COLOURS)
+        reduced = picture.convert("RGB").quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     reduced.save(path, optimize=True)
     size = path.stat().st_size
     print(f"{path.name}: {size / 1e3:.0f} kB", flush=True)
