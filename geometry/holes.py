@@ -23,6 +23,7 @@ from .tooth import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_cu
 # of the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
+FINER = (1.0, 1.07, 1.15, 1.3)  # attempts: flat tets may be turned inside out by the helix
 MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
 
 
@@ -93,12 +94,22 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
     check_pits(gear, pits)
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
+    for finer in FINER:
+        made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()})
+        if _sizes_of(made.points, made.cells).min() > 0:
+            return made
+    raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
+
+
+def _attempt(gear, pits, crack, teeth, size):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     points, curves, faces = _section(gear, crack, teeth)
     made = tetrahedra(
         points, curves, faces, gear.b, [_tool(gear, pit) for pit in pits], fine=_fine(gear, crack, size), rim=rim, far=size["far"]
     )
-    volumes = float(removed_volume(gear, pits)), float(sum(v for (_, plug), v in made.volume.items() if plug >= 0)), _meshed(made)
+    meshed = float(_sizes_of(made.points, made.tets)[made.plug >= 0].sum())
+    cut = float(sum(v for (_, plug), v in made.volume.items() if plug >= 0))
+    volumes = float(removed_volume(gear, pits)), cut, meshed
     _check_volume(gear, pits, volumes, made)
     nodes, cells, seam = _opened(gear, crack, made)
     flat = np.hstack([made.points, made.points[:, nodes]])
@@ -203,12 +214,10 @@ def _tool(gear, pit):
     return centre - above, axes, push + above
 
 
-def _meshed(made):
-    a, b, c, d = made.points[:, made.tets].transpose(1, 0, 2)
-    size = np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a) / 6
-    if size.min() <= 0:
-        raise RuntimeError("gmsh left a tet without volume: change refine")
-    return float(size[made.plug >= 0].sum())
+def _sizes_of(points, cells):
+    """Volumes ``(m,)`` of tets [mm**3]."""
+    a, b, c, d = points[:, cells].transpose(1, 0, 2)
+    return np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a) / 6
 
 
 def _check_volume(gear, pits, volumes, made):

@@ -130,6 +130,15 @@ def test_what_is_cut_is_what_the_pits_take(name, beta):
     assert made.faces["pits"].size
 
 
+def test_the_helix_turns_no_tet_inside_out():
+    """This coarse mesh has flat tets that the turn would invert; it is made anew."""
+    pair = gf.load_scene("helical_pitting").pair()
+    sizes = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "rim": 0.3}
+    made = holed_sector(pair.pair.gear_1, pair.damage["minor"]["pinion"], refine=0.5, sizes=sizes)
+    a, b, c, d = made.points[:, made.cells].transpose(1, 0, 2)
+    assert np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a).min() > 0
+
+
 def test_holes_in_a_ring():
     made = holed_sector(RING, [pit(RING)], teeth=1, sizes=COARSE)
     assert_allclose(made.removed[1], made.removed[0], rtol=2e-3)
