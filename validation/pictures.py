@@ -1,6 +1,7 @@
 """One picture of stress for every damage case of every scene, and one of the contact lines for every scene with pits."""
 
 import multiprocessing
+import os
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
@@ -35,30 +36,37 @@ def caption(case, damage, told):
     )
 
 
-def of_scene(name):
-    """Lines of the page for a scene; writes its pictures."""
-    scene = gf.load_scene(name)
-    pair_name = next(iter(scene.pairs))
-    pair = scene.pair(pair_name)
-    lines = [f"## {scene.title}", "", f"Pair `{pair_name}` of scene `{name}`.", ""]
-    for case, damage in pair.damage.items():
+def tasks():
+    """Scene, case and kind of every picture."""
+    out = []
+    for name in scene_names():
+        damage = next(iter(gf.load_scene(name).pairs.values())).damage
+        out += [(name, case, "stress") for case in damage]
+        last = [*damage][-1]
+        if any(isinstance(one, gf.Pit) for own in damage[last].values() for one in own):
+            out.append((name, last, "contact"))
+    return out
+
+
+def picture(task):
+    """Draw one; its lines of the page."""
+    name, case, kind = task
+    pair_name, pair = next(iter(gf.load_scene(name).pairs.items()))
+    if kind == "stress":
         path = FOLDER / f"{name}_{case}.png"
         told = render_stress(pair, path, case=case, size=SIZE, refine=REFINE, title=f"{name} {pair_name}, {case}")
-        lines += [f"![{name} {case}](pictures/{path.name})", "", caption(case, damage, told), ""]
-        _small(path)
-    if any(isinstance(one, gf.Pit) for one in damage.get("pinion", ())):
+        text = caption(case, pair.damage[case], told)
+    else:
         path = FOLDER / f"{name}_{case}_contact.png"
         told = render_contact(pair, path, case=case)
         numbers = f"phase {told['phase']:.3g}, k {told['k']:.4g} N/m, largest pressure of Hertz {told['pressure']:.0f} MPa."
         text = f"`{case}`: contact lines on the unrolled flank and load over the width; {numbers}"
-        lines += [f"![{name} contact](pictures/{path.name})", "", text, ""]
-        _small(path)
-    return lines
+    _small(path)
+    return [f"![{name} {case}](pictures/{path.name})", "", text, ""]
 
 
-def run():
-    """Write the pictures, each scene in a process of its own, and `pictures.md`."""
-    FOLDER.mkdir(exist_ok=True)
+def page(parts):
+    """Text of the page from the lines of every task."""
     lines = [
         "# Pictures",
         "",
@@ -70,11 +78,20 @@ def run():
         "cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.",
         "",
     ]
-    with ProcessPoolExecutor(len(scene_names()), multiprocessing.get_context("spawn")) as pool:
-        for part in pool.map(of_scene, scene_names()):
-            lines += part
+    for name in scene_names():
+        scene = gf.load_scene(name)
+        lines += [f"## {scene.title}", "", f"Pair `{next(iter(scene.pairs))}` of scene `{name}`.", ""]
+        lines += [line for task, part in parts.items() if task[0] == name for line in part]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def run():
+    """Write the pictures, several at a time, and `pictures.md`."""
+    FOLDER.mkdir(exist_ok=True)
+    with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn")) as pool:
+        parts = dict(zip(tasks(), pool.map(picture, tasks()), strict=True))
     with written(PAGE) as path:
-        Path(path).write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
+        Path(path).write_text(page(parts), encoding="utf-8")
 
 
 def _small(path):
