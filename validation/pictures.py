@@ -30,10 +30,7 @@ def caption(case, damage, told):
         what.append(f"{len(pits)} pit{'s' if len(pits) > 1 else ''} of {shape}")
     what += [f"crack of {100 * one.level:g} %" for one in found if isinstance(one, gf.Crack)]
     opened = f"; displacements x {told['enlarged']}, which opens the crack" if told["enlarged"] else ""
-    return (
-        f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}; largest von Mises "
-        f"stress on the fillets {told['root']:.0f} MPa{opened}."
-    )
+    return f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}{opened}."
 
 
 def tasks():
