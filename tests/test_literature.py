@@ -121,20 +121,17 @@ def test_machines_of_the_articles(page, row, source):
     assert source.within(ours, target) or source.within(ours, row.printed), f"{source.source}: {row.printed} {source.unit}"
 
 
-OUTSIDE = {("stage_17_37_91", "f_m")}  # its source rounds the carrier's frequency before multiplying
-
-
 def test_truth_page_is_not_stale():
     assert truth.PAGE.read_text(encoding="utf-8") == truth.text(), "run python -m validation truth"
 
 
 def test_rows_of_the_truth_page():
     rows = {row[:2]: row for row in truth.read()}
-    assert {key for key, row in rows.items() if not row.holds} == OUTSIDE
+    assert {key for key, row in rows.items() if not row.holds} == set(truth.REASONS)
     assert set(TABLES) <= {table for table, _ in rows}, "a table of reference.toml without a row on the page"
     for row in truth.quick_rows(TABLES):
         assert_allclose(row.ours, rows[row[:2]].ours, rtol=1e-5, atol=1e-9, err_msg=str(row[:2]))
-        assert row.holds == (row[:2] not in OUTSIDE), row
+        assert row.holds == (row[:2] not in truth.REASONS), row
 
 
 def test_contact_in_calculix_as_committed():

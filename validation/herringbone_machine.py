@@ -37,7 +37,11 @@ def mesh_frequency():
     """By the relative speed of the sun, and by the printed form with the planet's teeth."""
     turn, carrier, mesh, _ = speeds()
     planet = scene(NAME).gears["planet"].z
-    return {"(f_s - f_c) z_s": mesh, "(f_s - f_c) z_p as printed": (turn - carrier) * planet, "f_c z_r": carrier * 72}
+    return {
+        "(f_s - f_c) z_s": mesh,
+        "(f_s - f_c) z_p as printed": (turn - carrier) * planet,
+        "f_c z_r": carrier * scene(NAME).gears["ring"].z,
+    }
 
 
 def fault_frequency():

@@ -22,6 +22,12 @@ PAGE = Path(__file__).parent / "truth.md"
 CSV = TABLES / "truth.csv"
 CONTACT = TABLES / "calculix.csv"
 LINE_LOAD, PHASES, NEAR = 150.0, 12, 0.06  # N/mm; phases; cycles from the ends of double contact
+RING = "the source does not give its ring fillet; a sharper one (cutter of 40 teeth, tip radius 0.1) gives 17.17"
+REASONS = {  # rows outside their tolerance
+    ("stage_17_37_91", "f_m"): "the source multiplies its rounded carrier frequency, 2.1 Hz, by 91; 800 rpm give 190.99 Hz",
+    ("healthy_ring", "27/72, min, fe"): RING,
+    ("healthy_ring", "27/72, min, ritz"): RING,
+}
 
 
 class Row(NamedTuple):
@@ -222,7 +228,7 @@ def text():
         else:
             away_by = f"{100 * (row.ours / row.theirs - 1):+.3f} %" if row.theirs else f"{row.ours:+.2g}"
             size = f"{100 * row.tolerance:g} %"
-        word = "within" if row.holds else "**outside**"
+        word = "within" if row.holds else f"**outside**: {REASONS.get(row[:2], 'no reason known')}"
         lines.append(f"| {name} | {row.case} | {row.theirs:.6g} | {row.ours:.6g} | {away_by} | {size} | {word} |")
     lines += ["", "Sources:", ""]
     for table in dict.fromkeys(row.table for row in rows):
