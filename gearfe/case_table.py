@@ -11,6 +11,7 @@ from geometry.pit import Pit
 from .inputs import CLOSED, overlap
 from .stiffness import mesh_stiffness
 from .stored import read_curves
+from .verdicts import judge, text
 
 PHASES = 32  # of the cycle looked at
 
@@ -105,6 +106,42 @@ class CaseTable:
 
 def _percent(value, form):
     return "none" if np.isnan(value) else f"{100 * value:{form}} %"
+
+
+def printed_beside(scene, published, reference, drops):
+    """Our values for the stiffnesses that the source of a scene prints, by id of its reference.
+
+    Parameters
+    ----------
+    scene : Scene
+    published, reference : dict
+        Mean stiffness [N/m] by (case, pair): by the source's own formulas and by the reference; case "healthy" without damage.
+    drops : dict
+        Largest loss of stiffness [%] by (case, pair).
+
+    Returns
+    -------
+    dict of str to dict
+        For `gearfe.verdicts.judge`; the printed errors are recomputed from the printed stiffnesses. Empty without such rows.
+    """
+    ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
+    said = {one.id: {(row.case, row.pair): row.value for row in one.rows} for one in scene.references}
+    if not all(name in said for name in (*ids, "stiffness_error")):
+        return {}
+    own, other = said["stiffness_analytical"], said["stiffness_fe"]
+    return ids | {"stiffness_error": {key: round(100 * abs(own[key] - other[key]) / own[key], 2) for key in own}}
+
+
+def printed_text(scene, table):
+    """The source's own table of stiffness beside a `CaseTable`, as Markdown with verdicts; empty if it prints none."""
+    means = {
+        name: {(case or "healthy", pair): table.curves[pair, case, name].mean for pair, case in table.cases()}
+        for name in ("published", table.reference)
+    }
+    drops = {(case, pair): 100 * table.drops(pair, case, table.reference)[0] for pair, case in table.cases() if case}
+    ours = printed_beside(scene, means["published"], means[table.reference], drops)
+    asked = [one for one in scene.references if one.id in ours]
+    return text(asked, [row for one in asked for row in judge(one, ours[one.id])]) if asked else ""
 
 
 def damage_cycle(chosen):

@@ -203,7 +203,7 @@ def _on_file(scene):
 
 def _compare_cases(scene, arguments):
     """``gearfe compare --cases``."""
-    from .case_table import case_table
+    from .case_table import case_table, printed_text
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
@@ -213,6 +213,9 @@ def _compare_cases(scene, arguments):
     print(f"engagement; errors are against {result.reference}\n")
     print(result.table())
     print(f"\nlargest loss of stiffness over that cycle\n\n{result.drop_table()}")
+    printed = printed_text(scene, result)
+    if printed:
+        print(f"\nas printed, and after the stated corrections, beside `published` and {result.reference}\n\n{printed}")
 
 
 def render(arguments):

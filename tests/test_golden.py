@@ -8,15 +8,16 @@ import math
 import pytest
 from numpy.testing import assert_allclose
 
+from gearfe import verdicts
 from validation import __main__ as pages
-from validation import assumptions, machines, verdicts
+from validation import assumptions, machines, table_rows
 
 PAGES = list(machines.PAGES)
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_every_printed_number_has_a_function_and_rows(page):
-    asked, rows = machines.references(page), verdicts.read(page)
+    asked, rows = machines.references(page), table_rows.read(page)
     assert {one.id for one in asked} == set(machines.functions(page)), "a reference without function, or a function without one"
     wanted = [(one.id, row.case, row.pair or "") for one in asked for row in one.rows]
     assert [row[:3] for row in rows] == wanted, "run python -m validation machines"
@@ -27,14 +28,14 @@ def test_every_printed_number_has_a_function_and_rows(page):
 @pytest.mark.parametrize("page", PAGES)
 def test_what_is_not_reproduced_has_a_reason(page):
     by_id = {one.id: one for one in machines.references(page)}
-    for row in verdicts.read(page):
+    for row in table_rows.read(page):
         if row.verdict not in (verdicts.REPRODUCED, verdicts.FORMULA):
             assert verdicts.reason(by_id[row.id], row), f"{row.id}, {row.case}: {row.verdict} without reason or correction"
 
 
 @pytest.mark.parametrize("page", PAGES)
 def test_cheap_rows_are_what_the_table_says(page):
-    known = {row[:3]: row for row in verdicts.read(page)}
+    known = {row[:3]: row for row in table_rows.read(page)}
     for row in machines.cheap(page).values():
         old = known[row[:3]]
         assert row.verdict == old.verdict, f"{row.id}, {row.case}"
@@ -44,7 +45,7 @@ def test_cheap_rows_are_what_the_table_says(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_verdicts_follow_from_the_numbers(page):
-    rows = verdicts.read(page)
+    rows = table_rows.read(page)
     for one in machines.references(page):
         own = [row for row in rows if row.id == one.id]
         found = {(row.case, row.pair) if row.pair else row.case: None if math.isnan(row.ours) else row.ours for row in own}
@@ -69,7 +70,7 @@ def test_references_computed_elsewhere_exist():
 @pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES)
 def test_simulated_rows_are_what_the_table_says(page):
-    known = {row[:3]: row for row in verdicts.read(page)}
+    known = {row[:3]: row for row in table_rows.read(page)}
     simulated = set(machines.functions(page)) - set(machines.functions(page, quick=True))
     for row in machines.computed(page, simulated):
         old = known[row[:3]]

@@ -13,7 +13,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from validation import machines, reference, truth, verdicts
+from gearfe import verdicts
+from validation import machines, reference, table_rows, truth
 
 TABLES = reference.load()
 
@@ -94,7 +95,7 @@ def printed():
     """Rows of all machines, those not reproduced marked."""
     for page in machines.PAGES:
         by_id = {one.id: one for one in machines.references(page)}
-        for row in verdicts.read(page):
+        for row in table_rows.read(page):
             if row.verdict == verdicts.FORMULA:
                 continue
             failing = row.verdict in (verdicts.NOT, verdicts.NEVER)
@@ -106,7 +107,7 @@ def printed():
 @functools.cache
 def now(page):
     """Rows of a page: the cheap ones computed now, the others as committed."""
-    return {row[:3]: row for row in verdicts.read(page)} | machines.cheap(page)
+    return {row[:3]: row for row in table_rows.read(page)} | machines.cheap(page)
 
 
 @pytest.mark.parametrize(("page", "row", "source"), list(printed()))

@@ -11,7 +11,7 @@ from gearfe.scene import scene_names
 from geometry.pair import GearPair
 
 from . import machine  # noqa: F401 first: one thread
-from .verdicts import TABLES
+from .table_rows import TABLES
 
 PAGE = Path(__file__).parent / "assumptions.md"
 CSV = TABLES / "assumptions.csv"

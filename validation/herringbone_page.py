@@ -1,16 +1,16 @@
 """The page of article S4's error table, from its tables alone."""
 
 import csv
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
+from gearfe.case_table import printed_beside
 from gearfe.plots import plot_errors
+from gearfe.verdicts import judge, text
 
-from .verdicts import judge, text
+from .table_rows import TABLES
 
-TABLES = Path(__file__).parent / "tables"
 SCENE = "herringbone"
 CLOSED = ("published", "textbook")
 PAGE = """# Article S4: error table of a herringbone planetary stage with crack and pits
@@ -68,19 +68,13 @@ def load(name):
 def found():
     """Ours by the id of a reference, each a dict by (case, pair)."""
     rows = load(SCENE)
-    reference = "fe3d" if any(row["method"] == "fe3d" for row in rows) else None
+    reference = "fe3d"
 
     def values(method, column, factor=1.0):
         return {(r["case"], r["pair"]): factor * float(r[column]) for r in rows if r["method"] == method}
 
-    printed = {one.id: {(r.case, r.pair): r.value for r in one.rows} for one in gf.load_scene(SCENE).references}
-    pairs = printed["stiffness_analytical"], printed["stiffness_fe"]
-    return {
-        "stiffness_analytical": values("published", "mean [N/m]"),
-        "stiffness_fe": values(reference, "mean [N/m]"),
-        "stiffness_error": {key: round(100 * abs(pairs[0][key] - pairs[1][key]) / pairs[0][key], 2) for key in pairs[0]},
-        "stiffness_reduction": values(reference, "largest drop", 100.0),
-    }
+    means = values("published", "mean [N/m]"), values(reference, "mean [N/m]")
+    return printed_beside(gf.load_scene(SCENE), *means, values(reference, "largest drop", 100.0))
 
 
 def error_table():

@@ -7,9 +7,10 @@ from functools import cache
 from pathlib import Path
 
 import gearfe as gf
+from gearfe import verdicts
 from gearfe.export import written
 
-from . import machine, verdicts  # noqa: F401 one thread
+from . import machine, table_rows  # noqa: F401 one thread
 
 FOLDER = Path(__file__).parent
 PAGES = {  # page and its module: scene
@@ -60,7 +61,7 @@ def cheap(page):
 def text(page):
     """The page as Markdown, from its committed rows and its scene."""
     scene = gf.load_scene(PAGES[page])
-    rows = verdicts.read(page)
+    rows = table_rows.read(page)
     lines = [
         f"# {scene.title}: printed and found",
         "",
@@ -99,7 +100,7 @@ def rebuild(page):
     for one in references(page):
         rows += computed(page, {one.id})
         print(f"  {page}, {one.id}: {time.perf_counter() - started:.0f} s", flush=True)
-    verdicts.write(page, rows)
+    table_rows.write(page, rows)
     module(page).draw(FOLDER)
     write_page(page)
     print(f"wrote {page}.md: {verdicts.counts(rows)}", flush=True)

@@ -16,7 +16,7 @@ from gearfe.elasticity import Body
 from gearfe.export import written
 
 from . import machine, reference  # machine first: one thread
-from .verdicts import TABLES
+from .table_rows import TABLES
 
 PAGE = Path(__file__).parent / "truth.md"
 CSV = TABLES / "truth.csv"

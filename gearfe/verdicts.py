@@ -1,13 +1,8 @@
-"""What the sources print beside what gearfe finds: rows, verdicts, CSV, Markdown."""
+"""What the sources of a scene print beside what gearfe finds: rows with verdicts, and their table."""
 
-import csv
 import math
-from pathlib import Path
 from typing import NamedTuple
 
-from gearfe.export import written
-
-TABLES = Path(__file__).parent / "tables"
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
@@ -94,27 +89,6 @@ def _difference(reference, ours, target):
 
 def _rounded(value):
     return float(f"{value:.6g}")
-
-
-def path_of(name):
-    """CSV file of a page."""
-    return TABLES / f"{name}.csv"
-
-
-def write(name, rows):
-    """Write the rows of a page with six digits."""
-    TABLES.mkdir(exist_ok=True)
-    with written(path_of(name)) as target, open(target, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(COLUMNS)
-        out.writerows([f"{x:.6g}" if isinstance(x, float) else x for x in row] for row in rows)
-
-
-def read(name):
-    """Rows of a committed page."""
-    with open(path_of(name), encoding="utf-8", newline="") as file:
-        rows = list(csv.DictReader(file))
-    return [Row(**{c: float(r[c]) if c in COLUMNS[3:7] else r[c] for c in COLUMNS}) for r in rows]
 
 
 def reason(reference, row):
