@@ -31,7 +31,8 @@ THREE = (("18/27", "healthy"), ("18/27", "crack 60 %"), ("12/20", "healthy"))  #
 TEXT = f"""
 The finite elements (`method="fe3d"`, hexahedra of both whole gears) are in `tables/pairs_three.csv`; `--reference` computes what
 it lacks, case by case. {LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle over the whole engagement of the pinion's tooth 0,
-which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as lost contact.
+which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as lost contact. Contact on the path only. Phases
+at which the load presses the faces of a crack together are left out: the hexahedra let them pass through each other.
 
 Mean and largest difference: `ritz3d` against the finest mesh, over all phases; bold beyond 0.5 % in the mean or 1 % at a phase.
 Last step: mean change of k from the mesh before to the finest, and the observed order of convergence where there are three.
@@ -42,6 +43,12 @@ other work; gears of earlier rows are known to it.
 What the table cannot show, because both have it: the contact lines, the half-space that is taken out of each patch, and the
 patches, 8 hats across the flank (along the width the finite elements have two more modes). With 12 narrower hats on finer
 triangles `ritz3d` finds k of the healthy 12/20 within 0.07 % of that with 8, but for two phases at the ends of the path, 0.3 %.
+
+The hexahedra are too stiff by their own discretisation: from resolution 0.55 to 0.8 k of the external pairs falls by 0.3 %, and
+were it of order 2 (three meshes would show it; there are not three) as much again would be left. All differences have that
+sign. It does not explain the pair 17/ring 42, where k falls by 0.09 % only and 0.6 % remain: the cause is not known. Edges of
+0.03 instead of 0.1 modules at the tip corners change k of 12/20 by 0.04 %. The losses by damage, in which such errors cancel,
+agree within 3 % of themselves. The largest differences of cracked teeth are beside the phases left out.
 """
 
 
@@ -81,6 +88,12 @@ def curve(pair, case, **options):
     """Stiffness curve over the engagement of tooth 0."""
     run = {"phases": PHASES, "span": "tooth", "damage": damage(pair, case), "extended": False}
     return gf.mesh_stiffness(pair, LOAD * pair.gear_1.b, STEEL, **(run | options))
+
+
+def model_curve(pair, case):
+    """Stiffness by the energy model, and the phases (a mask) at which no load presses the faces of a crack together."""
+    found = curve(pair, case, method="ritz3d")
+    return found.k, ~np.isin(found.phase, found.meta.get("crack_closed_phases", ()))
 
 
 def wanted():
@@ -147,7 +160,8 @@ def order(coarse, middle, fine):
 def row(name, about, case, known, model):
     """One line of the table: differences of the model from the finest mesh, how that mesh still moved, the drop."""
     levels = [known[name, case, r] for r in (COARSE, MAIN, FINE) if (name, case, r) in known]
-    best, away = levels[-1], model[case] / levels[-1]["k"] - 1
+    k, apart = model[case]
+    best, away = levels[-1], (k / levels[-1]["k"] - 1)[apart]
     step = f"{100 * (best['k'] / levels[-2]['k'] - 1).mean():+.2f} %" if len(levels) > 1 else ""
     if len(levels) == 3:
         power = order(*(level["k"] for level in levels))
@@ -155,14 +169,17 @@ def row(name, about, case, known, model):
     lost = ""
     both = [r for r in (MAIN, COARSE) if (name, "healthy", r) in known and (name, case, r) in known]
     if case != "healthy" and both:
-        healthy, damaged = (known[name, c, both[0]]["k"] for c in ("healthy", case))
-        loss, at_most, mean = drop(healthy, damaged, model["healthy"], model[case])
+        healthy, damaged = (known[name, c, both[0]]["k"][apart] for c in ("healthy", case))
+        loss, at_most, mean = drop(healthy, damaged, model["healthy"][0][apart], k[apart])
         lost = f"{100 * loss:.1f} % | {100 * at_most:+.1f} % | {100 * mean:+.1f} %"
     sizes = " / ".join(f"{sum(level['dofs']):,}" for level in levels)
     mean, most = 100 * away.mean(), 100 * np.abs(away).max()
     text = f"{mean:+.2f} %" if abs(mean) <= 0.5 else f"**{mean:+.2f} %**"
     worst = f"{most:.2f} %" if most <= 1 else f"**{most:.2f} %**"
-    return f"| {name}, {about} | {case} | {sizes} | {text} | {worst} | {step} | {lost or ' | | '} | {best['seconds']:.0f} |"
+    closed = f" (without {apart.size - apart.sum()} of {apart.size} phases)" if not apart.all() else ""
+    return (
+        f"| {name}, {about} | {case}{closed} | {sizes} | {text} | {worst} | {step} | {lost or ' | | '} | {best['seconds']:.0f} |"
+    )
 
 
 def run():
@@ -181,7 +198,7 @@ def run():
         model = {}
         for case in CASES:
             if any((name, case, resolution) in known for resolution in (MAIN, COARSE)):
-                model[case] = curve(pair, case, method="ritz3d").k
+                model[case] = model_curve(pair, case)
                 lines.append(row(name, about, case, known, model))
                 print(lines[-1], flush=True)
     with written(PAGE) as name:
