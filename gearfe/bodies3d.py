@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.damage import crack_in_band
+from geometry.damage import check_single, crack_in_band
 
 
 def seen_gears(pair, face, groove):
@@ -48,13 +48,15 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
     Raises
     ------
     ValueError
-        If a crack lies in the relief groove.
+        If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
     gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, strict=True))
     for gear, (body, _), _, own in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
+        for band in bands:
+            check_single(body, seen_cracks(gear, own, body, band))
     return [
         [(flexible(body, material, seen_cracks(gear, own, body, band)), offset) for gear, (body, offset), material, own in gears]
         for band in bands

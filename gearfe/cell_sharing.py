@@ -1,7 +1,7 @@
 """Load sharing over the cells of contact lines: cells push, do not pull, and each is a strip of Hertz's pressure."""
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from .contact import CLOSED
 from .energy.halfspace import line_kernel, pair_kernel, strip
@@ -147,7 +147,10 @@ def _free(total, offset, load, active, blocks, weight):
         at = block[active[block]]
         if at.size:
             part = total if at.size == offset.size else total[np.ix_(at, at)]
-            solved = cho_solve(cho_factor(part), np.column_stack([weight[at], offset[at]]))
+            try:
+                solved = cho_solve(cho_factor(part), np.column_stack([weight[at], offset[at]]))
+            except LinAlgError as error:
+                raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine") from error
             ones[at], gaps[at] = solved.T
     approach = (load + weight @ gaps) / (weight @ ones)
     return approach * ones - gaps, approach

@@ -190,7 +190,7 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
     """
     patches.check(mesh.gear)
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
-    made = plan(3 * free.size, solver=solver)
+    made = plan(3 * free.size, columns=len(patches.teeth) * patches.knots.shape[1] * patches.modes, solver=solver)
     if tell:
         tell(made)
     load = np.hstack([patch_loads(mesh, patches, tooth) for tooth in patches.teeth])

@@ -3,20 +3,23 @@
 import math
 
 import numpy as np
+from scipy.linalg import eigh
 
+from .energy.halfspace import half_space
 from .fe3d import Patches, influence, mesh_patches
-from .flexibility3d import hats, parted, solved_teeth
+from .flexibility3d import hats, own_distance, parted, solved_teeth
 
+RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
 PER_HAT = 4  # edges across a hat
-LAYER = 1.0  # height of the element layers [m_n], at most a sixth of the width
+LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
 # edge lengths in modules, see `geometry.quads.SIZES`
-SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.5, "near": 0.7, "far": 1.6, "crack": 0.3, "crack tip": 0.06}
+SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 
 
 def axial_modes(width, m_n):
-    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module, at least 6, as `ritz3d` keeps by default."""
-    return max(6, math.ceil(0.8 * width / m_n))
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module and 2, at least 8: 2 more than `ritz3d` keeps."""
+    return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
 def solid_flexibility(
@@ -51,7 +54,7 @@ def solid_flexibility(
     ValueError
         If an input is impossible.
     RuntimeError
-        If the system does not fit into memory; the message has the numbers.
+        If the system does not fit into memory, with the numbers, or if the mesh cannot carry the patches.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
@@ -66,5 +69,11 @@ def solid_flexibility(
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
     whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
+    least = eigh(whole[0, :, 0], half_space(material) * own_distance(gear, gear.b, degree), eigvals_only=True)[0]
+    if least < RESOLVED:
+        raise RuntimeError(
+            f"z = {gear.z}, b = {gear.b:g} mm, refine = {refine:g}: the mesh is too coarse for patches of degree {degree} along "
+            f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+        )
     between = {(i, j): whole[a, :, b] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
     return parted(gear, material, gear.b, degree, between, found.dofs, healthy)

@@ -148,7 +148,7 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     -------
     Flexibility3D
     """
-    local = half_space(material) * _own(gear, width, degree)
+    local = half_space(material) * own_distance(gear, width, degree)
     cracked = healthy is not None
     near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
     far = {
@@ -158,7 +158,7 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
 
 
 @lru_cache(maxsize=8)
-def _own(gear, width, degree):
+def own_distance(gear, width, degree):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
     knots = hats(gear)
     roll = roll_at_arc(gear, knots.mean(axis=0))

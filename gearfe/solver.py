@@ -47,7 +47,7 @@ def free_memory():
     return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) if hasattr(os, "sysconf") else math.inf
 
 
-def plan(unknowns, *, solver=None, free=None):
+def plan(unknowns, *, columns=0, solver=None, free=None):
     """Choose a solver for a three-dimensional body and see whether it fits.
 
     The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers.
@@ -55,6 +55,8 @@ def plan(unknowns, *, solver=None, free=None):
     Parameters
     ----------
     unknowns : int
+    columns : int
+        Right-hand sides solved for at once; three copies of them are held.
     solver : {"cholmod", "pardiso", "superlu"}, optional
         Default: the best that is installed.
     free : float, optional
@@ -80,7 +82,7 @@ def plan(unknowns, *, solver=None, free=None):
         raise ValueError(f"solver = {solver!r}, but this machine has {', '.join(found)}")
     name = solver or found[0]
     free = free_memory() if free is None else float(free)
-    made = Plan(name, int(unknowns), expected_memory(unknowns, name), free)
+    made = Plan(name, int(unknowns), expected_memory(unknowns, name) + 24.0 * columns * unknowns, free)
     if name == "superlu" and unknowns > SUPERLU_LIMIT:
         raise RuntimeError(
             f"{unknowns} unknowns are too many for SuperLU (limit {SUPERLU_LIMIT}, about {made.memory / 1e9:.2g} GB): install "
@@ -142,7 +144,16 @@ def _cholmod(lower):
         factored = cholesky(_full(lower), mode="supernodal", ordering_method="metis")
     except CholmodNotPositiveDefiniteError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
-    return lambda rhs: factored(np.ascontiguousarray(rhs))
+
+    def solve(rhs):
+        return factored(np.ascontiguousarray(rhs))
+
+    def gram(rhs):
+        moved = factored.solve_L(factored.apply_P(np.ascontiguousarray(rhs)), use_LDLt_decomposition=False)
+        return moved.T @ moved
+
+    solve.gram = gram
+    return solve
 
 
 def _pardiso(lower):

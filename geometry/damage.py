@@ -206,6 +206,12 @@ def check_apart(gear, cracks):
                 raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
 
 
+def check_single(gear, cracks):
+    """Raise ValueError if a body has two cracks on one side of a tooth, even beside each other along the width."""
+    if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
+        raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
+
+
 def check_through(cracks, what):
     """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
     for crack in cracks:

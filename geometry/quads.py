@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .damage import check_apart, crack_path, mirrored, start_arc
+from .damage import check_apart, check_single, crack_path, mirrored, start_arc
 from .gear import Gear
 from .mesher import quadrangulate
 from .outline import spaced
@@ -18,7 +18,16 @@ from .tooth import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_cu
 # edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
-ATTEMPTS = ((1.0, 8), (1.0, 5), (1.07, 8), (1.07, 5), (1.15, 8), (1.24, 5))  # finer, algorithm: gmsh may leave triangles
+ATTEMPTS = (
+    (1.0, 8),
+    (1.0, 5),
+    (1.07, 8),
+    (1.07, 5),
+    (1.15, 8),
+    (1.24, 5),
+    (1.4, 8),
+    (1.6, 8),
+)  # finer, algorithm: gmsh may leave triangles
 GROWTH = 0.4  # of the edge length per length, away from fine places
 
 
@@ -101,8 +110,7 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     if not loaded or len({tooth % gear.z for tooth in loaded}) != len(loaded):
         raise ValueError(f"teeth {sorted(loaded)} are not distinct teeth of a gear of z = {gear.z}: name at least one, each once")
     check_apart(gear, cracks)
-    if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
-        raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
+    check_single(gear, cracks)
     teeth = [tooth % gear.z for tooth in loaded]
     for finer, algorithm in ATTEMPTS:
         edges = {name: value / refine / finer for name, value in size.items()}

@@ -1,0 +1,86 @@
+"""The stored finite elements of pairs in three dimensions: plausible by themselves, and the energy model against them."""
+
+import numpy as np
+import pytest
+
+from validation import pairs_three
+from validation.pairs_three import COARSE, MAIN
+
+KNOWN = pairs_three.stored()
+
+
+def test_the_table_has_rings_steep_and_wide_gears_healthy_and_damaged():
+    names = {name for name, case, _ in KNOWN if case == "healthy"}
+    assert len(names) * 2 >= 6
+    assert sum("ring" in name for name in names) == 2
+    assert set(pairs_three.pairs()) >= names
+    for case in pairs_three.CASES:
+        assert sum(key[1] == case for key in KNOWN) >= 3
+    assert sum((name, case, COARSE) in KNOWN for name, case, refine in KNOWN if refine == MAIN) >= 2
+
+
+@pytest.mark.parametrize("key", [key for key in KNOWN if key[1] != "healthy"], ids=str)
+def test_damage_softens(key):
+    name, case, refine = key
+    healthy = KNOWN.get((name, "healthy", refine))
+    loss = 1 - KNOWN[key]["k"] / healthy["k"]
+    assert loss.min() > -1e-4
+    assert 0.03 < loss.max() < 0.6
+    if case == "crack 60 %":
+        assert loss.max() > 1.5 * (1 - KNOWN[name, "crack 30 %", refine]["k"] / healthy["k"]).max()
+
+
+@pytest.mark.parametrize("key", [key for key in KNOWN if key[2] == COARSE and (*key[:2], MAIN) in KNOWN], ids=str)
+def test_coarser_meshes_are_stiffer(key):
+    away = KNOWN[key]["k"] / KNOWN[*key[:2], MAIN]["k"] - 1
+    assert 0 < away.mean() < 0.01
+    assert np.abs(away).max() < 0.01
+
+
+SHORT = {
+    ("18/27", "crack 60 %"): "1.03 % at one phase beside those at which the crack closes",
+    ("12/20", "crack 60 %"): "1.16 % at one phase beside those at which the crack closes",
+    ("17/ring 42", "healthy"): "0.61 % in the mean: the hexahedra of resolution 0.8 are too stiff at the tip corner",
+    ("17/ring 42", "crack 30 %"): "0.53 % in the mean, 1.11 % at one phase",
+    ("17/ring 42", "crack 60 %"): "0.57 % in the mean, 1.55 % at one phase",
+    ("17/ring 42", "7 pits"): "0.60 % in the mean",
+}
+
+
+def targets():
+    """Pairs and cases; those that miss a target are expected to."""
+    for name, case in sorted({key[:2] for key in KNOWN}):
+        mark = [pytest.mark.xfail(strict=True, reason=SHORT[name, case])] if (name, case) in SHORT else []
+        yield pytest.param(name, case, marks=mark)
+
+
+def finest(name, case):
+    """Stored k, and that of the healthy pair, of the finest mesh up to `MAIN`."""
+    refine = MAIN if (name, case, MAIN) in KNOWN else COARSE
+    return KNOWN[name, case, refine]["k"], KNOWN[name, "healthy", refine]["k"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "case"), list(targets()))
+def test_the_energy_model_is_within_half_a_percent_of_the_hexahedra(name, case):
+    """The targets: 0.5 % in the mean, 1 % at every phase."""
+    k, apart = pairs_three.model_curve(pairs_three.pairs()[name][1], case)
+    away = (k / finest(name, case)[0] - 1)[apart]
+    print("mean", away.mean(), "largest", np.abs(away).max())
+    assert apart.sum() > 10
+    assert abs(away.mean()) < 5e-3
+    assert np.abs(away).max() < 1e-2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "case"), sorted({key[:2] for key in KNOWN if key[1] != "healthy"}))
+def test_the_loss_by_damage_is_that_of_the_hexahedra(name, case):
+    """Within 5 % of itself where it is largest."""
+    pair = pairs_three.pairs()[name][1]
+    k, apart = pairs_three.model_curve(pair, case)
+    damaged, healthy = finest(name, case)
+    loss, at_most, mean = pairs_three.drop(
+        healthy[apart], damaged[apart], pairs_three.model_curve(pair, "healthy")[0][apart], k[apart]
+    )
+    print("drop", loss, "of itself", at_most, "mean", mean)
+    assert abs(at_most) < 0.05
