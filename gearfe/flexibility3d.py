@@ -18,6 +18,7 @@ from .energy.halfspace import half_space, hat_points, modes, patch_kernel
 
 PLACES = 8  # hats on each flank
 HAT = 0.4  # half their width [m_n]
+NEAREST = 0.01  # to the tip corner that values are read [m_n]
 OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
 
 
@@ -196,5 +197,9 @@ def _from_hats(gear):
 
 
 def carry(gear, roll):
-    """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm]."""
-    return chebyshev.chebvander(variable(gear, arc_at(gear, np.asarray(roll, dtype=float))), PLACES - 1) @ _from_hats(gear)
+    """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm].
+
+    At the tip corner itself it would make much of small errors of the hats: closer than `NEAREST` it reads there.
+    """
+    arc = np.minimum(arc_at(gear, np.asarray(roll, dtype=float)), arc_at(gear, gear.roll_a) - NEAREST * gear.m_n)
+    return chebyshev.chebvander(variable(gear, arc), PLACES - 1) @ _from_hats(gear)

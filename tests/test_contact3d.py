@@ -86,6 +86,18 @@ def test_corner_contact_of_a_wide_spur_pair_is_that_of_the_plane(line_load):
         assert {1, 2} <= set().union(*touching), "both gears' corners are seen"
 
 
+def test_corner_contact_of_a_ring_and_of_two_materials_is_that_of_the_plane():
+    rack, materials = RACK | {"b": 400.0}, (STEEL, gf.Material(E=110e3, nu=0.25))
+    planet = gf.Gear(z=27, r_bore=12.0, **rack)
+    pair = gf.GearPair(planet, gf.Gear(z=72, r_rim=90.0, addendum=0.8, tip_radius=0.2, **rack))
+    leaves = pair.eps_alpha - 1
+    phases = np.array([-0.02, 0.0, 0.4, leaves, leaves + 0.02, leaves + 0.05])
+    plane, without = (gf.mesh_stiffness(pair, 6e4, materials, phases=phases, extended=e, method="ritz").k for e in (True, False))
+    solid = pair_stiffness3d(pair, 6e4, materials, phases, face="spur", axial=0, step=20.0)
+    assert (plane > 1.2 * without).any()
+    assert_allclose(solid.k, plane, rtol=5e-3)
+
+
 def test_helical_contact_goes_on_beyond_the_path():
     """Lines end where the gap is the approach, loads stay positive, and more contact is stiffer."""
     pair, phases = pair_of(20.0), np.linspace(0, 1, 5)[:-1]

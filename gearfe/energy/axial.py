@@ -124,7 +124,8 @@ def _open(z, band, degree, width):
 def _steps(band, k, width, m_n):
     """Five places about one end of a band, between which the short cubics change [mm]."""
     end = band[k]
-    reach = min(ENDS[0] * m_n, (band[1] - band[0]) / 2, end, width - end)
+    # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
+    reach = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0]), 0.9 * end, 0.9 * (width - end))
     return end + reach * np.array([-1.0, -ENDS[1], 0.0, ENDS[1], 1.0])
 
 
