@@ -10,7 +10,7 @@ from .contact3d import pair_stiffness3d
 from .curve import StiffnessCurve
 
 MORE = 1.01  # load of the second solve that gives the tangent
-COARSER = 0.7  # resolution of the error estimate of finite elements, relative to that of the curve
+COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elements; the first whose section can be meshed in quads
 LESS = 2  # axial degrees less in it
 
 
@@ -29,7 +29,7 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     meta : dict
         Holds ``method``, ``face``, ``groove``, ``refine``, ``extended`` and (energy model) ``order``.
     error : bool
-        Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees.
+        Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
         Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
     cache, tell
         Of the finite elements, see `gearfe.cache.solved_solid`.
@@ -51,9 +51,10 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
     doubt = found.error
     if error and brute:
-        model = partial(solved_solid, refine=COARSER * meta["refine"], cache=cache, tell=tell, less=LESS)
-        away = np.abs(pair_stiffness3d(pair, force, materials, phase, **(options | {"model": model})).k - found.k)
+        ratio, k = _coarser((pair, force, materials, phase), options, meta["refine"], cache, tell)
+        away = np.abs(k - found.k)
         doubt = np.maximum(away, away.mean())
+        meta = meta | {"error_refine": ratio * meta["refine"]}
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
@@ -74,3 +75,14 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
         error=doubt,
         meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
     )
+
+
+def _coarser(case, options, refine, cache, tell):
+    """Part of the resolution at which a coarser mesh was possible, and its k."""
+    for ratio in COARSER:
+        model = partial(solved_solid, refine=ratio * refine, cache=cache, tell=tell, less=LESS)
+        try:
+            return ratio, pair_stiffness3d(*case, **(options | {"model": model})).k
+        except RuntimeError as error:
+            failed = error
+    raise failed

@@ -2,12 +2,15 @@
 
 import math
 from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe import wide
 from gearfe.hertz import contact_modulus, peak_pressure
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -178,3 +181,20 @@ def test_pits_over_the_whole_contact_line_name_the_phase(steel):
     pits = [replace(PIT, axes=(8.0, 20.0), tooth=k) for k in range(-1, 4)]
     with pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: pits cover it all"):
         curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))
+
+
+def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
+    """A coarse section may fold; then the next finer one is taken, and what fails for all is said."""
+
+    def contact(*case, model, least):
+        if model.keywords["refine"] < least:
+            raise RuntimeError("a quad of the section folds")
+        return SimpleNamespace(k=np.array([model.keywords["refine"]]))
+
+    for least, wanted in ((0.3, 0.35), (0.37, 0.38)):
+        monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=least))
+        ratio, k = wide._coarser((), {}, 0.5, False, None)
+        assert_allclose([0.5 * ratio, k[0]], wanted)
+    monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
+    with pytest.raises(RuntimeError, match="folds"):
+        wide._coarser((), {}, 0.5, False, None)
