@@ -132,6 +132,12 @@ def printed_beside(scene, published, reference, drops):
     return ids | {"stiffness_error": {key: round(100 * abs(own[key] - other[key]) / own[key], 2) for key in own}}
 
 
+def printed_cases(scene):
+    """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears; none if it does not."""
+    rows = [row for one in scene.references if one.id == "stiffness_fe" for row in one.rows]
+    return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
+
+
 def printed_text(scene, table):
     """The source's own table of stiffness beside a `CaseTable`, as Markdown with verdicts; empty if it prints none."""
     means = {
@@ -172,7 +178,7 @@ def case_curve(chosen, case, method, phase, **options):
     return CaseCurve(curve.k, tooth, seconds, doubt)
 
 
-def case_table(scene, *, compute=False, progress=None):
+def case_table(scene, cases=None, *, compute=False, progress=None):
     """Every pair and case of a scene by every method that has it.
 
     The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
@@ -183,6 +189,8 @@ def case_table(scene, *, compute=False, progress=None):
     ----------
     scene : Scene
         With cases of damage.
+    cases : sequence of (str, str or None), optional
+        Pairs with their cases, each pair with None (healthy) too; default all.
     compute : bool
         Compute three-dimensional finite elements that are not on file.
     progress : callable, optional
@@ -204,6 +212,7 @@ def case_table(scene, *, compute=False, progress=None):
     wide = any(is_wide(pair) for pair in scene.pairs.values())
     stored = read_curves(scene) if wide else {}
     wanted = [(name, case) for name, pair in scene.pairs.items() if pair.damage for case in (None, *pair.damage)]
+    wanted = wanted if cases is None else list(cases)
     solid = wide and (compute or all(key in stored for key in wanted))
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), "textbook", "published")

@@ -34,7 +34,9 @@ def main(argv=None):
     )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
     verb.add_argument(
-        "--cases", action="store_true", help="all pairs in all cases of damage (default of a scene with finite elements on file)"
+        "--cases",
+        action="store_true",
+        help="all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)",
     )
     verb.add_argument("--reference", action="store_true", help="with --cases: compute three-dimensional finite elements anew")
     verb = _verb(
@@ -169,14 +171,17 @@ def stiffness(arguments):
 
 def compare(arguments):
     """``gearfe compare``."""
+    from .case_table import printed_cases
     from .comparison import compare as run
     from .references import printed_stiffness
     from .scene import load_scene
 
     scene = load_scene(arguments.scene)
     _print_scene(scene)
-    if arguments.cases or arguments.reference or not (arguments.pair or arguments.case or arguments.model or not _on_file(scene)):
-        _compare_cases(scene, arguments)
+    printed = printed_cases(scene)
+    every = arguments.cases or arguments.reference
+    if every or (printed and not (arguments.pair or arguments.case or arguments.model or arguments.plot)):
+        _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
         return
     with _working("finite elements and energy methods"):
         options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
@@ -195,20 +200,14 @@ def compare(arguments):
         print(f"\nwritten: {arguments.plot}")
 
 
-def _on_file(scene):
-    from .stored import read_curves
-
-    return bool(read_curves(scene))
-
-
-def _compare_cases(scene, arguments):
+def _compare_cases(scene, arguments, cases):
     """``gearfe compare --cases``."""
     from .case_table import case_table, printed_text
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
     with _working("every case by every method"):
-        result = case_table(scene, compute=arguments.reference)
+        result = case_table(scene, cases, compute=arguments.reference)
     print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
     print(result.table())
