@@ -9,6 +9,7 @@ from .energy.halfspace import half_space
 from .fe3d import Patches, influence, mesh_patches
 from .flexibility3d import hats, own_distance, parted, solved_teeth
 
+LOST = 2  # of the highest axial degrees may be dropped if the layers do not carry them
 RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
 PER_HAT = 4  # edges across a hat
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
@@ -37,7 +38,8 @@ def solid_flexibility(
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
-        Of the patches along the width; default `axial_modes`, `less` so many.
+        Of the patches along the width; default `axial_modes`, `less` so many. The highest that the layers cannot carry, at most
+        two, are dropped (seen on the gear without cracks).
     refine : float
         Divides all edge lengths and the layers.
     solver, tell
@@ -69,11 +71,21 @@ def solid_flexibility(
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
     whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
-    least = eigh(whole[0, :, 0], half_space(material) * own_distance(gear, gear.b, degree), eigvals_only=True)[0]
-    if least < RESOLVED:
-        raise RuntimeError(
-            f"z = {gear.z}, b = {gear.b:g} mm, refine = {refine:g}: the mesh is too coarse for patches of degree {degree} along "
-            f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
-        )
-    between = {(i, j): whole[a, :, b] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    return parted(gear, material, gear.b, degree, between, found.dofs, healthy)
+    kept = _resolved(gear, material, whole[0, :, 0], degree, refine) if healthy is None else healthy.degree
+    own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
+    between = {(i, j): whole[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
+    return parted(gear, material, gear.b, kept, between, found.dofs, healthy)
+
+
+def _resolved(gear, material, own, degree, refine):
+    """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
+    for kept in range(degree, degree - LOST - 1, -1):
+        at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
+        flat = half_space(material) * own_distance(gear, gear.b, kept)
+        least = eigh(own[np.ix_(at, at)], flat, eigvals_only=True)[0]
+        if least >= RESOLVED:
+            return kept
+    raise RuntimeError(
+        f"z = {gear.z}, b = {gear.b:g} mm, refine = {refine:g}: the mesh is too coarse for patches of degree {kept} along the "
+        f"width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+    )

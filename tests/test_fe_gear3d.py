@@ -196,8 +196,19 @@ def test_what_does_not_fit_is_refused_before_it_is_solved(steel, monkeypatch):
 
 
 def test_a_mesh_too_coarse_for_its_patches_is_refused(steel):
-    with pytest.raises(RuntimeError, match="too coarse for patches of degree 8 along the width"):
-        solid_flexibility(SMALL, steel, refine=0.4, degree=8)
+    with pytest.raises(RuntimeError, match="too coarse for patches of degree 10 along the width"):
+        solid_flexibility(SMALL, steel, refine=0.4, degree=12)
+
+
+def test_degrees_the_layers_do_not_carry_are_dropped(steel):
+    """The rest is what it would be without them, also of a cracked gear."""
+    whole = solid_flexibility(SMALL, steel, refine=0.4, degree=8)
+    assert whole.degree == 7
+    less = solid_flexibility(SMALL, steel, refine=0.4, degree=7)
+    assert_allclose(whole.near[0], less.near[0], rtol=1e-9, atol=1e-12 * np.abs(less.near[0]).max())
+    cracked = solid_flexibility(SMALL, steel, (gf.Crack(level=0.3),), refine=0.4, degree=8, healthy=whole)
+    assert cracked.degree == 7
+    assert cracked.near[0].shape == whole.near[0].shape
 
 
 @pytest.mark.slow
