@@ -17,6 +17,8 @@ from gearfe.herringbone import herringbone_planetary, pitted_helical  # isort: s
 from gearfe.meshing import Samples, cycle_table  # isort: skip
 from gearfe.models import pitted_planetary  # isort: skip
 
+from .speed_page import save  # isort: skip
+
 PAGE = Path(__file__).parent / "dynamics.md"
 DURATION = 0.01  # of the comparison; the fast path is timed over one second
 WAVE = 1 + 0.15 * np.cos(2 * math.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * math.pi * np.arange(64) / 64)
@@ -170,6 +172,7 @@ def run():
         "| integrator | seconds per simulated second | error |",
         "|---|---|---|",
     ]
+    rows = []
     for compiled in [False, *([True] if find_spec("numba") else [])]:
         name = "fast, numba" if compiled else "fast, numpy"
         simulate(model, DURATION, numba=compiled)  # compile
@@ -178,10 +181,12 @@ def run():
             started = time.process_time()
             simulate(model, 1.0, dt=dt, numba=compiled)
             seconds = time.process_time() - started
-            lines.append(f"| {name}, {1e6 * dt:g} us | {seconds:.3g} | {_error(got, want):.2g} |")
+            rows.append((name, f"{name}, {1e6 * dt:g} us", seconds, math.nan, _error(got, want), int(dt == 2.5e-5), ""))
     for method, rtol in (("RK45", 1e-4), ("RK45", 1e-6), ("DOP853", 1e-6), ("LSODA", 1e-4), ("DOP853", 1e-10)):
         got, seconds = (want, slow) if rtol == 1e-10 else _timed(model, method, rtol)
-        lines.append(f"| {method}, rtol {rtol:g} | {seconds / DURATION:.3g} | {_error(got, want):.2g} |")
+        rows.append((method, f"{method}, rtol {rtol:g}", seconds / DURATION, math.nan, _error(got, want), 0, ""))
+    save("speed_dynamics", f"Made by `python -m validation dynamics` on {machine.describe()}.", rows)
+    lines += [f"| {method} | {seconds:.3g} | {error:.2g} |" for _, method, seconds, _, error, *_ in rows]
     for head, rows in ((HEAD, accuracy()), (SPEED, speeds())):
         lines += head
         for row in rows:

@@ -3,21 +3,19 @@
 import os
 import tempfile
 import time
-from pathlib import Path
 
 from . import machine  # first: it sets the number of threads
 
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.export import written  # isort: skip
+
+from .speed_page import page, save  # isort: skip
 
 REFINES = (0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
 ORDERS = (2, 3, 4, 5, 6)
 REFERENCE = 6.0
 DEFAULTS = ("fe, refine 1", "ritz, order 4")
-PAGE = Path(__file__).parent / "speed.md"
-PICTURE = Path(__file__).parent / "speed.png"
 
 
 def median_seconds(work, repeats=5):
@@ -31,7 +29,7 @@ def median_seconds(work, repeats=5):
 
 
 def run():
-    """Measure, write `speed.md` and `speed.png`, and print the page."""
+    """Measure, write `speed.md` and `speed.png`, and print the page: with the last measurements of the other two parts."""
     with tempfile.TemporaryDirectory() as folder:
         os.environ["GEARFE_CACHE"] = folder
         _run()
@@ -58,11 +56,28 @@ def _run():
         median_seconds(lambda n=n: gf.mesh_stiffness(scene.pair, [1e3 + 200 * i for i in range(n)], scene.materials))[0]
         for n in (1, 11)
     )
-    page = _page(rows, truth, (many - few) / 1000, (ten - one) / 10)
-    with written(PAGE) as name:
-        Path(name).write_text(page, encoding="utf-8")
-    _plot(rows)
-    print(page)
+    save("speed_two", _about(truth, (many - few) / 1000, (ten - one) / 10), [_line(*row) for row in rows])
+    print(page())
+
+
+def _about(truth, per_phase, per_load):
+    dofs = " + ".join(f"{n:,}" for n in truth.meta["dofs"])
+    return (
+        f"Made by `python -m validation speed` on {machine.describe()}. Scene `planetary_pitting`, sun-planet pair, 64 "
+        "phases, imports excluded, meshing included, median of 5 runs, nothing cached unless the row says so. Reference: "
+        f"finite elements of {dofs} unknowns (refine {REFERENCE:g}; cracked: refine {REFERENCE / 2:g}). That `ritz` settles "
+        "0.03 % away from it is mostly a bias of the reference: its hat pressures are as wide as its own edges and miss about 0.5 % of the local "
+        "coefficient at any refinement; with hats twice as wide (`gearfe.fe.SPAN`) the two come together. Each further phase of "
+        f"`ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms, that is "
+        f"{1e3 * per_load / 64:.2f} ms per phase and load."
+    )
+
+
+def _line(name, size, seconds, error):
+    """Row of `speed_page.COLUMNS`."""
+    family = name if "crack" in name else name.split(",")[0]
+    more = " + ".join(f"{n:,}" for n in size) + " unknowns" if size else ""
+    return family, name, seconds, float(error.mean()), float(error.max()), int(name in DEFAULTS), more
 
 
 def _row(name, truth, work):
@@ -80,54 +95,3 @@ def _new_cracks(scene, method):
 
     new_crack()
     return new_crack
-
-
-def _page(rows, truth, per_phase, per_load):
-    dofs = " + ".join(f"{n:,}" for n in truth.meta["dofs"])
-    lines = [
-        "# Speed against error, 2-D",
-        "",
-        f"Made by `python -m validation speed` on {machine.describe()}. Scene `planetary_pitting`, sun-planet pair, 64 phases,",
-        "imports excluded, meshing included, median of 5 runs, nothing cached unless the row says so. Error of k at each phase",
-        f"against finite elements of {dofs} unknowns (refine {REFERENCE:g}; cracked: refine {REFERENCE / 2:g}).",
-        "",
-        "| method | unknowns | seconds | mean error | max error |",
-        "|---|---|---|---|---|",
-    ]
-    for name, size, seconds, error in rows:
-        size = " + ".join(f"{n:,}" for n in size) if size else ""
-        bold = "**" if name in DEFAULTS else ""
-        lines.append(f"| {bold}{name}{bold} | {size} | {seconds:.4f} | {100 * error.mean():.3f} % | {100 * error.max():.3f} % |")
-    lines += [
-        "",
-        "Bold: the default resolutions; `ritz` is the default method. That `ritz` settles 0.03 % away from the reference is",
-        "mostly a bias of the latter: its hat pressures are as wide as its own edges and miss about 0.5 % of the local",
-        "coefficient at any refinement; with hats twice as wide (`gearfe.fe.SPAN`) the two come together.",
-        f"Each further phase of `ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms,",
-        f"that is {1e3 * per_load / 64:.2f} ms per phase and load.",
-        "",
-        "![seconds against error](speed.png)",
-        "",
-    ]
-    return "\n".join(lines)
-
-
-def _plot(rows):
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6, 4), layout="constrained")
-    axes = figure.subplots()
-    for start, style, label in (("fe, refine", "o-", "fe, by resolution"), ("ritz, order", "o-", "ritz, by order 2 to 6")):
-        line = [(seconds, 100 * error.max()) for name, _, seconds, error in rows if name.startswith(start)]
-        axes.loglog(*zip(*line, strict=True), style, label=label)
-    for name, _, seconds, error in rows:
-        if name in ("coupled", "textbook", "published"):
-            axes.loglog(seconds, 100 * error.max(), "s", label=name)
-        if name in DEFAULTS:
-            axes.loglog(seconds, 100 * error.max(), "o", ms=12, mfc="none", mec="k", label=None if "ritz" in name else "default")
-    axes.set_xlabel("seconds for 64 phases, one thread")
-    axes.set_ylabel("largest error of k [%]")
-    axes.grid(True, which="both", alpha=0.3)
-    axes.legend()
-    with written(PICTURE) as name:
-        figure.savefig(name, dpi=100)
