@@ -8,9 +8,12 @@ import math
 import pytest
 from numpy.testing import assert_allclose
 
+import gearfe as gf
 from gearfe import verdicts
+from gearfe.case_table import case_curve, damage_cycle, printed_cases
+from gearfe.stored import read_curves
 from validation import __main__ as pages
-from validation import assumptions, machines, table_rows
+from validation import assumptions, herringbone_page, machines, speed_page, table_rows
 
 PAGES = list(machines.PAGES)
 
@@ -98,3 +101,46 @@ def test_every_page_can_be_asked_for():
     assert set(pages.LONG) | set(pages.TIMED) < set(pages.PAGES)
     for page in pages.PAGES:
         assert (machines.FOLDER / f"{page}.py").is_file(), page
+
+
+def test_page_of_the_ten_rows_is_not_stale():
+    on_disk = (machines.FOLDER / "herringbone.md").read_text(encoding="utf-8")
+    assert on_disk == herringbone_page.page(), "herringbone.md is stale: run python -m validation herringbone"
+
+
+def test_finite_elements_on_file_are_of_the_scene_as_it_is():
+    scene = gf.load_scene("herringbone")
+    stored = read_curves(scene)
+    assert set(printed_cases(scene)) <= set(stored), "run python -m validation herringbone --reference"
+    rows = {(r["pair"], r["case"]): r for r in herringbone_page.load("herringbone") if r["method"] == "fe3d"}
+    for pair, case in printed_cases(scene):
+        assert_allclose(float(rows[pair, case or "healthy"]["mean [N/m]"]), stored[pair, case][1].mean(), rtol=1e-5)
+
+
+@pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
+@pytest.mark.parametrize("method", ["published", "textbook"])
+def test_closed_forms_of_the_ten_rows(pair, method):
+    scene = gf.load_scene("herringbone")
+    chosen = scene.pairs[pair]
+    for row in herringbone_page.load("herringbone"):
+        if (row["pair"], row["method"]) == (pair, method):
+            case = None if row["case"] == "healthy" else row["case"]
+            found = case_curve(chosen, case, method, damage_cycle(chosen))
+            assert_allclose([found.mean, found.largest], [float(row["mean [N/m]"]), float(row["max [N/m]"])], rtol=1e-4)
+
+
+@pytest.mark.parametrize("pair", ["sun_planet", pytest.param("planet_ring", marks=pytest.mark.slow)])
+def test_energy_model_of_the_ten_rows(pair):
+    """Healthy, recomputed; and below 3 % of the finite elements in all rows, in mean and maximum."""
+    chosen = gf.load_scene("herringbone").pairs[pair]
+    rows = [r for r in herringbone_page.load("herringbone") if (r["pair"], r["method"]) == (pair, "ritz3d")]
+    found = case_curve(chosen, None, "ritz3d", damage_cycle(chosen)[::8])
+    healthy = read_curves(gf.load_scene("herringbone"))[pair, None][1][::8]
+    assert_allclose(found.k, healthy, rtol=float(rows[0]["largest error at a phase"]) + 1e-4)
+    assert len(rows) == 5
+    for row in rows:
+        assert max(abs(float(row["error of mean"])), abs(float(row["error of max"]))) < 0.03
+
+
+def test_speed_page_is_not_stale():
+    assert speed_page.PAGE.read_text(encoding="utf-8") == speed_page.page(), "run python -m validation speed"
