@@ -331,9 +331,10 @@ def info(arguments):
     import shutil
 
     from .cache import folder
+    from .solver import available
 
     print(f"Python {platform.python_version()} on {platform.machine()}, {os.cpu_count()} cores")
-    for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib"):
+    for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "numba"):
         try:
             print(f"{name} {importlib.metadata.version(name)}")
         except importlib.metadata.PackageNotFoundError:
@@ -345,6 +346,6 @@ def info(arguments):
             print("gmsh starts")
     except RuntimeError as error:
         print(error)
-    print("solver: SuperLU (scipy), one thread")
+    print(f"solvers: sections SuperLU (scipy); three dimensions, the best first: {', '.join(available())}")
     print(f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}")
     print(f"cache of solved gears: {folder() or 'switched off'}")

@@ -5,7 +5,7 @@ import re
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from validation import readme
+from validation import herringbone_page, readme
 
 TEXT = readme.README.read_text(encoding="utf-8")
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]\d+)?")
@@ -28,3 +28,7 @@ def test_programs_print_what_is_shown():
 def test_table_is_what_compare_gives():
     table = gf.compare(gf.load_scene("planetary_pitting")).table()
     same(table.rpartition("\n")[0], readme.TABLE.search(TEXT)[0].rpartition("\n")[0])
+
+
+def test_ten_rows_are_those_of_the_page():
+    assert readme.TEN.search(TEXT)[0] == herringbone_page.error_table()

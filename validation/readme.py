@@ -11,9 +11,12 @@ from . import machine  # noqa: F401 first: it sets the number of threads
 
 import gearfe as gf  # isort: skip
 
+from .herringbone_page import error_table  # isort: skip
+
 README = Path(__file__).parents[1] / "README.md"
 PROGRAM = re.compile(r"```python\n(.*?)```", re.S)
 OUTPUT = re.compile(r"(prints\n\n```text\n)(.*?)(```)", re.S)
+TEN = re.compile(r"@@TEN@@|\| pair \| case \| FE .*?(?=\n\n)", re.S)
 TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
 
 
@@ -39,6 +42,7 @@ def run():
     gf.compare(gf.load_scene("planetary_pitting"))  # warm
     table = gf.compare(gf.load_scene("planetary_pitting")).table()
     text = TABLE.sub(lambda _: table, text)
+    text = TEN.sub(lambda _: error_table(), text)
     printed = iter(outputs(text))
     text = OUTPUT.sub(lambda m: m[1] + next(printed) + m[3], text)
     README.write_text(text, encoding="utf-8")
