@@ -25,6 +25,7 @@ SOURCES = {
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
 LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
+GREAT = 1e8  # percent: beyond, there was nothing to grow from
 
 
 def rms(values):
@@ -229,10 +230,16 @@ def indicator_table(signals, mesh_frequency=None, fault_frequency=None, *, healt
 
 
 def table_text(table):
-    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments in brackets."""
+    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments in brackets.
+
+    What is a millionth or less in the healthy signal is taken for none there.
+    """
     names = list(next(iter(table.values())))
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [
-        [name, *(f"{value:.4g} ({more:+.1f} %)" for value, more in (row[name] for row in table.values()))] for name in names
-    ]
+    lines += [[name, *(_cell(*row[name]) for row in table.values())] for name in names]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _cell(value, more):
+    told = f"{more:+.1f} %" if abs(more) < GREAT else "healthy: none"
+    return f"{value:.4g} ({told})"

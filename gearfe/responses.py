@@ -1,7 +1,9 @@
 """A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
 
 import math
+import warnings
 from dataclasses import dataclass, replace
+from importlib.util import find_spec
 
 import numpy as np
 
@@ -80,6 +82,10 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     damage = [] if scene.machine.get("contact") == "impact" else found
     along = any(isinstance(one, Pit) or not one.through for one in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
+    if scene.machine.get("contact") == "impact" and method == "fast" and find_spec("numba") is None:
+        warnings.warn(
+            "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
+        )
     out = {}
     for name in ("healthy", *([case] if case else [])):
         made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)

@@ -259,3 +259,8 @@ def test_table_needs_the_healthy_case():
         gf.indicator_table({"new": family()})
     table = gf.indicator_table({"new": family()}, healthy="new")
     assert table["new"]["kurtosis"][1] == 0.0
+
+
+def test_what_grows_from_nothing_has_no_percentage():
+    text = ind.table_text({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
+    assert text.splitlines()[-1] == "| sideband index | 1e-12 (+0.0 %) | 0.07 (healthy: none) |"
