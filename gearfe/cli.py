@@ -296,7 +296,7 @@ def _print_analysis(report, arguments):
 
         kurtogram = fast_kurtogram(last)
     if arguments.kurtogram:
-        from .plots import plot_kurtogram
+        from .vibration_plots import plot_kurtogram
 
         plot_kurtogram(kurtogram, arguments.kurtogram)
         print(f"written: {arguments.kurtogram}")

@@ -52,7 +52,7 @@ class Analysis:
 
     def plot(self, path=None):
         """Spectra below each other; returns the figure."""
-        from .plots import plot_spectra
+        from .vibration_plots import plot_spectra
 
         return plot_spectra(self.spectra, self.lines, path)
 

@@ -249,7 +249,8 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_curves, plot_spectra
+    from gearfe.plots import plot_curves
+    from gearfe.vibration_plots import plot_spectra
 
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
     curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}

@@ -171,7 +171,7 @@ PICTURES = {"helical_pitting_spectra": "Mesh force, low lines and those about th
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_spectra
+    from gearfe.vibration_plots import plot_spectra
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)
     spectra = {case: _found(case) for case in ("healthy", *CASES)}

@@ -274,7 +274,7 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_phases, plot_spectra
+    from gearfe.vibration_plots import plot_phases, plot_spectra
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {name: spectrum(signal(_record(case), TURNING)) for name, case in STATES.items()}

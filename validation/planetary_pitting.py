@@ -230,7 +230,8 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_lengths, plot_spectra
+    from gearfe.plots import plot_lengths
+    from gearfe.vibration_plots import plot_spectra
 
     phase, ours, printed = lengths()
     plot_lengths(phase, ours, printed, folder / "planetary_pitting_lines.png")
