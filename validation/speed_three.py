@@ -23,7 +23,7 @@ from .speed_page import save  # isort: skip
 
 HERE = Path(__file__).parent
 SETTINGS = ((2, 8), (2, 11), (3, 8), (3, 11), (3, 14), (4, 16))  # order and axial degree; the last is the reference
-BRUTE = (0.65, 0.8)  # resolutions of the finite elements
+BRUTE = (0.8, 0.95)  # resolutions of the finite elements
 PHASES, FORCE, WIDTH = 64, 7120.0, 30.0  # width of a half
 
 
