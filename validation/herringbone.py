@@ -27,7 +27,7 @@ VARIATIONS = {
     "pits 0.6 mm nearer the tip": {"shift": 0.6},
     "pits 0.6 mm nearer the root": {"shift": -0.6},
     "crack from the root circle": {"crack": {"start": "root"}},
-    "crack at 60 degrees": {"crack": {"angle": math.radians(60)}},
+    "crack at 35 degrees": {"crack": {"angle": math.radians(35)}},
 }
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.sparse import coo_matrix
 
 from geometry.tooth import arc_at, cartesian, flank, flank_normal
@@ -156,7 +156,10 @@ def _between(matrix, columns, group):
     joint, load = matrix[first:, first:].toarray(), columns[first:]
     out = np.zeros((columns.shape[1],) * 2)
     for start, stop in zip(ends[:-2], ends[1:-1], strict=True):
-        lower = cholesky(matrix[start:stop, start:stop].toarray(), lower=True, check_finite=False)
+        try:
+            lower = cholesky(matrix[start:stop, start:stop].toarray(), lower=True, check_finite=False)
+        except LinAlgError as error:
+            raise RuntimeError("the triangles of the section fold or nearly do: change refine a little") from error
         across = matrix[start:stop, first:]
         touched = np.unique(across.indices)
         seen = np.flatnonzero(columns[start:stop].any(axis=0))
