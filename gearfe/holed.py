@@ -78,7 +78,7 @@ def pressed_tooth(
     sizes=None,
     tell=None,
 ):
-    """Solve the damaged tooth of a pair with its pits as holes.
+    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def pressed_tooth(
     crack = next(iter(cracks[side]), None)
     sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
-    contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, (1, -1)[side] * tooth)
+    order = (1, -1)[side] * tooth
+    contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
@@ -181,9 +182,9 @@ def _own(pair, side, face, groove, pits):
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
-def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order):
+def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, *, extended=True):
     """`Contact3D` at `phases`, or at the one of 16 where pair `order` carries most; damage numbered in each gear's own frame."""
-    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove}
+    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
     if phases is not None:
         return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
     end = pair.eps_alpha + overlap(pair, face, groove)
