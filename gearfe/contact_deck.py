@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import arc_at
 
 from .deck import element_nodes, held_nodes

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 
 from .elasticity import Body
 from .export import written

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 from scipy.sparse import coo_matrix, lil_matrix
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import arc_at, flank_normal
 
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes

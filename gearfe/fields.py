@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import arc_at
 
 from .elasticity import Body

@@ -18,7 +18,8 @@ from .energy.halfspace import half_space, hat_points, modes, patch_kernel
 
 PLACES = 8  # hats on each flank
 HAT = 0.4  # half their width [m_n]
-NEAREST = 0.01  # to the tip corner that values are read [m_n]
+# To the tip corner that values are read [m_n]; weighed on the limit of plane strain, judged on one spur pair against hexahedra.
+NEAREST = 0.01
 OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
 
 

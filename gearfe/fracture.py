@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.damage import Crack
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 
 from .elasticity import Body
 from .fe import EDGES

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import hstack
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import arc_at, roll_at_arc
 
 from .elasticity import Body

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from geometry.lines import common_width
 from geometry.outline import spaced
 from geometry.pit import crossing, rolls
 
@@ -66,15 +67,9 @@ class Piece(NamedTuple):
 
 def bands_of(pair, face, groove):
     """Bands of the width as (end that touches first, other end) [mm]."""
-    if face not in FACES:
-        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
+    width = common_width(pair, face, groove, FACES)
     if face == "spur" and pair.gear_1.beta != 0:
         raise ValueError("face = 'spur', but the gears have a helix angle: give beta = 0, or face = 'helical'")
-    if groove and face != "herringbone":
-        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    if not 0 <= groove < width:
-        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
     if face == "herringbone":
         half = (width - groove) / 2
         return [(0.0, half), (width, width - half)]

@@ -6,8 +6,8 @@ from numbers import Real
 import numpy as np
 from skfem import MeshTri
 
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import arc_at, flank, roll_at_arc
 
 from .elasticity import Body, edge_nodes, edge_shapes

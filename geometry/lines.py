@@ -92,6 +92,24 @@ class Removed:
     gear: np.ndarray
 
 
+def common_width(pair, face, groove, faces):
+    """Width [mm] in which both gears of a pair touch.
+
+    Raises
+    ------
+    ValueError
+        If `face` is none of `faces`, or if `groove` [mm] is not that of a herringbone pair or leaves no width.
+    """
+    if face not in faces:
+        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(faces)}")
+    if groove and face != "herringbone":
+        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    if not 0 <= groove < width:
+        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
+    return width
+
+
 def face_bands(pair, face="helical", groove=0.0):
     """Bands of the face.
 
@@ -110,13 +128,7 @@ def face_bands(pair, face="helical", groove=0.0):
     -------
     tuple of Band
     """
-    if face not in FACES:
-        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
-    if groove and face != "herringbone":
-        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    if not 0 <= groove < width:
-        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
+    width = common_width(pair, face, groove, FACES)
     slope = math.tan(pair.gear_1.beta_b)
     if face == "helical":
         return (Band(0.0, width, slope, 0.0),)

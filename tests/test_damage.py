@@ -12,8 +12,8 @@ import gearfe as gf
 from gearfe import cache, fe
 from gearfe.energy import ritz
 from geometry.damage import check_apart, crack_in_band, crack_path, open_part, start_arc
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.tooth import cartesian, root_curve
 from validation import reference
 

@@ -15,8 +15,8 @@ from gearfe.fe import flank_load
 from gearfe.fe3d import Patches, influence, mesh_patches, patch_loads
 from gearfe.hexahedron import assemble, face_shapes, gauss, shapes, slopes_at
 from gearfe.solver import factor
-from geometry.mesher import section
 from geometry.outline import stations
+from geometry.section_mesh import section
 from geometry.solid import extrude, twist_rate
 from geometry.tooth import arc_at
 

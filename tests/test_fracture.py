@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.elasticity import Body, edge_shapes
 from gearfe.fracture import growth_angle, tip_intensity
-from geometry.mesher import fill
 from geometry.outline import along
+from geometry.section_mesh import fill
 from geometry.tooth import arc_at
 
 STEEL = gf.Material(E=207e3, nu=0.3)

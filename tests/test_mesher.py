@@ -7,7 +7,7 @@ from skfem import Basis, ElementTriP2
 
 import gearfe as gf
 from gearfe.fe import mesh_gear
-from geometry import mesher, outline
+from geometry import mesher, outline, section_mesh
 from geometry.tooth import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 GEAR = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -73,4 +73,4 @@ def test_same_tooth_twice_is_refused():
     gear = gf.Gear(z=5, r_bore=1.0, **GEAR)
     roll = outline.stations(gear, 0.5)
     with pytest.raises(ValueError, match="not distinct"):
-        mesher.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)
+        section_mesh.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)

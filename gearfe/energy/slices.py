@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from geometry.lines import common_width
 from geometry.pit import crossing
 
 FACES = ("spur", "helical", "herringbone")
@@ -40,13 +41,7 @@ def faces(pair, face, groove=0.0):
     mirrored halves left and right of a relief groove of width `groove` [mm] in the middle, whose outer ends touch first; each
     is a helical gear of width ``(b - groove) / 2``.
     """
-    if face not in FACES:
-        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
-    if groove and face != "herringbone":
-        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    if not 0 <= groove < width:
-        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
+    width = common_width(pair, face, groove, FACES)
     twist = abs(np.tan(pair.gear_1.beta_b)) / pair.p_bt
     if face == "herringbone":
         half = (width - groove) / 2
