@@ -1,6 +1,6 @@
 """What a gear tooth looks like: curves, pairs, gmsh meshes. No loads, no material."""
 
-from .gear import Gear
-from .pair import GearPair
+from .pair.gear_pair import GearPair
+from .tooth.gear import Gear
 
 __all__ = ["Gear", "GearPair"]

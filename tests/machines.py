@@ -6,9 +6,9 @@ import math
 import numpy as np
 
 import gearfe as gf
-from gearfe.herringbone import herringbone_planetary
-from gearfe.machine import Load, Machine, Spring
-from gearfe.meshing import Mesh, Samples, cycle_table
+from gearfe.machine.gear_mesh import Mesh, Samples, cycle_table
+from gearfe.machine.herringbone import herringbone_planetary
+from gearfe.machine.tables import Load, Machine, Spring
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
 RUNS = [False] + [True] * (importlib.util.find_spec("numba") is not None)  # compiled loop where there is one

@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import verdicts
-from gearfe.case_table import case_curve, damage_cycle, printed_cases
-from gearfe.stored import read_curves
+from gearfe.scene import verdicts
+from gearfe.scene.stored import read_curves
+from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as pages
 from validation import assumptions, herringbone_page, machines, speed_page, table_rows
 

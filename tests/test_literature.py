@@ -13,7 +13,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe import verdicts
+from gearfe.scene import verdicts
 from validation import machines, reference, table_rows, truth
 
 TABLES = reference.load()
@@ -85,7 +85,7 @@ def test_hertz_constant_of_article_s0():
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     rho = pair.curvature_radii(pair.pitch_phase)
-    from gearfe.hertz import contact_modulus
+    from gearfe.flexibility.hertz import contact_modulus
 
     steel = gf.Material(E=207e3, nu=0.25)
     assert_allclose(4 / 3 * np.sqrt(rho[0] * rho[1] / sum(rho)) * contact_modulus((steel, steel)), 3.0459e5, rtol=2e-5)

@@ -6,9 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.export import written
-from gearfe.scene import scene_names
-from geometry.pair import GearPair
+from gearfe.scene.load import scene_names
+from gearfe.stiffness.curve_file import written
+from geometry.pair.gear_pair import GearPair
 
 from . import machine  # noqa: F401 first: one thread
 from .table_rows import TABLES

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe import indicators as ind
-from gearfe.export import written
+from gearfe.signal import indicators as ind
+from gearfe.stiffness.curve_file import written
 
 PAGE = Path(__file__).parent / "centroid.md"
 RATE, SECONDS = 1000.0, 10.0  # S0: 10 s, which sets the distance of the bins

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import resample_poly
 
 import gearfe as gf
-from gearfe.compound import compound_planetary
+from gearfe.machine.compound import compound_planetary
 
 from .simulated import amplitude, machine, noisy, record, scene, signal, spectrum
 
@@ -70,7 +70,7 @@ def mating_time():
 
 def crack_step():
     """Length of 20 % of a crack that reaches the centre-line with 50 % [mm], by where it starts."""
-    from geometry.damage import crack_path
+    from geometry.damage.crack import crack_path
 
     sun = scene(NAME).gears["sun"]
     half = sun.r_b * math.sin(sun.base_half_angle)  # the source's tooth below the base circle is a prism
@@ -249,8 +249,8 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_curves
-    from gearfe.vibration_plots import plot_spectra
+    from gearfe.pictures.stiffness_plots import plot_curves
+    from gearfe.pictures.vibration_plots import plot_spectra
 
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
     curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}

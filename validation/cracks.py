@@ -4,9 +4,9 @@ import math
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.export import written
-from geometry.damage import start_arc
-from geometry.tooth import cartesian, root_curve
+from gearfe.stiffness.curve_file import written
+from geometry.damage.crack import start_arc
+from geometry.tooth.profile import cartesian, root_curve
 
 from . import reference
 

@@ -11,11 +11,11 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.dynamics import simulate  # isort: skip
-from gearfe.export import written  # isort: skip
-from gearfe.herringbone import herringbone_planetary, pitted_helical  # isort: skip
-from gearfe.meshing import Samples, cycle_table  # isort: skip
-from gearfe.models import pitted_planetary  # isort: skip
+from gearfe.motion.simulate import simulate  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from gearfe.machine.herringbone import herringbone_planetary, pitted_helical  # isort: skip
+from gearfe.machine.gear_mesh import Samples, cycle_table  # isort: skip
+from gearfe.machine.stages import pitted_planetary  # isort: skip
 
 from .speed_page import save  # isort: skip
 

@@ -7,8 +7,8 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.energy.ladder import ladder  # isort: skip
-from gearfe.export import written  # isort: skip
+from gearfe.studies.ladder import ladder  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
 
 from . import reference  # isort: skip
 

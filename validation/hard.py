@@ -10,7 +10,7 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.export import written  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
 
 PAGE = Path(__file__).parent / "hard.md"
 STEEL = gf.Material(E=207e3, nu=0.3)

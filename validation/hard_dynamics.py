@@ -11,14 +11,14 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.bodies import Body  # isort: skip
-from gearfe.dynamics import simulate  # isort: skip
-from gearfe.export import written  # isort: skip
-from gearfe.machine import natural_frequencies  # isort: skip
-from gearfe.meshing import Samples, ToothDamage, cycle_table  # isort: skip
-from gearfe.models import disc, gear_pair, single_mesh  # isort: skip
-from gearfe.step_control import chosen_step, difference  # isort: skip
-from gearfe.steady import steady_state  # isort: skip
+from gearfe.machine.layout import Body  # isort: skip
+from gearfe.motion.simulate import simulate  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from gearfe.machine.tables import natural_frequencies  # isort: skip
+from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table  # isort: skip
+from gearfe.machine.stages import disc, gear_pair, single_mesh  # isort: skip
+from gearfe.motion.step_control import chosen_step, difference  # isort: skip
+from gearfe.motion.steady import steady_state  # isort: skip
 
 PAGE = Path(__file__).parent / "hard_dynamics.md"
 SPEED = 1000 * math.pi / 30  # of the pinion, rad/s

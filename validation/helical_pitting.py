@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact_law import hertz_coefficient
-from geometry.lines import total_length
+from gearfe.machine.contact_law import hertz_coefficient
+from geometry.pair.lines import total_length
 
 from .simulated import amplitude, machine, periodic, record, scene, signal, spectrum
 
@@ -80,7 +80,7 @@ def impact_period():
 
 def hertz():
     """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
-    from gearfe.contact_cycle import base_helix
+    from gearfe.machine.contact_cycle import base_helix
 
     radii = pair().curvature_radii(pair().pitch_phase) / np.cos(base_helix(pair().gear_1))
     return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
@@ -88,7 +88,7 @@ def hertz():
 
 def contact_ratios():
     """Transverse, overlap and total contact ratio."""
-    from gearfe.contact_cycle import overlap_ratio
+    from gearfe.machine.contact_cycle import overlap_ratio
 
     over = overlap_ratio(pair(), min(pair().gear_1.b, pair().gear_2.b))
     return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
@@ -171,7 +171,7 @@ PICTURES = {"helical_pitting_spectra": "Mesh force, low lines and those about th
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.vibration_plots import plot_spectra
+    from gearfe.pictures.vibration_plots import plot_spectra
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)
     spectra = {case: _found(case) for case in ("healthy", *CASES)}

@@ -8,9 +8,9 @@ from pathlib import Path
 from . import machine  # isort: skip  first: it sets the number of threads
 
 import gearfe as gf
-from gearfe.case_table import case_curve, case_table, damage_cycle, printed_cases
-from gearfe.export import written
-from gearfe.stored import read_curves, stored_file, write_curves
+from gearfe.scene.stored import read_curves, stored_file, write_curves
+from gearfe.stiffness.curve_file import written
+from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
 from .herringbone_page import CLOSED, SCENE, TABLES, error_table, page, picture
 

@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.energy.beam import SAINSOT
-from gearfe.herringbone import MEMBERS
+from gearfe.energy.closed.beam import SAINSOT
+from gearfe.machine.herringbone import MEMBERS
 
 from .simulated import PHASES, amplitude, machine, periodic, record, scene, signal, spectrum
 
@@ -274,7 +274,7 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.vibration_plots import plot_phases, plot_spectra
+    from gearfe.pictures.vibration_plots import plot_phases, plot_spectra
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {name: spectrum(signal(_record(case), TURNING)) for name, case in STATES.items()}

@@ -5,9 +5,9 @@ import csv
 import numpy as np
 
 import gearfe as gf
-from gearfe.case_table import printed_beside
-from gearfe.plots import plot_errors
-from gearfe.verdicts import judge, text
+from gearfe.pictures.stiffness_plots import plot_errors
+from gearfe.scene.verdicts import judge, text
+from gearfe.studies.case_table import printed_beside
 
 from .table_rows import TABLES
 

@@ -8,10 +8,10 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.contact3d import pair_stiffness3d  # isort: skip
-from gearfe.export import written  # isort: skip
-from gearfe.holed import pressed_tooth  # isort: skip
-from gearfe.inputs import by_gear, overlap  # isort: skip
+from gearfe.contact.solid import pair_stiffness3d  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from gearfe.stress.holed import pressed_tooth  # isort: skip
+from gearfe.stiffness.inputs import by_gear, overlap  # isort: skip
 
 PAGE = Path(__file__).parent / "holes.md"
 LAYOUTS = (
@@ -61,9 +61,9 @@ def run():
         "",
         f"Made by `python -m validation holes` on {machine.describe()}.",
         "Pits are cut out of the tooth as elliptic cylinders with a flat bottom, the tooth is meshed with straight second-order",
-        "tets (`geometry.holes`, `gearfe.holed`). Volume: an integral over the involutes parallel to the flank, which knows",
-        "nothing of the solid; cut: difference of the boundary representation from it (more than 0.2 % is an error, not a",
-        "result); meshed: of the tets, whose rims are polygons, on the two meshes.",
+        "tets (`geometry.mesh.holes`, `gearfe.stress.holed`). Volume: an integral over the involutes parallel to the flank, "
+        "which knows nothing of the solid; cut: difference of the boundary representation from it (more than 0.2 % is an error, "
+        "not a result); meshed: of the tets, whose rims are polygons, on the two meshes.",
         "",
         "Everywhere else in gearfe pits take contact away and no material. What that leaves out: the tooth is solved with and",
         "without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits leave,",

@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 
 import gearfe as gf
-from gearfe import verdicts
-from gearfe.export import written
+from gearfe.scene import verdicts
+from gearfe.stiffness.curve_file import written
 
 from . import machine, table_rows  # noqa: F401 one thread
 

@@ -9,8 +9,8 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.errormap import CRACKED, HEALTHY, LOADS, ZONES, build  # isort: skip
-from gearfe.export import written  # isort: skip
+from gearfe.studies.errormap import CRACKED, HEALTHY, LOADS, ZONES, build  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
 
 PAGE = Path(__file__).parent / "map.md"
 PICTURE = Path(__file__).parent / "map.png"

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.export import written
+from gearfe.stiffness.curve_file import written
 
 EXAMPLE = Path(__file__).parent / "matlab_curve.csv"
 ROWS = 128

@@ -15,8 +15,8 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.export import written  # isort: skip
-from geometry.pit import pit_row  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from geometry.damage.pit import pit_row  # isort: skip
 
 PAGE = Path(__file__).parent / "pairs_three.md"
 TABLE = Path(__file__).parent / "tables" / "pairs_three.csv"

@@ -8,9 +8,9 @@ from pathlib import Path
 from . import machine  # first: it sets the number of threads
 
 import gearfe as gf  # isort: skip
-from gearfe.export import written  # isort: skip
-from gearfe.render import render_contact, render_stress  # isort: skip
-from gearfe.scene import scene_names  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from gearfe.stress.render import render_contact, render_stress  # isort: skip
+from gearfe.scene.load import scene_names  # isort: skip
 
 FOLDER = Path(__file__).parent / "pictures"
 PAGE = Path(__file__).parent / "pictures.md"

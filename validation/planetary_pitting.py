@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact_law import hertz_coefficient
-from geometry.lines import total_length
-from geometry.pit import Pit
+from gearfe.machine.contact_law import hertz_coefficient
+from geometry.damage.pit import Pit
+from geometry.pair.lines import total_length
 
 from .simulated import amplitude, knocked, machine, periodic, record, scene, signal, spectrum
 
@@ -230,8 +230,8 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.plots import plot_lengths
-    from gearfe.vibration_plots import plot_spectra
+    from gearfe.pictures.stiffness_plots import plot_lengths
+    from gearfe.pictures.vibration_plots import plot_spectra
 
     phase, ours, printed = lengths()
     plot_lengths(phase, ours, printed, folder / "planetary_pitting_lines.png")

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.energy import textbook
-from gearfe.energy.beam import load_angle
-from gearfe.hertz import half_plane, linear_hertz, weber_line
-from gearfe.iso import theoretical_stiffness, virtual_teeth
-from gearfe.models import Member, planetary
-from geometry.tooth import flank
+from gearfe.energy.closed import textbook
+from gearfe.energy.closed.beam import load_angle
+from gearfe.energy.closed.iso import theoretical_stiffness, virtual_teeth
+from gearfe.flexibility.hertz import half_plane, linear_hertz, weber_line
+from gearfe.machine.stages import Member, planetary
+from geometry.tooth.profile import flank
 
 STEEL = gf.Material(E=206e3, nu=0.3)
 RACK = {"alpha_n": math.radians(20), "b": 1.0}

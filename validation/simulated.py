@@ -7,8 +7,8 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.dynamics import default_step
-from gearfe.machine import pulses
+from gearfe.machine.tables import pulses
+from gearfe.motion.simulate import default_step
 
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 

@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from gearfe.export import written
+from gearfe.stiffness.curve_file import written
 
 from . import machine
 

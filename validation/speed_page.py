@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearfe.export import written
+from gearfe.stiffness.curve_file import written
 
 from .table_rows import TABLES
 

@@ -14,10 +14,10 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe.contact3d import pair_stiffness3d  # isort: skip
-from gearfe.energy import ritz3d  # isort: skip
-from gearfe.export import written  # isort: skip
-from geometry.pit import pit_row  # isort: skip
+from gearfe.contact.solid import pair_stiffness3d  # isort: skip
+from gearfe.energy.ritz import solid as ritz3d  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
+from geometry.damage.pit import pit_row  # isort: skip
 
 from .speed_page import save  # isort: skip
 

@@ -3,8 +3,8 @@
 import csv
 from pathlib import Path
 
-from gearfe.export import written
-from gearfe.verdicts import COLUMNS, Row
+from gearfe.scene.verdicts import COLUMNS, Row
+from gearfe.stiffness.curve_file import written
 
 TABLES = Path(__file__).parent / "tables"
 

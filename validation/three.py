@@ -10,9 +10,13 @@ from . import machine  # first: it sets the number of threads
 import numpy as np  # isort: skip
 
 import gearfe as gf  # isort: skip
-from gearfe import fe3d, flexibility3d  # isort: skip
-from gearfe.energy import ritz, ritz3d  # isort: skip
-from gearfe.export import written  # isort: skip
+from gearfe.elements import fe3d
+
+from gearfe.flexibility import solid as flexibility3d  # isort: skip
+from gearfe.energy.ritz import plane as ritz
+
+from gearfe.energy.ritz import solid as ritz3d  # isort: skip
+from gearfe.stiffness.curve_file import written  # isort: skip
 
 PAGE = Path(__file__).parent / "three.md"
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 import gearfe as gf
-from gearfe.elasticity import Body
-from gearfe.export import written
+from gearfe.elements.elasticity import Body
+from gearfe.stiffness.curve_file import written
 
 from . import machine, reference  # machine first: one thread
 from .table_rows import TABLES

@@ -1,0 +1,118 @@
+"""The ``gearfe`` command and its arguments; what its verbs do is in `gearfe.cli.verbs`."""
+
+import argparse
+import os
+import sys
+import warnings
+
+from . import verbs as run
+
+
+def main(argv=None):
+    """Run the command line; returns the exit code."""
+    os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy loads: on small matrices more threads wait for each other
+    parser = argparse.ArgumentParser(
+        prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods."
+    )
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    verb = _verb(verbs, "stiffness", run.stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
+    _scene_arguments(verb)
+    verb.add_argument(
+        "--method", default="auto", help="ritz, ritz3d, fe, fe3d, coupled, textbook, published (default: ritz or ritz3d)"
+    )
+    verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
+    verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
+    verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (not of closed forms)")
+    verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
+    verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
+    verb = _verb(verbs, "compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")
+    _scene_arguments(verb)
+    verb.add_argument(
+        "--model", metavar="FILE", action="append", default=[],
+        help="a stiffness curve of your own, may be repeated: two columns, units in the header; first phase (0 to 1; 0: "
+        "a pair enters), angle [deg] or angle [rad] (of the pinion), or radius [mm] (one tooth pair, on the pinion); then k in "
+        "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
+    )  # fmt: skip
+    verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
+    verb.add_argument(
+        "--cases",
+        action="store_true",
+        help="all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)",
+    )
+    verb.add_argument("--reference", action="store_true", help="with --cases: compute three-dimensional finite elements anew")
+    verb = _verb(
+        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
+    )
+    _scene_arguments(verb, count=False)
+    verb.add_argument(
+        "--phase",
+        type=float,
+        metavar="X",
+        help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)",
+    )
+    verb.add_argument(
+        "--what", choices=["stress", "contact"], default="stress",
+        help="von Mises stress (in three dimensions for pits and helical gears), or contact pressure along the contact lines and "
+        "load over the face width (default: stress)",
+    )  # fmt: skip
+    verb.add_argument(
+        "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
+    )
+    verb = _verb(
+        verbs, "dynamics", run.dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged"
+    )
+    verb.add_argument("scene", metavar="SCENE", help="a built-in scene with a machine, or a .toml file")
+    verb.add_argument("--case", metavar="NAME", help="case of damage, compared with healthy (default: healthy alone)")
+    verb.add_argument(
+        "--duration", type=float, default=1.0, metavar="S", help="seconds kept, after half as much to settle (default: 1)"
+    )
+    verb.add_argument(
+        "--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)"
+    )
+    verb.add_argument("--contact", choices=("linear", "impact"), help="contact law (default: the scene's, else linear)")
+    verb.add_argument("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
+    verb.add_argument("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
+    _analysis_arguments(verb)
+    verb = _verb(verbs, "signal", run.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
+    verb.add_argument("file", metavar="FILE", nargs="+", help="signal as .csv, .mat or .npz; several: cases, the first healthy")
+    verb.add_argument("--rate", type=float, metavar="HZ", help="sampling rate, if the file does not state it")
+    verb.add_argument("--unit", metavar="U", help="unit, if the file does not state it")
+    verb.add_argument("--column", metavar="NAME", help="column, if there are several")
+    verb.add_argument("--mesh", type=float, metavar="HZ", help="mesh frequency")
+    verb.add_argument("--fault", type=float, metavar="HZ", help="how often the faulty tooth meshes")
+    verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
+    _analysis_arguments(verb)
+    _verb(verbs, "scenes", run.scenes, "list the built-in scenes with their assumptions")
+    _verb(verbs, "info", run.info, "versions, and what this machine has")
+    arguments = parser.parse_args(argv)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", UserWarning)
+            warnings.showwarning = lambda message, *_: print(f"gearfe: note: {message}", file=sys.stderr)
+            arguments.run(arguments)
+    except (ValueError, RuntimeError) as error:
+        print(f"gearfe: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _verb(verbs, name, function, text):
+    verb = verbs.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    verb.set_defaults(run=function)
+    return verb
+
+
+def _analysis_arguments(verb):
+    verb.add_argument("--plot", metavar="FILE", help="draw the spectra: .png, .svg or .pdf")
+    verb.add_argument("--kurtogram", metavar="FILE", help="draw the fast kurtogram of the last case: .png, .svg or .pdf")
+
+
+def _scene_arguments(verb, *, count=True):
+    verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
+    verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
+    verb.add_argument("--case", metavar="NAME", help="case of damage (see 'gearfe scenes'; default: healthy)")
+    verb.add_argument(
+        "--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)"
+    )
+    if count:
+        verb.add_argument("--phases", type=int, default=64, metavar="N", help="phases per mesh cycle (default: 64)")

@@ -1,0 +1,241 @@
+"""What the verbs of the ``gearfe`` command do: one function each, no logic of its own. Heavy imports are inside."""
+
+import contextlib
+import os
+import sys
+
+
+@contextlib.contextmanager
+def _working(text):
+    """A moving bar with the seconds gone, on a terminal only; gives what prints a line above it."""
+    if not sys.stderr.isatty():
+        yield lambda line: print(f"gearfe: {line}", file=sys.stderr, flush=True)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+        progress.add_task(text, total=None)
+        yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
+
+
+def _print_scene(scene):
+    print(f"{scene.title}\n")
+    for note in scene.assumptions:
+        print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
+    for item in scene.later:
+        print(f"  not modelled yet: {item}")
+    print()
+
+
+def stiffness(arguments):
+    """``gearfe stiffness``."""
+    from ..scene.load import load_scene
+    from ..stiffness.solve import mesh_stiffness
+
+    scene = load_scene(arguments.scene)
+    chosen = scene.pair(arguments.pair)
+    force = chosen.force if arguments.force is None else arguments.force
+    _print_scene(scene)
+    with _working(f"stiffness by {arguments.method}") as tell:
+        run = chosen.case(arguments.case) | {"force": force, "span": "tooth" if arguments.case else "cycle"}
+        if arguments.method in ("ritz", "fe", "coupled"):
+            run["face"] = None
+        curve = mesh_stiffness(
+            **run, method=arguments.method, phases=arguments.phases,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,
+        )  # fmt: skip
+    meta = curve.meta
+    print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
+    doubt = curve.zone_errors()
+    for zone, value in curve.zones().items():
+        print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))
+    if arguments.output:
+        curve.save(arguments.output)
+        print(f"written: {arguments.output}")
+    if arguments.plot:
+        curve.plot(arguments.plot)
+        print(f"written: {arguments.plot}")
+
+
+def compare(arguments):
+    """``gearfe compare``."""
+    from ..scene.load import load_scene
+    from ..scene.references import printed_stiffness
+    from ..studies.by_zone import compare as run
+    from ..studies.case_table import printed_cases
+
+    scene = load_scene(arguments.scene)
+    _print_scene(scene)
+    printed = printed_cases(scene)
+    every = arguments.cases or arguments.reference
+    if every or (printed and not (arguments.pair or arguments.case or arguments.model or arguments.plot)):
+        _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
+        return
+    with _working("finite elements and energy methods"):
+        options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
+        result = run(scene, arguments.pair, case=arguments.case, **options)
+    meta = result.reference.meta
+    load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")
+    print(f"errors are against {meta['method']}; the estimate is its own discretisation error\n")
+    print(result.table())
+    for text in printed_stiffness(scene, result.pair_name, arguments.case):
+        print(text)
+    if arguments.plot:
+        from ..pictures.stiffness_plots import plot_curves
+
+        plot_curves(result.curves, arguments.plot)
+        print(f"\nwritten: {arguments.plot}")
+
+
+def _compare_cases(scene, arguments, cases):
+    """``gearfe compare --cases``."""
+    from ..studies.case_table import case_table, printed_text
+
+    if arguments.pair or arguments.case or arguments.model or arguments.plot:
+        raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    with _working("every case by every method"):
+        result = case_table(scene, cases, compute=arguments.reference)
+    print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
+    print(f"engagement; errors are against {result.reference}\n")
+    print(result.table())
+    print(f"\nlargest loss of stiffness over that cycle\n\n{result.drop_table()}")
+    printed = printed_text(scene, result)
+    if printed:
+        print(f"\nas printed, and after the stated corrections, beside `published` and {result.reference}\n\n{printed}")
+
+
+def render(arguments):
+    """``gearfe render``."""
+    from ..scene.load import load_scene
+    from ..stress.render import render_contact, render_stress
+
+    scene = load_scene(arguments.scene)
+    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
+    if arguments.what == "contact":
+        with _working("contact lines"):
+            told = render_contact(pair, arguments.output, **options)
+        print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
+    else:
+        name = ", ".join(part for part in (scene.name, arguments.pair, arguments.case) if part)
+        with _working("stress"):
+            told = render_stress(pair, arguments.output, refine=arguments.refine, title=name, **options)
+        print(told["text"])
+        print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+    print(f"written: {arguments.output}")
+
+
+def dynamics(arguments):
+    """``gearfe dynamics``."""
+    from dataclasses import replace
+
+    from ..machine.tables import natural_frequencies
+    from ..scene.load import load_scene
+    from ..studies.responses import analysis, responses
+
+    scene = load_scene(arguments.scene)
+    if arguments.contact:
+        scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
+    _print_scene(scene)
+    with _working("stiffness curves and response"):
+        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
+    made = next(iter(found.values())).machine
+    for name, value in made.notes.items():
+        print(f"  {name}: {_rounded(value)}")
+    print(f"  natural frequencies [Hz]: {_rounded(tuple(natural_frequencies(made)[0][:12]))} ...")
+    for case, one in found.items():
+        stats = one.stats
+        doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
+        print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
+        if "switched" in stats:
+            print(f"  {case}: reference used because {stats['switched']}")
+    _print_analysis(analysis(found, arguments.channel), arguments)
+    if arguments.output:
+        list(found.values())[-1].save(arguments.output)
+        print(f"written: {arguments.output}")
+
+
+def signal(arguments):
+    """``gearfe signal``."""
+    from ..signal.signal_file import read_signal
+    from ..studies.responses import analyse
+
+    read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
+    signals = {one.name: one for one in read}
+    if len(signals) < len(read):
+        raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+    _print_analysis(analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name), arguments)
+
+
+def _print_analysis(report, arguments):
+    """Tables, envelope and plots of a `gearfe.studies.responses.Analysis`."""
+    from ..signal.demodulation import demodulate
+
+    if report.lines:
+        print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}")
+    print(f"\n{report.indicators_text()}\n")
+    last = list(report.signals.values())[-1]
+    if report.fault:
+        found = demodulate(last, report.fault)
+        print(f"{last.name}, {found.text()}")
+        kurtogram = found.kurtogram
+    elif arguments.kurtogram:
+        from ..signal.kurtogram import fast_kurtogram
+
+        kurtogram = fast_kurtogram(last)
+    if arguments.kurtogram:
+        from ..pictures.vibration_plots import plot_kurtogram
+
+        plot_kurtogram(kurtogram, arguments.kurtogram)
+        print(f"written: {arguments.kurtogram}")
+    if arguments.plot:
+        report.plot(arguments.plot)
+        print(f"written: {arguments.plot}")
+
+
+def _rounded(value):
+    if isinstance(value, dict):
+        return ", ".join(f"{name} {_rounded(one)}" for name, one in value.items())
+    if isinstance(value, tuple):
+        return ", ".join(_rounded(one) for one in value)
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def scenes(arguments):
+    """``gearfe scenes``."""
+    from ..scene.load import load_scene, scene_names
+
+    for name in scene_names():
+        scene = load_scene(name)
+        cases = {case for pair in scene.pairs.values() for case in pair.damage}
+        print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
+        _print_scene(scene)
+
+
+def info(arguments):
+    """``gearfe info``."""
+    import importlib.metadata
+    import platform
+    import shutil
+
+    from ..elements.solver import available
+    from ..stiffness.cache import folder
+
+    print(f"Python {platform.python_version()} on {platform.machine()}, {os.cpu_count()} cores")
+    for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "numba"):
+        try:
+            print(f"{name} {importlib.metadata.version(name)}")
+        except importlib.metadata.PackageNotFoundError:
+            print(f"{name} is not installed")
+    from geometry.mesh.mesher import gmsh_session
+
+    try:
+        with gmsh_session():
+            print("gmsh starts")
+    except RuntimeError as error:
+        print(error)
+    print(f"solvers: sections SuperLU (scipy); three dimensions, the best first: {', '.join(available())}")
+    print(f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}")
+    print(f"cache of solved gears: {folder() or 'switched off'}")

@@ -1,0 +1,238 @@
+"""Contact lines of spur, helical and herringbone pairs at a phase, cut into the cells a contact solve needs.
+
+On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a tip
+corner of one gear on the other flank, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.damage.pit import crossing, rolls
+from geometry.mesh.outline import spaced
+from geometry.pair.lines import common_width
+
+from ..energy.closed.slices import FACES
+
+END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
+GROWTH = 0.6  # of their length per length
+BEYOND = 8  # cells at least on the part of a line that is beyond the path of contact
+SAMPLES = 400  # of the gap beyond the path, over a base pitch
+PARTS = 4  # straight parts of a line beyond the path, where pits are looked for
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Pieces of the contact lines of one phase that may carry load, as arrays of n.
+
+    `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in
+    `geometry.pair.gear_pair.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
+    it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
+    `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0,
+    or 1 or 2 for the gear whose tip corner touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's
+    [MPa], nan at a corner.
+    """
+
+    half: np.ndarray
+    order: np.ndarray
+    z: np.ndarray
+    width: np.ndarray
+    depth: np.ndarray
+    nominal: np.ndarray
+    roll_1: np.ndarray
+    roll_2: np.ndarray
+    gap: np.ndarray
+    corner: np.ndarray
+    load: np.ndarray | None = None
+    pressure: np.ndarray | None = None
+
+
+class Piece(NamedTuple):
+    """A part of a contact line between two depths [mm].
+
+    `roll` is the abscissa of its line at depth 0 [mm], `corner` as of `Cells`; `ends` says which of its ends (first, last) end
+    contact, so that the pressure rises there.
+    """
+
+    half: int
+    order: int
+    roll: float
+    corner: int
+    first: float
+    last: float
+    ends: tuple
+
+
+def bands_of(pair, face, groove):
+    """Bands of the width as (end that touches first, other end) [mm]."""
+    width = common_width(pair, face, groove, FACES)
+    if face == "spur" and pair.gear_1.beta != 0:
+        raise ValueError("face = 'spur', but the gears have a helix angle: give beta = 0, or face = 'helical'")
+    if face == "herringbone":
+        half = (width - groove) / 2
+        return [(0.0, half), (width, width - half)]
+    return [(width, 0.0) if pair.gear_1.beta > 0 else (0.0, width)]
+
+
+def touching(pair, nominal):
+    """Roll lengths of both gears and gap at abscissae `nominal` [mm]; gap inf where flanks cannot meet.
+
+    On the path of contact the gap is zero, before its start the wheel's tip corner touches, after its end the pinion's.
+    """
+    start, _ = pair.path
+    nominal = np.asarray(nominal, dtype=float)
+    found = pair.contacts((nominal - start) / pair.p_bt)
+    own = found.order == 0
+    return found.roll_1[:, own].ravel(), found.roll_2[:, own].ravel(), found.gap[:, own].ravel()
+
+
+@lru_cache(maxsize=64)
+def gaps(pair):
+    """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met."""
+    start, end = pair.path
+    away = np.linspace(0.0, pair.p_bt, SAMPLES) + 1e-6 * pair.p_bt
+    out = []
+    for nominal in (start - away, end + away):
+        gap = np.maximum.accumulate(touching(pair, nominal)[2])
+        there = np.isfinite(gap)
+        out.append((away[there], gap[there]))
+    return out
+
+
+def beyond(pair, reach):
+    """How far before the start and after the end of the path [mm] the gap is below `reach` [mm]."""
+    return tuple(float(np.interp(reach, gap, away)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
+
+
+def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
+    """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
+
+    Parameters
+    ----------
+    pair : GearPair
+    phase : float
+    pits : (sequence of Pit, sequence of Pit)
+        In each gear's own frame.
+    bands : list
+        Of `bands_of`.
+    beta_b : float
+    further : (float, float)
+        Of `beyond`.
+
+    Returns
+    -------
+    list of Piece
+        From the end that touches first to the other, line by line.
+    """
+    start, end = pair.path
+    slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
+    first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
+    last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
+    limits = (end + further[1], end, start, start - further[0])
+    out = []
+    for half, band in enumerate(bands):
+        for order in range(first, last + 1):
+            roll = start + (phase + order) * pair.p_bt
+            for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
+                ends = (low == 0, high == width) if any(further) else (True, True)
+                out += _left(pair, pits, band, Piece(half, order, roll, corner, low, high, ends), slope)
+    return out
+
+
+def _parts(roll, slope, width, limits, slack):
+    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high."""
+    if slope > 1e-12:
+        at = np.clip([(roll - limit) / slope for limit in limits], 0.0, width)
+        found = zip((1, 0, 2), at[:-1].tolist(), at[1:].tolist(), strict=True)
+        return [(corner, low, high) for corner, low, high in found if high - low > 1e-6 * width]
+    top, end, start, bottom = limits
+    if start - slack <= roll < end + slack:
+        return [(0, 0.0, width)]
+    if end < roll < top:
+        return [(1, 0.0, width)]
+    return [(2, 0.0, width)] if bottom < roll < start else []
+
+
+def _left(pair, pits, band, piece, slope):
+    """What the pits of both gears leave of a piece: pieces."""
+    covered = _covered(pair, pits, band, piece, slope) if any(pits) else []
+    width = abs(band[1] - band[0])
+    out, at, fine = [], piece.first, piece.ends[0]
+    for a, b in sorted(covered):
+        if a > at:
+            out.append((at, min(a, piece.last), (fine, True)))
+        if b > at:
+            at, fine = b, True
+    out.append((at, piece.last, (fine, piece.ends[1])))
+    return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
+
+
+def _covered(pair, pits, band, piece, slope):
+    """Intervals of depth that pits take from a piece."""
+    numbers = (piece.order, -piece.order)
+    gears = (pair.gear_1, pair.gear_2)
+    middle = band[0] + math.copysign((piece.first + piece.last) / 2, band[1] - band[0])
+    own = [
+        [p for p in found if p.side == "loaded" and (p.tooth - number) % gear.z == 0]
+        for gear, found, number in zip(gears, pits, numbers, strict=True)
+    ]
+    own = [
+        [p for p in found if abs(middle + offset - p.z) < p.reach[1] + (piece.last - piece.first) / 2]
+        for found, offset in zip(own, _offsets(pair), strict=True)
+    ]
+    if not any(own):
+        return []
+    depth = np.linspace(piece.first, piece.last, 2 if piece.corner == 0 else PARTS + 1)
+    nominal = piece.roll - slope * depth
+    at = (nominal, pair.mate_roll(nominal)) if piece.corner == 0 else touching(pair, nominal)[:2]
+    z = band[0] + math.copysign(1.0, band[1] - band[0]) * depth
+    covered = []
+    for gear, found, roll, offset in zip(gears, own, at, _offsets(pair), strict=True):
+        for pit in found:
+            low, high = _rolls(gear, pit)
+            for k in range(depth.size - 1):
+                ends, heights = roll[k : k + 2], z[k : k + 2] + offset
+                apart = np.abs(heights.mean() - pit.z) > pit.reach[1] + np.ptp(heights) / 2
+                if not apart and ends.min() <= high + 1e-9 and ends.max() >= low - 1e-9:
+                    step = depth[k + 1] - depth[k]
+                    covered += [(depth[k] + a * step, depth[k] + b * step) for a, b in crossing(gear, pit, ends, heights)]
+    return covered
+
+
+def _offsets(pair):
+    """Where the common width begins on both gears [mm]."""
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    return (pair.gear_1.b - common) / 2, (pair.gear_2.b - common) / 2
+
+
+@lru_cache(maxsize=256)
+def _rolls(gear, pit):
+    return sorted(rolls(gear, pit).tolist())
+
+
+def cells_of(pair, pieces, bands, slope, step):
+    """`Cells` of the pieces of one phase, at most `step` [mm] along the width."""
+    rows = []
+    for piece in pieces:
+        a, b = piece.first, piece.last
+        longest = min(step, max((b - a) / BEYOND, END * step)) if piece.corner and slope > 1e-12 else step
+        fine = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
+        edge = spaced(a, b, longest, fine, 1, GROWTH)
+        middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)
+        first, last = bands[piece.half]
+        z = first + math.copysign(1, last - first) * middle
+        same = np.ones(z.size)
+        rows.append(
+            np.array([piece.half * same, piece.order * same, z, width, middle, piece.roll - slope * middle, piece.corner * same])
+        )
+    half, order, z, width, depth, nominal, corner = np.hstack(rows)
+    roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
+    there = corner > 0
+    if there.any():
+        roll_1[there], roll_2[there], gap[there] = touching(pair, nominal[there])
+    whole = (half.astype(int), order.astype(int), z, width, depth, nominal, roll_1, roll_2, gap, corner.astype(int))
+    kept = np.isfinite(gap)
+    return Cells(*(values[kept] for values in whole)) if not kept.all() else Cells(*whole)

@@ -1,0 +1,105 @@
+"""What a tip corner adds to the local law of a contact line, taken from the plane section.
+
+Close to its tip corner a tooth is a wedge, no half-space, and pressure ends at the corner. The plane resolves that contact hat
+by hat (`gearfe.contact.plane`); how much more it closes there than Hertz's strip on a half-plane would, at the same line load and
+place, is a property of the section: a few tenths of a millimetre across, whatever the load does along the width. Contact in three
+dimensions adds it to the logarithm of its strips, so that in the plane limit both are the same contact. For helical teeth the
+transverse section is taken for the normal one: widths and loads there differ by cos(beta_b).
+"""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+from geometry.tooth.profile import arc_at
+
+from ..energy.ritz import plane as ritz
+from ..energy.ritz import solid as ritz3d
+from ..flexibility.hertz import contact_modulus, half_plane, half_width
+from ..flexibility.solid import carry
+from .plane import CORNER, Mesh
+from .sharing import share
+
+LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
+PLACES = 13  # abscissae of the table at each end of the path
+TABLES = 16  # kept
+
+
+class CornerLaw:
+    """How much softer corners are than half-planes, at both ends of the path.
+
+    Parameters
+    ----------
+    pair : GearPair
+    materials : (Material, Material)
+    line_load : float
+        Even load [N/mm] of the width.
+    further : (float, float)
+        How far before the start and after the end of the path contact is looked for [mm].
+    """
+
+    def __init__(self, pair, materials, line_load, further):
+        start, end = pair.path
+        modulus = contact_modulus(materials)
+        radius = [abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal)))) for nominal in (start, end)]
+        # the same rule as in the plane: contacts of the whole load less than so many half widths from the corner
+        self.inside = [CORNER * float(half_width(line_load, r, modulus)) for r in radius]
+        self.limits = start, end
+        load = 2.0 ** round(math.log2(line_load))  # so that loads alike share a table
+        near = [1.5 * float(half_width(load, r, modulus)) for r in radius]
+        away = [2.0 ** math.ceil(math.log2(max(a, n))) for a, n in zip(further, near, strict=True)]
+        self._tables = [_table(pair, materials, load, corner, (-n, a)) for corner, n, a in zip((2, 1), near, away, strict=True)]
+
+    def ends(self, pair, cells):
+        """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
+        out = np.full(cells.z.size, -1)
+        for k, (corner, gear, roll) in enumerate(((2, pair.gear_2, cells.roll_2), (1, pair.gear_1, cells.roll_1))):
+            near = arc_at(gear, gear.roll_a) - arc_at(gear, roll) < self.inside[k]
+            out[(cells.corner == corner) | ((cells.corner == 0) & near)] = k
+        return out
+
+    def __call__(self, ends, nominal, line_load):
+        """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]: zero where `ends` is -1."""
+        out = np.zeros(ends.size)
+        for k, sign in ((0, -1), (1, 1)):
+            own = np.flatnonzero(ends == k)
+            if own.size:
+                spline, least, most, low, high = self._tables[k]
+                away = np.clip(sign * (nominal[own] - self.limits[k]), low, high)
+                out[own] = spline.ev(np.log(np.clip(line_load[own], least, most)), away)
+        return out
+
+
+@lru_cache(maxsize=TABLES)
+def _table(pair, materials, line_load, corner, span):
+    """Spline over the logarithm of the line load and the abscissa beyond the path, with the limits of both."""
+    bodies = [ritz.flexibility(g, m, neighbours=1) for g, m in zip((pair.gear_1, pair.gear_2), materials, strict=True)]
+    low, high = span
+    away = low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5
+    away = np.unique(np.append(away, 0.0))
+    sign, limit = (1, pair.path[1]) if corner == 1 else (-1, pair.path[0])
+    nominal = limit + sign * away
+    mesh = Mesh(pair, materials, bodies, (nominal - pair.path[0]) / pair.p_bt, extended=True, state="plane strain")
+    column = int(np.flatnonzero(mesh.found.order == 0)[0])
+    c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
+    loads = line_load * LOADS
+    out = np.zeros((loads.size, away.size))
+    there = np.isfinite(mesh.found.gap[:, column])
+    for i in np.flatnonzero(there).tolist():
+        at = mesh._contacts(i, np.array([column]), np.array([corner]))
+        rolls = mesh.found.roll_1[i, column], mesh.found.roll_2[i, column]
+        smooth = sum(_read(g, m, r) for g, m, r in zip((pair.gear_1, pair.gear_2), materials, rolls, strict=True))
+        radius = mesh.radius[i, column]
+        for j, load in enumerate(loads.tolist()):
+            closing = share(at["flexibility"], at["gap"], load)[1] - mesh.found.gap[i, column]
+            out[j, i] = (closing / load - smooth) / c - np.log(2 / half_width(load, radius, modulus)) - 0.5
+    away, out = away[there], out[:, there]
+    return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
+
+
+def _read(gear, material, roll):
+    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `ritz3d` carry it."""
+    row = carry(gear, np.array([roll]))[0]
+    return float(row @ ritz3d.plane_hats(gear, material) @ row)

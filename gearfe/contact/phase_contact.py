@@ -1,0 +1,132 @@
+"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach reaches, and their loads."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
+from ..machine.contact_cycle import overlap_ratio
+from .cell_sharing import line_cells
+from .cells import Cells, bands_of, beyond, cells_of, gaps, pieces_of
+from .corner import CornerLaw
+from .seen_bodies import between, faces_of
+
+FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
+ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
+REACH = 1.3  # gaps up to so many times the approach of the phase before are looked at first
+
+
+class PhaseContact:
+    """The contact lines of a pair, with pits, under a force.
+
+    Parameters
+    ----------
+    pair : GearPair
+    force : float
+        In the transverse section [N].
+    materials : (Material, Material)
+    pits : (sequence of Pit, sequence of Pit)
+    face, groove, step, extended
+        As in `gearfe.contact.solid.pair_stiffness3d`.
+    """
+
+    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended):
+        self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
+        self.bands = bands_of(pair, face, groove)
+        self.width = sum(abs(last - first) for first, last in self.bands)
+        self.beta_b = abs(pair.gear_1.beta_b)
+        radius = pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)) / math.cos(self.beta_b)
+        self.radius, self.modulus = abs(float(radius)), contact_modulus(materials)
+        # first guess of the approach: the half-plane's logarithm over the size of a tooth, and as much for the tooth
+        self.reach = 40 / (math.pi * self.modulus) * force / self.width
+        self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
+        self.law = CornerLaw(pair, materials, force / self.width, self._further(2 * self.reach)) if extended else None
+
+    @property
+    def neighbours(self):
+        """Largest difference of the orders of pairs in contact at the same phase."""
+        ratio = overlap_ratio(self.pair, self.width / len(self.bands)) if self.beta_b else 0.0
+        return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.reach)) / self.pair.p_bt))
+
+    def _further(self, reach):
+        return beyond(self.pair, reach) if self.extended else (0.0, 0.0)
+
+    def solve(self, phase, bodies, reach=None):
+        """`Cells` with their loads, the approach in the transverse section [mm], and whether faces of a crack touched.
+
+        Parameters
+        ----------
+        phase : float
+        bodies : list of ((Flexibility3D, float), (Flexibility3D, float))
+            Of both gears by half, with where their contact begins on them [mm].
+        reach : float, optional
+            Gap [mm] to look at first.
+
+        Raises
+        ------
+        RuntimeError
+            If there is no contact; the message says at which phase.
+        """
+        reach = self.reach if reach is None else reach
+        while True:
+            cells = self._cells(phase, reach)
+            if cells is not None:
+                cells, approach, closed = self._carried(cells, bodies)
+                if not self.extended or approach <= reach or reach > self.furthest:
+                    return cells, approach, closed
+            if reach > self.furthest:
+                raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
+            reach = 2 * reach if cells is None else approach  # fewer cells approach more: enough
+
+    def _cells(self, phase, reach):
+        pieces = pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, self._further(reach))
+        if not pieces:
+            return None
+        length = sum(piece.last - piece.first for piece in pieces)
+        finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus))
+        return cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest))
+
+    def _carried(self, cells, bodies):
+        """What `solve` gives, under the whole force; two halves alike are solved once."""
+        first = cells.half == 0
+        if len(bodies) == 1 or not _same(*bodies) or not _alike(cells, first):
+            return self._shared(cells, bodies, self.force)
+        half, approach, closed = self._shared(_some(cells, first), bodies[:1], self.force / 2)
+        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach, closed
+
+    def _shared(self, cells, bodies, force):
+        cos = math.cos(self.beta_b)
+        radius = self.pair.relative_radius(cells.roll_1, cells.roll_2)
+        radius = np.where(radius > 0, radius, self.radius) / cos
+        ends = [(cells.depth + side * cells.width / 2) / cos for side in (-1, 1)]
+        line = np.unique(np.array([cells.half, cells.order]), axis=1, return_inverse=True)[1].ravel()
+        kernel = sum(body.kernel for body, _ in bodies[0])
+        local = None
+        if self.law is not None:
+            at = self.law.ends(self.pair, cells)
+            local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
+        case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
+        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies)}
+        load, approach = line_cells(*case, **options)
+        load, closed = load[: line.size], bool(load[line.size :].any())
+        pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
+        pressure[(cells.corner > 0) & (load > 0)] = np.nan
+        return replace(cells, load=load, pressure=pressure), approach / cos, closed
+
+
+def _same(one, two):
+    return all(first is second for (first, _), (second, _) in zip(one, two, strict=True))
+
+
+def _alike(cells, first):
+    one, two = _some(cells, first), _some(cells, ~first)
+    if one.z.size != two.z.size:
+        return False
+    names = ("order", "width", "depth", "nominal")
+    return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=ALIKE) for name in names)
+
+
+def _some(cells, which):
+    names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner")
+    return Cells(*(getattr(cells, name)[which] for name in names))

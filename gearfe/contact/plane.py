@@ -1,0 +1,201 @@
+"""All tooth pairs at one phase: who carries what, and how far the gears approach.
+
+A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a tip corner there is no such
+formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from geometry.tooth.profile import arc_at, roll_at_arc
+
+from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
+from .sharing import line_contact, line_contacts
+
+# A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
+# the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
+CORNER = 0.7
+CLOSED = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """Contact at some phases, per unit width.
+
+    `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
+    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
+    `closed` the phases at which crack faces touch and were kept from passing through each other.
+    """
+
+    order: np.ndarray
+    approach: np.ndarray
+    tangent: np.ndarray
+    line_load: np.ndarray
+    pressure: np.ndarray
+    closed: tuple = ()
+
+
+def _closing(opening):
+    """Whether crack faces overlap, by the last axis."""
+    return opening.min(axis=-1) < -CLOSED * np.abs(opening).max(axis=-1)
+
+
+def _within(contacts, reach):
+    """Without the unknowns whose gap cannot close."""
+    near = contacts["gap"] <= max(reach, contacts["gap"].min())
+    if near.all():
+        return contacts
+    kept = {name: values if values is None else values[near] for name, values in contacts.items()}
+    return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
+
+
+class Mesh:
+    """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
+
+    Parameters
+    ----------
+    pair : GearPair
+    materials : (Material, Material)
+    flexibility : (Flexibility, Flexibility)
+        Of pinion and wheel.
+    phase : ndarray
+    extended : bool
+    state : str
+    """
+
+    def __init__(self, pair, materials, flexibility, phase, *, extended, state):
+        self.pair, self.flexibility = pair, flexibility
+        self.coefficients = [half_plane(m, state) for m in materials]
+        self.modulus = contact_modulus(materials, state)
+        self.found = found = pair.contacts(phase, extended=extended)
+        self.extended = extended
+        # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
+        self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
+        radius = pair.relative_radius(found.roll_1, found.roll_2)
+        self.radius = np.where(np.isfinite(found.gap) & (radius > 0), radius, 1.0)  # pairs far off their path have none
+        self.opening = self._opening(found.roll_1, found.roll_2, found.order)
+        if self.opening is not None:
+            self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
+            self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
+        self._known = {}
+
+    def solve(self, line_load):
+        """Contact under `line_load` [N/mm] at all phases."""
+        found, c = self.found, sum(self.coefficients)
+        reach = self._reach(line_load)
+        possible = found.gap < reach[:, None]
+        corner = np.where(possible, self._corners(line_load), 0)
+        line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
+        pressure = peak_pressure(line, self.radius, self.modulus)
+        done &= ~corner.any(axis=1)
+        if self.opening is not None:
+            done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
+        closed = []
+        for i in np.flatnonzero(~done).tolist():
+            line[i] = pressure[i] = 0.0
+            contacts = _within(self._contacts(i, np.flatnonzero(possible[i]), corner[i, possible[i]]), reach[i])
+            force, approach[i], tangent[i] = self._share(contacts, line_load)
+            if self.opening is not None and _closing(force @ contacts["opening"]):
+                closed.append(i)
+                force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
+            np.add.at(line[i], contacts["column"], force)
+            single = contacts["coefficient"] > 0
+            peak = peak_pressure(force[single], contacts["radius"][single], self.modulus)
+            pressure[i, contacts["column"][~single]] = np.nan
+            pressure[i, contacts["column"][single]] = peak
+        pressure[(line == 0) & np.isnan(pressure)] = 0.0
+        return Solved(found.order, approach, tangent, line, pressure, tuple(closed))
+
+    def _share(self, contacts, line_load, weight=None):
+        names = ("coefficient", "radius")
+        return line_contact(
+            contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus, weight
+        )
+
+    def _share_closing(self, contacts, line_load):
+        """The same contacts with crack faces that can push each other apart but not pass through."""
+        faces = block_diag(*(flexible.seam.influence for flexible in self.flexibility if flexible.seam))
+        opening = contacts["opening"].T
+        m, n = opening.shape
+        extended = {
+            "flexibility": np.block([[contacts["flexibility"], opening.T], [opening, faces]]),
+            "gap": np.append(contacts["gap"], np.zeros(m)),
+            "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
+            "radius": np.append(contacts["radius"], np.ones(m)),
+        }
+        force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
+        return force[:n], approach, tangent
+
+    def _opening(self, roll_1, roll_2, order):
+        """Opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
+        rows = []
+        for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
+            if flexible.seam is not None:
+                arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
+                rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
+        return np.concatenate(rows, axis=-1) if rows else None
+
+    def _reach(self, line_load):
+        """Gap [mm] no contact can close, by phase: twice the approach of the best pair alone."""
+        best = np.argmin(self.found.gap, axis=1)
+        at = np.arange(best.size), best
+        local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
+        return 2 * (self.found.gap[at] + np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load)
+
+    def _corners(self, line_load):
+        """For each phase and pair: 0, or the gear (1, 2) whose tip corner it touches."""
+        corner = np.zeros(self.found.gap.shape, dtype=int)
+        if not self.extended:
+            return corner
+        reach = CORNER * half_width(line_load, self.radius, self.modulus)
+        for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
+            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
+        return corner
+
+    def _contacts(self, i, near, corner):
+        """Flexibility, gap, logarithm coefficient, radius, pair column and crack opening of every unknown at phase i."""
+        key = i, tuple(near), tuple(corner)
+        if key not in self._known:
+            self._known[key] = self._built(i, near, corner)
+        return self._known[key]
+
+    def _built(self, i, near, corner):
+        parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
+        roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
+        column = np.repeat(near, [part[0].size for part in parts])
+        order = self.found.order[column]
+        total = self.flexibility[0].matrix(roll_1, order) + self.flexibility[1].matrix(roll_2, -order)
+        for part, k in zip(parts, near, strict=True):
+            if part[5] is not None:
+                total[np.ix_(column == k, column == k)] = part[5]
+        opening = self._opening(roll_1, roll_2, order)
+        if opening is not None:
+            total = total + opening @ self.stiffness @ opening.T
+        return {
+            "flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column, "opening": opening
+        }  # fmt: skip
+
+    def _row(self, i, column, corner):
+        """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
+        found = self.found
+        if corner == 0:
+            single = (found.roll_1, found.roll_2, found.gap, self.radius)
+            roll_1, roll_2, gap, radius = (np.array([values[i, column]]) for values in single)
+            return roll_1, roll_2, gap, np.array([sum(self.coefficients)]), radius, None
+        tip, flank = (0, 1) if corner == 1 else (1, 0)
+        gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
+        hats = self.flexibility[tip].tip_of(tooth[tip])
+        roll = roll_at_arc(gears[tip], hats.arc)
+        gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
+        there = np.isfinite(met)
+        there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
+        keep = np.ix_(there, there)
+        arc = arc_at(gears[flank], met[there])
+        middle = np.clip((arc[:, None] + arc[None, :]) / 2, *self.flexibility[flank].limits)
+        mate = self.flexibility[flank].near_of(tooth[flank])(middle)
+        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots[:, there], hats.knots[:, there])
+        rolls = (roll[there], met[there]) if corner == 1 else (met[there], roll[there])
+        zero = np.zeros(there.sum())
+        return *rolls, gap[there], zero, zero + 1.0, hats.influence[keep] + mate

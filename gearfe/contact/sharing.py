@@ -1,0 +1,171 @@
+"""Who carries how much: contacts that push but do not pull, with the logarithmic softness of line contact."""
+
+import numpy as np
+from scipy.linalg import cholesky, solve_triangular
+from scipy.optimize import nnls
+
+from ..flexibility.hertz import half_width
+
+
+def share(flexibility, gap, load, weight=None):
+    """Split a load over elastic contacts that can push but not pull.
+
+    Contacts in touch close by the same approach; the others stay open::
+
+        flexibility @ force + gap  = approach   where force > 0
+        flexibility @ force + gap >= approach   where force = 0
+
+    This is the point of least energy over ``force >= 0, sum(force) = load``; with the Cholesky factor of the flexibility it
+    is the point of a simplex nearest to the origin, which non-negative least squares finds in finitely many steps.
+
+    Parameters
+    ----------
+    flexibility : ndarray, shape (n, n)
+        Approach at contact i per unit load at contact j [mm/N], symmetric positive definite.
+    gap : ndarray, shape (n,)
+        Unloaded distance of each contact along the line of action [mm].
+    load : float
+        Sum of the contact forces [N].
+    weight : ndarray, shape (n,), optional
+        1 for contacts that carry the load, 0 for others (crack faces): those close by no approach, only by `gap`.
+
+    Returns
+    -------
+    force : ndarray, shape (n,)
+        Contact forces [N].
+    approach : float
+        Rigid-body approach along the line of action [mm].
+
+    Raises
+    ------
+    ValueError
+        If `load` is not positive.
+    RuntimeError
+        If the flexibility is not positive definite.
+
+    References
+    ----------
+    T. F. Conry, A. Seireg, J. Eng. Ind. 95(4) (1973) 1115-1122 (the contact problem); P. Wolfe, Math. Program. 11 (1976)
+    128-149 (the nearest point).
+
+    Examples
+    --------
+    >>> force, approach = share(np.eye(2), np.array([0.0, 1.0]), 3.0)
+    >>> np.round(force, 12), round(approach, 12)
+    (array([2., 1.]), 2.0)
+    """
+    if not load > 0:
+        raise ValueError(f"load = {load} N, but contacts can only push: give load > 0")
+    gap = np.asarray(gap, dtype=float)
+    weight = np.ones(gap.size) if weight is None else weight
+    if gap.size == 1:
+        return np.array([load]), float(flexibility[0, 0] * load + gap[0])
+    try:
+        upper = cholesky(flexibility)
+    except np.linalg.LinAlgError as error:
+        raise RuntimeError("the flexibility between the contacts is not positive definite; refine the mesh") from error
+    least = gap[weight > 0].min()
+    corners = load * upper + np.outer(solve_triangular(upper, gap - least * weight, trans="T"), weight)
+    corners /= np.linalg.norm(corners, axis=0).max()
+    weights, _ = nnls(np.vstack([corners, weight]), np.append(np.zeros(gap.size), 1.0))
+    force = load * weights / (weights @ weight)
+    closing = flexibility @ force + gap
+    return force, float(force * weight @ closing / load)
+
+
+def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None):
+    """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
+
+    Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
+    half-plane logarithm under an elliptic pressure, at its middle). Newton on the logarithm, an exact contact problem in
+    every step.
+
+    Parameters
+    ----------
+    flexibility : ndarray, shape (n, n)
+        Of both gears together, local contact excluded [mm per N/mm].
+    gap : ndarray, shape (n,)
+        [mm].
+    load : float
+        Line load of all contacts together [N/mm].
+    coefficient : ndarray, shape (n,)
+        Sum of both half-plane coefficients [mm per N/mm]; 0 for contacts whose `flexibility` is complete.
+    radius : ndarray, shape (n,)
+        Relative radius of curvature [mm].
+    modulus : float
+        Contact modulus E* [MPa].
+    weight : ndarray, shape (n,), optional
+        As in `share`.
+
+    Returns
+    -------
+    force, approach, tangent : ndarray (n,), float, float
+        Line loads [N/mm], approach [mm], and stiffness d load / d approach of the contacts in touch [N/mm per mm].
+    """
+    weight = np.ones(gap.size) if weight is None else weight
+    force = np.full(gap.size, load / gap.size)
+    floor = 1e-9 * load
+    for _ in range(60):
+        width = half_width(np.maximum(force, floor), radius, modulus)
+        slope = coefficient * np.log(2 / width)
+        total = flexibility + np.diag(slope)
+        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight)
+        settled = np.abs(new - force).max() < 1e-10 * load
+        force = new
+        if settled:
+            break
+    else:
+        raise RuntimeError(f"load sharing did not settle at line load {load} N/mm; reduce the load or refine the mesh")
+    touch = force > floor
+    tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
+    return force, approach, float(tangent)
+
+
+def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible):
+    """`line_contact` for many independent sets of a few contacts at once, by Newton and an active set.
+
+    Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
+
+    Parameters
+    ----------
+    flexibility : ndarray, shape (sets, n, n)
+    gap, radius : ndarray, shape (sets, n)
+    load, coefficient, modulus : float
+    possible : ndarray of bool, shape (sets, n)
+        Contacts that may carry load; at least one in each set.
+
+    Returns
+    -------
+    force, approach, tangent, settled : ndarray (sets, n), (sets,), (sets,), (sets,) of bool
+    """
+    n = gap.shape[1]
+    gap = np.where(possible, gap, 0.0)
+    floor = 1e-9 * load
+    active = possible.copy()
+    force = np.where(active, load / active.sum(axis=1, keepdims=True), 0.0)
+    settled = np.zeros(len(gap), dtype=bool)
+    diagonal = np.arange(n)
+    system, right = np.zeros((len(gap), n + 1, n + 1)), np.zeros((len(gap), n + 1))
+    for _ in range(30):
+        carried = np.maximum(force, floor)
+        total = flexibility.copy()
+        total[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus))
+        offset = gap + coefficient / 2 * carried
+        both = active[:, :, None] & active[:, None, :]
+        system[:, :n, :n] = np.where(both, total, 0.0)
+        system[:, diagonal, diagonal] += ~active
+        system[:, :n, n] = -active.astype(float)
+        system[:, n, :n] = active
+        right[:, :n] = np.where(active, -offset, 0.0)
+        right[:, n] = load
+        solution = np.linalg.solve(system, right[..., None])[..., 0]
+        new, approach = solution[:, :n], solution[:, n]
+        free = gap + np.einsum("pij,pj->pi", flexibility, np.maximum(new, 0.0))
+        wanted = np.where(active, new > 0, possible & (free < approach[:, None]))
+        settled = (wanted == active).all(axis=1) & (np.abs(new - force).max(axis=1) < 1e-10 * load)
+        if settled.all():
+            break
+        active, force = wanted, np.where(wanted, np.where(new > 0, new, floor), 0.0)
+        active[~active.any(axis=1)] = possible[~active.any(axis=1)]
+    tangent = 1 / np.linalg.inv(system)[:, n, n]
+    return np.where(active, new, 0.0), approach, tangent, settled

@@ -1,0 +1,152 @@
+"""A pair of gears of finite width in contact along its true contact lines: spur, helical or herringbone, with pits and cracks.
+
+Every contact line is cut into short cells, pits taken out exactly, so that nothing jumps when a pit or the phase moves. The
+flexibility between all cells of all pairs is that of both bodies (`energy.ritz3d`) and the half-space along the line; each cell
+on itself is a strip of Hertz's pressure, as in the plane.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from geometry.damage.pit import check_pits
+
+from ..energy.ritz.solid import axial_degree, flexibility3d
+from .phase_contact import REACH, PhaseContact
+from .seen_bodies import bodies_of
+
+STEP = 0.4  # longest cell along the width [mm]
+
+
+@dataclass(frozen=True, slots=True)
+class Contact3D:
+    """Contact of a pair at some phases.
+
+    `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
+    along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
+    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
+    of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
+    `error` (phases,) estimated discretisation error of k [N/m], or None.
+    """
+
+    phase: np.ndarray
+    k: np.ndarray
+    approach: np.ndarray
+    order: np.ndarray
+    load: np.ndarray
+    cells: tuple
+    dofs: tuple
+    closed: tuple = ()
+    error: np.ndarray | None = None
+
+
+def pair_stiffness3d(
+    pair,
+    force,
+    material,
+    phases=32,
+    *,
+    pits=((), ()),
+    cracks=((), ()),
+    face="helical",
+    groove=0.0,
+    step=STEP,
+    order=3,
+    axial=None,
+    refine=1.0,
+    extended=True,
+    error=False,
+    model=None,
+):
+    """Mesh stiffness of a pair of finite width.
+
+    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it. The flanks
+    press at right angles, ``F / cos(beta_b)`` in all, and approach by ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the
+    normal force per normal approach.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The faces, if of different width, lie centred on each other.
+    force : float
+        [N].
+    material : Material or (Material, Material)
+    phases : int or ndarray
+        Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
+    pits, cracks : (sequence, sequence)
+        Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
+        Faces of cracks are kept from passing through each other if `model` gives their opening, as the energy model does.
+    face : {"spur", "helical", "herringbone"}
+        The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
+        otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
+        bodies.
+    groove : float
+        Between the halves [mm].
+    step : float
+        Longest cell along the width [mm].
+    order, axial, refine : int, int, float
+        Of `flexibility3d`.
+    extended : bool
+        Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
+        has there and the plane's local law of a corner (`corner3d`).
+    error : bool
+        Of the energy model: estimate the discretisation error of every k: its difference from that of a section order less by
+        1 and an axial degree less by 2, or the mean of those over the phases if that is larger.
+    model : callable, optional
+        ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
+
+    Returns
+    -------
+    Contact3D
+
+    Raises
+    ------
+    ValueError
+        If an input is impossible.
+    RuntimeError
+        If pits leave no contact at some phase, or the contact was not found.
+    """
+    if not (math.isfinite(force) and force > 0):
+        raise ValueError(f"force = {force} N, but a mesh is pressed together: give a finite force > 0")
+    if not (math.isfinite(step) and step > 0):
+        raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
+    phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
+    materials = material if isinstance(material, tuple) else (material, material)
+    for gear, found in zip((pair.gear_1, pair.gear_2), pits, strict=True):
+        check_pits(gear, found)
+    options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended}
+    contact = PhaseContact(pair, force, materials, **options)
+
+    def energy(order, less):
+        def flexible(gear, own, found, neighbours):
+            degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
+            return flexibility3d(gear, own, found, neighbours=neighbours, order=order, axial=degree, refine=refine)
+
+        return flexible
+
+    def solve(model):
+        flexible = partial(model, neighbours=contact.neighbours)
+        return _solved(contact, phase, bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible))
+
+    solved = solve(model or energy(order, 0))
+    if error:
+        away = np.abs(solve(energy(order - 1, 2)).k - solved.k)
+        solved = replace(solved, error=np.maximum(away, away.mean()))
+    return solved
+
+
+def _solved(contact, phase, bodies):
+    cells, approach, reach, closed = [], np.zeros(phase.size), None, []
+    for i, at in enumerate(phase.tolist()):
+        own, approach[i], shut = contact.solve(at, bodies, reach)
+        closed += [i] if shut else []
+        cells.append(own)
+        reach = REACH * approach[i]
+    orders = np.array(sorted({order for own in cells for order in own.order.tolist()}))
+    load = np.zeros((phase.size, orders.size))
+    for i, own in enumerate(cells):
+        np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
+    dofs = tuple(body.unknowns for body, _ in bodies[0])
+    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs, tuple(closed))

@@ -1,0 +1,216 @@
+"""Flexibility of one gear between its contacts, by finite elements (plane strain or plane stress).
+
+Each loaded flank carries *hat pressures* of unit resultant along the involute normal; the displacement of a contact is
+the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On one tooth it is split::
+
+    C(i, j) = S(s_i, s_j) + c * mean(-ln |s_i - s_j|)
+
+into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline, RectBivariateSpline
+from scipy.sparse import coo_matrix, lil_matrix
+
+from geometry.mesh.outline import stations
+from geometry.mesh.section_mesh import section
+from geometry.tooth.profile import arc_at, flank_normal
+
+from ..flexibility.hertz import half_plane, hat_logarithm
+from ..flexibility.plane import Flexibility, SeamFaces, TipHats
+from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
+
+SPAN = 2  # edges on either side of a hat's top
+# default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
+# three next teeth, all other teeth
+EDGES = {"flank": 0.05, "tip": 0.0005, "low": 0.02, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
+TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
+
+
+@dataclass(frozen=True, slots=True)
+class Hats:
+    """Unit hat pressures on one flank: knots along the arc ``(3, n)`` [mm] and load columns."""
+
+    knots: np.ndarray
+    load: object
+
+    @property
+    def arc(self):
+        """Centroids [mm]."""
+        return self.knots.mean(axis=0)
+
+
+def hats(section_, tooth, *, corner=False):
+    """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
+
+    With `corner`, a last, one-sided hat has its top at the tip corner.
+    """
+    gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
+    arc = arc_at(gear, roll)
+    knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
+    if corner:
+        knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
+
+    def height(s):
+        start, top, stop = knots[:, :, None, None]
+        fall = np.where(stop > top, (stop - s) / np.where(stop > top, stop - top, 1.0), 1.0)
+        return np.maximum(np.minimum((s - start) / (top - start), fall), 0.0) * 2 / (stop - start)
+
+    first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
+    return Hats(knots, flank_load(section_, tooth, height, first, 2 * SPAN))
+
+
+def flank_load(section_, tooth, pressure, first, count):
+    """Consistent nodal forces ``(2 nodes, n)`` [N/mm] of pressures on the loaded flank of `tooth`.
+
+    Parameters
+    ----------
+    section_ : Section
+    tooth : int
+    pressure : callable
+        Maps arcs ``(n, count, points)`` from the base circle [mm] to pressures [MPa], row by row.
+    first : ndarray, shape (n,)
+        First flank edge each pressure acts on.
+    count : int
+        Number of edges each pressure acts on.
+    """
+    gear, mesh = section_.gear, section_.mesh
+    tooth %= gear.z
+    roll = section_.roll[tooth]
+    points, weights = GAUSS_3
+    shapes, slopes = edge_shapes(points)
+    nodes = edge_nodes(mesh, section_.flank[tooth])
+    length = np.hypot(*np.einsum("dne,np->dep", mesh.doflocs[:, nodes], slopes)) * weights
+    rolls = (roll[:-1, None] + roll[1:, None]) / 2 + (roll[1:, None] - roll[:-1, None]) / 2 * points
+    normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z)
+    edge = np.asarray(first)[:, None] + np.arange(count)
+    height = pressure(arc_at(gear, rolls[edge]))
+    force = -np.einsum("np,hep,hep,dhep->nhed", shapes, height, length[edge], normal[:, edge])
+    rows = 2 * nodes[:, edge][..., None] + np.arange(2)
+    columns = np.broadcast_to(np.arange(edge.shape[0])[:, None, None], force.shape)
+    shape = (2 * mesh.doflocs.shape[1], edge.shape[0])
+    return coo_matrix((force.ravel(), (rows.ravel(), columns.ravel())), shape=shape).tocsc()
+
+
+def turned(vectors, angle):
+    """Vectors ``(2, ...)`` turned clockwise by `angle` [rad]."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.array([cos * vectors[0] + sin * vectors[1], cos * vectors[1] - sin * vectors[0]])
+
+
+def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
+    """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
+
+    `refine` divides every edge length of `EDGES`; `teeth` and `cracks` as in `geometry.mesh.mesher.section`.
+    """
+    if not (math.isfinite(refine) and refine > 0):
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
+    fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], span=SPAN)
+    coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, span=SPAN)
+    rolls = dict.fromkeys(loaded, fine) | dict.fromkeys(read, coarse)
+    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], teeth=teeth, cracks=cracks)
+
+
+def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """Flexibility of a healthy gear by finite elements: one factorisation, one tooth loaded.
+
+    The teeth of a healthy gear are alike, so a load on tooth 0 read on tooth k is also a load on any tooth read k teeth
+    further.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    neighbours : int
+        How many following teeth may carry load at the same time.
+    state : {"plane strain", "plane stress"}
+    refine : float
+        Divides every edge length; 1 is the default resolution.
+    teeth : int, optional
+        Model only so many teeth on a plain rim (see `geometry.mesh.mesher.section`).
+
+    Returns
+    -------
+    Flexibility
+    """
+    mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
+    body = Body(mesh.mesh, material, state=state)
+    own = hats(mesh, 0, corner=True)
+    moved = body.solve(own.load)
+    near, tip = own_tooth(gear, own, own.load.T @ moved, half_plane(material, state))
+    far = {}
+    for tooth in range(1, neighbours + 1):
+        read = hats(mesh, tooth)
+        far[0, tooth] = RectBivariateSpline(own.arc, read.arc, (read.load.T @ moved).T)
+    return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), moved.shape[0])
+
+
+def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
+    """Flexibility of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
+
+    Parameters
+    ----------
+    gear, material, neighbours, state, refine, teeth
+        As in `flexibility`.
+    cracks : tuple of Crack
+        Their `tooth` counts to the loaded side of this gear.
+    healthy : Flexibility
+        Of the same gear without cracks, for the teeth further away.
+
+    Returns
+    -------
+    Flexibility
+    """
+    reach = max(1, neighbours - 1)
+    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
+    body = Body(mesh.mesh, material, state=state)
+    own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
+    moved = {tooth: body.solve(own[tooth].load) for tooth in solved}
+    faces = _face_columns(mesh)
+    openings = {tooth: faces.T @ moved[tooth] for tooth in solved}
+    influence = faces.T @ body.solve(faces)
+    influence = (influence + influence.T) / 2
+    stiffness = np.linalg.inv(influence)
+    near, tip, far = {}, {}, {}
+    for tooth in solved:
+        glued = own[tooth].load.T @ moved[tooth] - openings[tooth].T @ stiffness @ openings[tooth]
+        near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
+        for other in solved:
+            if 0 < (other - tooth) % gear.z <= gear.z // 2:
+                # both are the same number, by reciprocity; their mean is symmetric to rounding
+                there, back = own[other].load.T @ moved[tooth], (own[tooth].load.T @ moved[other]).T
+                glued = (there + back) / 2 - openings[other].T @ stiffness @ openings[tooth]
+                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, glued.T)
+    seam = SeamFaces({t: CubicSpline(own[t].arc, openings[t].T) for t in solved}, influence, stiffness)
+    limits = own[solved[0]].arc[0], own[solved[0]].arc[-2]
+    return Flexibility(gear, near, far, tip, limits, faces.shape[0], healthy, seam)
+
+
+def _face_columns(mesh):
+    """Columns of unit forces that push the facing nodes of all cracks apart, tips and the quarter points beside them left out."""
+    columns = []
+    for seam in mesh.seams:
+        ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
+        normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
+        columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
+    apart = lil_matrix((2 * mesh.mesh.doflocs.shape[1], len(columns)))
+    for j, (left, right, normal) in enumerate(columns):
+        for d in range(2):
+            apart[2 * left + d, j] = normal[d]
+            apart[2 * right + d, j] = -normal[d]
+    return apart.tocsc()
+
+
+def own_tooth(gear, own, influence, coefficient):
+    """Spline S(s, s) of one tooth, and its `TipHats`, from the influence matrix of its hats."""
+    smooth = np.diag(influence - coefficient * hat_logarithm(own.knots, own.knots))
+    zone = own.knots[1] > arc_at(gear, gear.roll_a) - TIP_ZONE * gear.m_n
+    block = influence[np.ix_(zone, zone)]
+    tip = TipHats(own.arc[zone], own.knots[:, zone], (block + block.T) / 2)
+    return CubicSpline(own.arc[:-1], smooth[:-1]), tip

@@ -1,0 +1,158 @@
+"""One loaded tooth: its deflection and its root stress, as rating engineers and strain gauges see them."""
+
+import math
+from numbers import Real
+
+import numpy as np
+from skfem import MeshTri
+
+from geometry.mesh.outline import stations
+from geometry.mesh.section_mesh import section
+from geometry.tooth.profile import arc_at, flank, roll_at_arc
+
+from .elasticity import Body, edge_nodes, edge_shapes
+from .fe import EDGES, flank_load
+
+STRESS_EDGES = {"flank": 0.1, "fillet": 0.02, "near": 0.4, "far": 0.9}  # in modules; the fillet decides
+
+
+def load_at(gear, radius):
+    """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
+    low, high = sorted((gear.r_form, gear.r_a))
+    if not low <= radius <= high:
+        raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
+    return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
+
+
+def check_line_load(line_load):
+    """ValueError unless the line load is a finite push."""
+    if not (isinstance(line_load, Real) and line_load > 0 and math.isfinite(line_load)):
+        raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
+
+
+def edge_lengths(gear, edges, refine):
+    """Edge lengths [mm] of a table in modules at a resolution; ValueError unless ``refine > 0``."""
+    if not (isinstance(refine, Real) and refine > 0 and math.isfinite(refine)):
+        raise ValueError(f"refine = {refine!r}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    return {name: size * gear.m_n / refine for name, size in edges.items()}
+
+
+def narrow_load(mesh, tooth, arc, half_width):
+    """Nodal forces of unit resultant, ``cos**2`` over `half_width` [mm] around `arc` [mm], as far as the flank reaches."""
+
+    def pressure(s):
+        away = np.minimum(np.abs(s - arc) / half_width, 1.0)
+        return np.cos(math.pi / 2 * away) ** 2 / half_width
+
+    load = flank_load(mesh, tooth, pressure, np.array([0]), mesh.roll[tooth % mesh.gear.z].size - 1)
+    return load / math.hypot(load[0::2].sum(), load[1::2].sum())
+
+
+def _solve(gear, material, state, arc, half_width, edges, refine):
+    """Displacement under a unit load [N/mm], ``cos**2`` pressure over `half_width` [mm] around `arc`."""
+    edge = edge_lengths(gear, edges, refine)
+    inner = arc - half_width, arc + half_width
+    roll = stations(gear, edge["flank"], patches=[(*inner, half_width / (4 * refine))])
+    mesh = section(gear, {0: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
+    body = Body(mesh.mesh, material, state=state)
+    return mesh, body, body.solve(narrow_load(mesh, 0, arc, half_width))[:, 0]
+
+
+def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane strain", refine=1.0):
+    """Deflection of a tooth per unit line load, along the load line [mm per N/mm].
+
+    Parameters
+    ----------
+    gear : Gear
+        Its bore is held.
+    radius : float
+        Of the loaded flank point [mm].
+    material : Material
+    at : {"centreline", "surface"}
+        Where the displacement is taken: where the load line crosses the tooth centre-line (the local contact
+        deformation is left out, as in Weber's analysis), or the smooth part S(s, s) at the surface, which has the
+        half-plane logarithm removed (see `gearfe.elements.fe`).
+    state : {"plane strain", "plane stress"}
+    refine : float
+        Divides the edge lengths.
+
+    Raises
+    ------
+    ValueError
+        If `radius` is off the flank or `at` is unknown.
+
+    References
+    ----------
+    C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern (1953).
+    """
+    arc = load_at(gear, radius)
+    roll = float(roll_at_arc(gear, arc))
+    if at == "surface":
+        from .fe import flexibility
+
+        return float(flexibility(gear, material, neighbours=0, state=state, refine=refine).matrix(np.array([roll]), [0])[0, 0])
+    if at != "centreline":
+        raise ValueError(f"at = {at!r}, but it must be 'centreline' or 'surface'")
+    edges = EDGES | {"flank": 0.1}
+    _, body, moved = _solve(gear, material, state, arc, 0.02 * gear.m_n, edges, refine)
+    angle = gear.outward * roll / gear.r_b - gear.base_half_angle
+    far, turn = flank(gear, roll)
+    crossing = far * math.cos(turn) - far * math.sin(turn) * math.tan(angle)
+    return float(_displacement(body, moved, 0.0, crossing) @ [-math.cos(angle), -math.sin(angle)])
+
+
+def _displacement(body, moved, x, y):
+    """Displacement (2,) at one inner point; triangles there have straight edges."""
+    mesh = body.mesh
+    linear = MeshTri(mesh.doflocs[:, : mesh.nvertices].copy(), mesh.t)
+    point = np.array([[x], [y]])
+    triangle = linear.element_finder()(*point)
+    local = linear.mapping().invF(point[:, :, None], tind=triangle)[:, 0, 0]
+    shapes = [float(body.basis.elem.lbasis(local[:, None], i)[0][0]) for i in range(6)]
+    return np.array(shapes) @ moved.reshape(-1, 2)[body.nodes[:, triangle[0]]]
+
+
+def root_stress(gear, radius, line_load, material, *, half_width=None, state="plane strain", refine=1.0):
+    """Largest principal stress on the loaded side's fillet [MPa].
+
+    On the free fillet the stress is one tension along the profile, ``E' du_t/ds``; it is taken at the Gauss points of the
+    fillet's edges, where the derivative of second-order displacements is most accurate, and its peak by a parabola.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its bore is held.
+    radius : float
+        Of the loaded flank point [mm].
+    line_load : float
+        Load normal to the flank per face width [N/mm].
+    half_width : float, optional
+        The load is spread as ``cos**2`` over twice this arc [mm]; default 0.05 m_n.
+
+    Raises
+    ------
+    ValueError
+        If the load is not positive, or the point is off the flank.
+    """
+    check_line_load(line_load)
+    half_width = 0.05 * gear.m_n if half_width is None else half_width
+    if not 0 < half_width <= gear.m_n:
+        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
+    mesh, _, moved = _solve(gear, material, state, load_at(gear, radius), half_width, STRESS_EDGES, refine)
+    nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
+    _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
+    along = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], slopes)
+    stretch = np.einsum("ned,np->dep", moved.reshape(-1, 2)[nodes], slopes)
+    length = np.hypot(*along)
+    stress = line_load * material.plane_modulus(state) * ((along * stretch).sum(axis=0) / length**2).ravel()
+    top = int(np.argmax(stress))
+    if not 0 < top < stress.size - 1:
+        raise RuntimeError("the largest root stress is at the end of the fillet, not on it")
+    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(_gauss_places(mesh, nodes), axis=1)))])[top - 1 : top + 2]
+    a, b, c = np.polyfit(place - place[1], stress[top - 1 : top + 2], 2)
+    return float(c - b**2 / (4 * a))
+
+
+def _gauss_places(mesh, nodes):
+    shapes, _ = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
+    return np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)

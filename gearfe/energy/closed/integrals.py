@@ -1,0 +1,170 @@
+"""Integrals along a tooth seen as a beam, from its foot to the load, over true or simplified profiles and damaged sections."""
+
+import math
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.polynomial.legendre import leggauss
+from scipy.optimize import brentq
+
+from geometry.damage.pit import check_pits, rolls
+from geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
+
+from .beam import load_angle
+from .section import limits, section
+
+ROOTS = ("fillet", "base", "line", "prism")
+FLANK, FOOT = leggauss(24), leggauss(64)
+DAMAGED = leggauss(40)
+
+
+def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="constant"):
+    """Integrals of ``1/I, y/I, y**2/I, 1/A`` and of 1/A without cracks, from the foot of the beam to the load.
+
+    Parameters
+    ----------
+    gear : Gear
+    roll : ndarray, shape (n,)
+        Roll lengths of the load [mm].
+    root : {"fillet", "base", "line", "prism"}
+        Where the beam begins. ``fillet``: the true fillet, from the root circle. The others extend the involute down to the
+        larger of base and root circle and, where the base circle is the larger, add nothing (``base``), a straight radial
+        flank down to the root circle (``line``), or a prism of constant thickness down to it (``prism``).
+    cracks, pits : sequences of Crack and Pit
+        Of this tooth, whatever their number.
+    crack_model : {"constant", "straight", "parabola"}
+        See `gearfe.energy.closed.section`.
+
+    Returns
+    -------
+    ndarray, shape (5, n)
+        [1/mm**2, 1/mm, -, -, -] per unit face width; y rises from root to tip (of a ring: minus its y).
+    """
+    if root not in ROOTS:
+        raise ValueError(f"root = {root!r}, but it must be one of {', '.join(ROOTS)}")
+    check_pits(gear, pits)
+    if not (cracks or pits):
+        low = _lowest(gear, root)
+        foot = np.array(_healthy_foot(gear, root))
+        return foot[:, None] + _panel(gear, _flank(gear), low, roll, (), (), FLANK)
+    found = _limits(gear, root, cracks, crack_model)
+    edges = _flank_edges(gear, root, found, pits)
+    total = [np.zeros(5)]
+    below = _foot(gear, root)
+    if below:
+        curve, *ends = below
+        places = _edges(curve, found, pits, ends)
+        total += [_panel(gear, curve, a, np.array([b]), found, pits, DAMAGED)[:, 0] for a, b in pairwise(places)]
+    start = np.sum(total, axis=0)
+    whole = [_panel(gear, _flank(gear), a, np.array([b]), found, pits, DAMAGED)[:, 0] for a, b in pairwise(edges)]
+    whole = np.cumsum([start, *whole], axis=0)
+    piece = np.clip(np.searchsorted(gear.outward * edges, gear.outward * roll, side="right") - 1, 0, len(edges) - 1)
+    return whole[piece].T + _panel(gear, _flank(gear), edges[piece], roll, found, pits, DAMAGED)
+
+
+def flank_edges(gear, cracks, pits, *, root="fillet", crack_model="constant"):
+    """Roll lengths [mm], from the foot of the involute to the tip, between which the damaged section is smooth."""
+    return _flank_edges(gear, root, _limits(gear, root, cracks, crack_model), pits)
+
+
+def _flank_edges(gear, root, found, pits):
+    kinks = _edges(_flank(gear), found, pits, (_lowest(gear, root), gear.roll_a))
+    edges = np.unique(np.concatenate([kinks, *(np.linspace(*rolls(gear, pit), 7) for pit in pits)]))[:: gear.outward]
+    return edges[np.append(True, np.abs(np.diff(edges)) > 1e-9 * gear.m_n)]
+
+
+def _lowest(gear, root):
+    """Roll length [mm] at which the modelled involute begins."""
+    return gear.roll_f if root == "fillet" else math.sqrt(max(gear.r_f**2 - gear.r_b**2, 0.0))
+
+
+def _limits(gear, root, cracks, crack_model):
+    if root == "fillet":
+        return limits(gear, cracks, crack_model)
+    curve, start, _ = _foot(gear, root) or (_flank(gear), _lowest(gear, root), None)
+    return limits(gear, cracks, crack_model, [float(v[0]) for v in curve(np.array([start]))[:2]])
+
+
+def _edges(curve, found, pits, ends):
+    """Parameters at which the limit lines begin or cease to matter, between and with `ends`."""
+    depths = sorted({pit.depth for pit in pits})
+    edges = []
+    for limit in found:
+        at = np.linspace(*ends, 201)
+        values = limit.switches(*curve(at)[:2], depths)
+        for k, i in np.argwhere(np.sign(values[:, 1:]) * np.sign(values[:, :-1]) < 0):
+            edges.append(
+                brentq(lambda t, k=k, limit=limit: limit.switches(*curve(t)[:2], depths)[k], at[i], at[i + 1], xtol=1e-14)
+            )
+    return np.array([ends[0], *sorted(edges, reverse=ends[0] > ends[1]), ends[1]])
+
+
+def _panel(gear, curve, start, stop, found, pits, rule):
+    """The five integrals from `start` (number or array) to `stop` (array) of the curve's parameter.
+
+    Damaged sections end like square roots at the ends of pits: there the nodes are mapped by sin**2, which makes them smooth.
+    """
+    points, weights = rule
+    span = (np.asarray(stop) - start)[:, None]
+    if found or pits:
+        theta = math.pi / 4 * (1 + points)
+        at = np.reshape(start, (-1, 1)) + span * np.sin(theta) ** 2
+        weight = span * np.sin(2 * theta) * math.pi / 4 * weights
+    else:
+        at = np.reshape(start, (-1, 1)) + span / 2 * (1 + points)
+        weight = span / 2 * weights
+    h, y, slope, arc = curve(at)
+    step = slope * weight
+    flat = [np.broadcast_to(v, at.shape).ravel() for v in (h, y, arc)]
+    area, inertia, uncracked = (v.reshape(at.shape) for v in section(gear, *flat, found, pits))
+    values = (1 / inertia, y / inertia, y**2 / inertia, 1 / area, 1 / uncracked)
+    return np.array([(step * value).sum(axis=1) for value in values])
+
+
+def _flank(gear):
+    """Curve of the involute by roll length [mm]: half thickness, height, its derivative, and the arc."""
+
+    def involute(at):
+        radius, angle = flank(gear, at)
+        slope = gear.outward * at / gear.r_b * np.cos(load_angle(gear, at))
+        return radius * np.sin(angle), gear.outward * radius * np.cos(angle), slope, arc_at(gear, at)
+
+    return involute
+
+
+def _foot(gear, root):
+    """Curve of the profile below the involute with its parameter's range from the root up, or None if there is none."""
+    if root == "fillet":
+        top = form_point(gear)[0]
+        slope = _fillet_height(gear).deriv()
+
+        def trochoid(phi):
+            x, y = cartesian(*fillet(gear, phi))
+            return x, gear.outward * y, gear.outward * slope(phi), math.nan
+
+        return trochoid, math.pi / 2, top
+    if root == "base" or gear.r_f >= gear.r_b:
+        return None
+    sin, cos = math.sin(gear.base_half_angle), math.cos(gear.base_half_angle)
+    if root == "line":
+        return lambda r: (r * sin, r * cos, np.full(np.shape(r), cos), math.nan), gear.r_f, gear.r_b
+    x = gear.r_b * sin
+    return lambda y: (np.full(np.shape(y), x), y, np.ones(np.shape(y)), math.nan), math.sqrt(gear.r_f**2 - x**2), gear.r_b * cos
+
+
+@lru_cache(maxsize=64)
+def _fillet_height(gear):
+    """Height [mm] of the fillet against its rack tip angle, as a Chebyshev interpolant of 48 nodes."""
+    top = form_point(gear)[0]
+    return Chebyshev.interpolate(lambda phi: cartesian(*fillet(gear, phi))[1], 48, domain=[top, math.pi / 2])
+
+
+@lru_cache(maxsize=64)
+def _healthy_foot(gear, root):
+    below = _foot(gear, root)
+    if below is None:
+        return (0.0,) * 5
+    curve, start, stop = below
+    return tuple(_panel(gear, curve, start, np.array([stop]), (), (), FOOT)[:, 0].tolist())

@@ -1,0 +1,197 @@
+"""The plain sum: tooth pairs that ignore each other, each a chain of two teeth and a contact, side by side."""
+
+import math
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from geometry.damage.crack import check_apart, check_through
+from geometry.damage.pit import check_pits
+from geometry.tooth.profile import flank
+
+from ...contact.plane import Solved
+from ...flexibility.hertz import linear_hertz, palmgren_line, weber_line
+from . import published
+from .beam import load_angle
+from .integrals import flank_edges
+from .slices import faces, stations
+
+NODES = 24
+CONTACTS = ("linear", "published", "weber", "palmgren")
+
+
+def plain_sum(
+    pair,
+    materials,
+    phase,
+    formulas,
+    *,
+    cracks=((), ()),
+    pits=((), ()),
+    contact=None,
+    face="spur",
+    groove=0.0,
+    lost="hertz",
+    **variants,
+):
+    """Sum of the pairs on the path of contact, with one approach common to all.
+
+    Every slice of every pair carries the line load w with ``w (s_1 + s_2 + c(w / f) / f) = approach``: s the flexibilities of
+    its teeth, c that of the contact, f the part of its contact that pits have left; the loads of all slices add up to the
+    load. Teeth and slices do not support each other. Damage belongs to teeth: the others are healthy.
+
+    Parameters
+    ----------
+    pair : GearPair
+    materials : (Material, Material)
+    phase : ndarray
+    formulas : module
+        `textbook` or `published`: its ``components`` gives the flexibility of one tooth.
+    cracks, pits : (sequence, sequence)
+        Of pinion and wheel, teeth numbered in each gear's own frame: the wheel's tooth of pair k is its tooth -k.
+    contact : {"linear", "published", "weber", "palmgren"}, optional
+        `gearfe.flexibility.hertz.linear_hertz`, `published.contact`, `weber_line`, `palmgren_line`; default: as the source of
+        `formulas`, the second for `published` and the first otherwise. The last two depend on the load.
+    face : {"spur", "helical", "herringbone"}
+        How the phase runs along the width, see `gearfe.energy.closed.slices.faces`. Axial components of force and elasticity are
+        left out: a slice is a spur gear.
+    groove : float
+        Width of a herringbone gear's relief groove [mm], part of b.
+    lost : {"hertz", "slices"}
+        What a pit takes from its pair: the lost part of the contact's stiffness (Liang et al. 2016, and article S4 as printed),
+        or the slices in it with all they carry (slices that know nothing of each other). The material it takes
+        weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
+    **variants
+        Passed on to ``formulas.components``.
+
+    Returns
+    -------
+    solve : callable
+        From the line load [N/mm of face width] to a `Solved`.
+    details : dict
+        ``outside``: tuple of `gearfe.energy.closed.beam.Validity`, the ranges of validity that the gears are not in.
+
+    Raises
+    ------
+    ValueError
+        If an option is unknown, damage does not fit its gear, or at some phase pits leave no contact at all.
+    """
+    contact = contact or ("published" if formulas is published else "linear")
+    if contact not in CONTACTS:
+        raise ValueError(f"contact = {contact!r}, but it must be one of {', '.join(CONTACTS)}")
+    phase = np.atleast_1d(np.asarray(phase, dtype=float))
+    gears = (pair.gear_1, pair.gear_2)
+    for gear, own_cracks, own_pits in zip(gears, cracks, pits, strict=True):
+        check_through(own_cracks, "a plain sum")
+        check_apart(gear, own_cracks)
+        check_pits(gear, own_pits)
+    bands = faces(pair, face, groove)
+    options = {"root": "prism"} if formulas is published else {}
+    options |= {key: variants[key] for key in ("crack_model", "root") if key in variants}
+    at = stations(pair, phase, pits, bands, lost=lost, edges=lambda order: _edges(pair, order, cracks, pits, options))
+    empty = np.setdiff1d(np.arange(phase.size), at.phase)
+    if empty.size:
+        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: pits take the whole width; make them smaller")
+    teeth, outside = np.zeros(at.roll_1.shape), {}
+    for gear, material, roll, tooth, own_cracks, own_pits in (
+        (gears[0], materials[0], at.roll_1, at.order[at.column], cracks[0], pits[0]),
+        (gears[1], materials[1], at.roll_2, -at.order[at.column], cracks[1], pits[1]),
+    ):
+        for where, here in _by_tooth(gear, tooth, own_cracks, own_pits):
+
+            def tooth_at(rolls, gear=gear, material=material, here=here):
+                return formulas.components(gear, material, rolls, **here, **variants)
+
+            outside |= dict.fromkeys(tooth_at(np.array([gear.roll_a])).outside)
+            teeth[where] += _evaluated(gear, lambda rolls: tooth_at(rolls).total, roll[where], here, options)
+    law = _law(pair, materials, at, contact, bands)
+    return _solver(at, phase.size, teeth, law), {"outside": tuple(outside)}
+
+
+def _by_tooth(gear, tooth, cracks, pits):
+    """Stations of the healthy teeth and of each damaged one, as (mask, damage)."""
+    damaged = {d.tooth % gear.z for d in (*cracks, *pits)}
+    rest = ~np.isin(tooth % gear.z, list(damaged))
+    if rest.any():
+        yield rest, {}
+    for number in sorted(damaged):
+        where = tooth % gear.z == number
+        if where.any():
+            own = [tuple(d for d in found if d.tooth % gear.z == number) for found in (cracks, pits)]
+            yield where, {"cracks": own[0], "pits": own[1]}
+
+
+def _evaluated(gear, flexibility, roll, here, options):
+    """Flexibility at many rolls; of a damaged tooth from Chebyshev interpolants between its edges where that is quicker.
+
+    At the ends of pits the flexibility changes like the power 3/2 of the distance: smooth in the arc sine used here.
+    """
+    edges = flank_edges(gear, here["cracks"], here["pits"], **options) if here else np.zeros(0)
+    if not here or roll.size <= NODES * edges.size:
+        return flexibility(roll)
+    out = np.empty(roll.shape)
+    piece = np.clip(np.searchsorted(gear.outward * edges, gear.outward * roll, side="right") - 1, 0, edges.size - 2)
+    for k in np.unique(piece):
+        first, span, here = edges[k], edges[k + 1] - edges[k], piece == k
+        table = Chebyshev.interpolate(lambda t, a=first, s=span: flexibility(a + s * np.sin(t) ** 2), NODES, [0, math.pi / 2])
+        out[here] = table(np.arcsin(np.sqrt(np.clip((roll[here] - first) / span, 0, 1))))
+    return out
+
+
+def _edges(pair, order, cracks, pits, options):
+    """Pinion rolls [mm] at which pairs with a damaged tooth are not smooth, by pair order."""
+    out = {}
+    for number in order:
+        found = []
+        for gear, tooth, k in ((pair.gear_1, number, 0), (pair.gear_2, -number, 1)):
+            for _, here in _by_tooth(gear, np.array([tooth]), cracks[k], pits[k]):
+                rolls = flank_edges(gear, here["cracks"], here["pits"], **options) if here else np.zeros(0)
+                found += (rolls if k == 0 else pair.outward * (pair.length - rolls)).tolist()
+        out[number] = found
+    return out
+
+
+def _law(pair, materials, at, contact, bands):
+    """Contact law: from the line load on the touching length to secant and tangent flexibility [mm per N/mm]."""
+    if contact in ("linear", "published"):
+        constant = linear_hertz(materials) if contact == "linear" else published.contact(materials)
+        return lambda line: (constant, constant)
+    if contact == "palmgren":
+        width = sum(abs(last - first) for first, last, _ in bands)
+        return lambda line: palmgren_line(line, materials, width * at.touching)
+    radius = pair.relative_radius(at.roll_1, at.roll_2)
+    depth = [_depth(gear, roll) for gear, roll in ((pair.gear_1, at.roll_1), (pair.gear_2, at.roll_2))]
+    return lambda line: weber_line(line, materials, radius, depth)
+
+
+def _depth(gear, roll):
+    """Distance [mm] from the flank to the tooth centre-line along the load line."""
+    radius, angle = flank(gear, roll)
+    return radius * np.sin(angle) / np.cos(load_angle(gear, roll))
+
+
+def _solver(at, count, teeth, law):
+    """`solve` of `plain_sum`: a fixed point of the approach; the contact depends on the load only by a logarithm or F**0.1."""
+
+    def total(values):
+        return np.bincount(at.phase, at.weight * values, minlength=count)
+
+    def solve(line_load):
+        line = line_load / total(np.ones(teeth.shape))[at.phase]
+        for _ in range(200):
+            secant, tangent = law(line / at.touching)
+            flexibility = teeth + secant / at.touching
+            stiffness = total(1 / flexibility)
+            new = (line_load / stiffness)[at.phase] / flexibility
+            settled = np.abs(new - line).max() <= 1e-13 * line_load or np.ndim(secant) == 0
+            line = new
+            if settled:
+                break
+        else:
+            raise RuntimeError(f"the loads of the pairs do not settle at {line_load:g} N/mm: use contact = 'linear'")
+        tangent = total(1 / (teeth + tangent / at.touching))
+        pairs = np.zeros((count, at.order.size))
+        np.add.at(pairs, (at.phase, at.column), at.weight * line)
+        return Solved(at.order, line_load / stiffness, tangent, pairs, np.full(pairs.shape, np.nan))
+
+    return solve

@@ -1,0 +1,119 @@
+"""Article S4's formulas (crack-pitting coupled herringbone planetary stage), as printed where they can be computed."""
+
+import math
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from geometry.tooth.profile import flank
+
+from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
+from .integrals import integrals
+
+GAUSS = leggauss(32)
+
+
+def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot"):
+    """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
+
+    As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
+    ``cos(a)**2 / (E L)``, and the coefficient table.
+
+    Corrections it needed, because the printed text cannot be computed:
+
+    1. the integrals of k_b, k_s, k_a have lost their factors (all print ``.../(2 E L dL)``): those of the source they
+       abridge are used, with the beam starting on the base circle and a prism of constant thickness between root and
+       base circle when r_f < r_b;
+    2. d and h_x are garbled (they lack the factors alpha_2 +- alpha): the same source's are used;
+    3. u_f, S_f and theta_f are not defined: Sainsot's, with the root half angle of a straight radial flank below the
+       base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``.
+
+    Damage (the same integrals with the article's ``A_x`` and ``I_x`` of a cracked and pitted section), corrected:
+
+    4. a cracked section is ``(h_x + h_c) L`` from the crack, at the foot of the beam, up to where ``h_x = h_c`` (the printed
+       transition "x <= d" is the whole tooth); the article's angle and length, and its undefined level as in
+       `gearfe.Crack`, of the half thickness at the foot;
+    5. the printed ``dI = dA (h_p**2 + 3/4 p_d**2) / 12`` mixes up the axes and lacks the parallel-axis term, so that I - dI
+       can become negative: the inertia here is that of the section left, about its own centroid;
+    6. several pits in a section take the union of their widths, not the sum; where the crack has made the material dead they
+       take nothing more (its case 3, there only said to be "close to");
+    7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
+
+    For a ring, with ``foundation="external"`` (as in `textbook`):
+
+    8. its beam is integrated over its own profile, the involute extended to the root circle (the printed integrals from a_f to
+       a_1 have lost their factors); it has no foundation, since that formula is a fit to discs held at their bore.
+
+    The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
+
+    References
+    ----------
+    X. Liang, M. J. Zuo, T. H. Patel, J. Mech. Eng. Sci. 228(3) (2014) 535-547, eqs. 6-20 (the planetary form).
+    """
+    roll = np.atleast_1d(np.asarray(roll, dtype=float))
+    force = load_angle(gear, roll)
+    alpha_2 = gear.base_half_angle
+    cos = np.cos(force)
+    if foundation not in FOUNDATIONS:
+        raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
+    if cracks or pits or gear.internal:
+        bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model)
+    else:
+        bending, shear, axial = _healthy(gear, material, force)
+    if foundation == "none" or (foundation == "external" and gear.internal):
+        return Components(bending, shear, axial, np.zeros(roll.shape))
+    theta = (
+        math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
+        if gear.r_f < gear.r_b
+        else float(gear.half_thickness(gear.r_f))
+    )
+    outside = sainsot_outside(gear, theta)
+    ratio = (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
+    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
+    tan = np.tan(force)
+    foundation = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan)
+    return Components(bending, shear, axial, foundation, outside)
+
+
+def _healthy(gear, material, force):
+    """Bending, shear and axial flexibility by the source's integrals over the angle."""
+    alpha_2, cos, sin = gear.base_half_angle, np.cos(force), np.sin(force)
+    points, weights = GAUSS
+    low = max(gear.r_f, gear.r_b)
+    stop = alpha_2 - math.tan(math.acos(gear.r_b / low))
+    half = (stop + force)[:, None] / 2
+    at = -force[:, None] + half * (1 + points)
+    step = half * weights * (alpha_2 - at) * np.cos(at)
+    depth = np.sin(at) + (alpha_2 - at) * np.cos(at)
+    arm = 1 + cos[:, None] * ((alpha_2 - at) * np.sin(at) - np.cos(at))
+    bending = (step * 3 * arm**2 / (2 * depth**3)).sum(axis=1) / material.E
+    shear = (step * 1.2 * (1 + material.nu) / depth).sum(axis=1) * cos**2 / material.E
+    axial = (step / (2 * depth)).sum(axis=1) * sin**2 / material.E
+    if gear.r_f < gear.r_b:
+        theta = math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
+        depth = (gear.r_b * math.cos(alpha_2) - gear.r_f * math.cos(theta)) / gear.r_b
+        far = 1 - (gear.r_f / gear.r_b) * cos * math.cos(theta)
+        near = 1 - cos * math.cos(alpha_2)
+        bending += (far**3 - near**3) / (2 * material.E * cos * math.sin(alpha_2) ** 3)
+        shear += 1.2 * (1 + material.nu) * cos**2 * depth / (material.E * math.sin(alpha_2))
+        axial += sin**2 * depth / (2 * material.E * math.sin(alpha_2))
+    return bending, shear, axial
+
+
+def _damaged(gear, material, roll, cracks, pits, crack_model):
+    """The same over the same profile with the sections that damage leaves."""
+    force = load_angle(gear, roll)
+    cos, sin = np.cos(force), np.sin(force)
+    radius, angle = flank(gear, roll)
+    i0, i1, i2, area, uncracked = integrals(gear, roll, root="prism", cracks=cracks, pits=pits, crack_model=crack_model)
+    arm = cos * gear.outward * radius * np.cos(angle) - sin * radius * np.sin(angle)
+    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
+    return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E
+
+
+def contact(materials):
+    """Contact flexibility [mm per N/mm] of ``k_h = E L / 2 (1 - mu**2)`` as printed, averaged over two materials.
+
+    It is 1.57 times more flexible than the textbook's ``pi E L / 4 (1 - mu**2)``.
+    """
+    return sum((1 - m.nu**2) / m.E for m in materials)

@@ -1,0 +1,147 @@
+"""Where along the width the pairs touch: quadrature stations on the contact lines of spur, helical and herringbone gears."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from geometry.damage.pit import crossing
+from geometry.pair.lines import common_width
+
+FACES = ("spur", "helical", "herringbone")
+RULES = {False: leggauss(1), True: leggauss(24)}
+SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
+
+
+@dataclass(frozen=True, slots=True)
+class Stations:
+    """Slices of the tooth pairs that carry load, as flat arrays of n stations; `order` (pairs,) as of `Contacts` of a pair.
+
+    `phase` and `column` are indices of the phase and of the pair in `order`, `roll_1` and `roll_2` the roll lengths [mm],
+    `weight` the part of the face width a station stands for, `touching` the part of its contact that pits have left.
+    """
+
+    order: np.ndarray
+    phase: np.ndarray
+    column: np.ndarray
+    roll_1: np.ndarray
+    roll_2: np.ndarray
+    weight: np.ndarray
+    touching: np.ndarray
+
+
+def faces(pair, face, groove=0.0):
+    """Bands of the face width as ``(first end, last end, lag)``: axial positions [mm] and phase by which the last end is behind.
+
+    A slice of a helical gear at distance s from the end that touches first is a spur gear whose phase is
+    ``s tan(beta_b) / p_bt`` behind; over the whole band the lag is its overlap ratio.
+
+    ``spur``: one band without lag, whatever the helix angle. ``helical``: the end z = 0 touches first. ``herringbone``: two
+    mirrored halves left and right of a relief groove of width `groove` [mm] in the middle, whose outer ends touch first; each
+    is a helical gear of width ``(b - groove) / 2``.
+    """
+    width = common_width(pair, face, groove, FACES)
+    twist = abs(np.tan(pair.gear_1.beta_b)) / pair.p_bt
+    if face == "herringbone":
+        half = (width - groove) / 2
+        return [(0.0, half, twist * half), (width, width - half, twist * half)]
+    return [(0.0, width, 0.0 if face == "spur" else twist * width)]
+
+
+def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
+    """Quadrature stations over the contact lines of all pairs at some phases; exact for what is smooth between the breakpoints.
+
+    Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
+    slice is a step: the sum is a smooth function of the phase wherever the exact integral is.
+
+    Parameters
+    ----------
+    pair : GearPair
+    phase : ndarray
+    pits : (sequence, sequence)
+        Pits of pinion and wheel, teeth numbered in each gear's own frame.
+    bands : list
+        From `faces`.
+    lost : {"hertz", "slices"}
+        What a pit takes from a pair: part of its contact stiffness (the touching part of the line), or the slices it covers
+        with all their stiffness.
+    edges : callable, optional
+        From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
+
+    Returns
+    -------
+    Stations
+    """
+    if lost not in ("hertz", "slices"):
+        raise ValueError(f"lost = {lost!r}, but it must be 'hertz' or 'slices'")
+    lag = max(band[2] for band in bands)
+    order = pair.contacts([phase.min() - lag, phase.max()], extended=False).order
+    edges = edges(order) if edges and lag > 0 else {}
+    flanks = [[p for p in found if p.side == "loaded"] for found in pits]
+    if lag == 0 and not any(flanks):  # one station for each pair on the path of contact
+        found = pair.contacts(phase, extended=False)
+        i, j = np.nonzero(np.isfinite(found.gap))
+        whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
+        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size))
+    rows = []
+    for i, p in enumerate(phase):
+        for j, number in enumerate(order):
+            own = [[q for q in flanks[0] if (q.tooth - number) % pair.gear_1.z == 0]]
+            own.append([q for q in flanks[1] if (q.tooth + number) % pair.gear_2.z == 0])
+            for band in bands:
+                found = _line(pair, p + number, own, band, lost, edges.get(number, ()))
+                rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
+    table = np.concatenate(rows) if rows else np.zeros((0, 5))
+    return Stations(
+        order,
+        table[:, 0].astype(int),
+        table[:, 1].astype(int),
+        table[:, 2],
+        pair.mate_roll(table[:, 2]),
+        table[:, 3],
+        table[:, 4],
+    )
+
+
+def _line(pair, place, pits, band, lost, edges):
+    """Stations (pinion roll, weight, touching) of one pair whose slice at the first end is at phase `place`."""
+    first, last, lag = band
+    slack = 1e-9
+    low, high = 0.0, 1.0
+    if lag > 0:
+        low, high = max((place - pair.eps_alpha) / lag, 0.0), min(place / lag, 1.0)
+    elif not -slack <= place < pair.eps_alpha + slack:
+        return []
+    if high <= low:
+        return []
+    start = pair.path[0]
+    roll = np.array([start + place * pair.p_bt, start + (place - lag) * pair.p_bt])
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    covered = _covered(pair, pits, roll, np.array([first, last]), (low, high), lag)
+    kinks = [(roll[0] - r) / (roll[0] - roll[1]) for r in edges] if lag > 0 else []
+    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in covered for t in part)])
+    parts = list(pairwise(places))
+    under = [any(a <= (s + e) / 2 <= b for a, b in covered) for s, e in parts]
+    left = sum(e - s for (s, e), gone in zip(parts, under, strict=True) if not gone) / (high - low)
+    if left < 1e-12:
+        return []
+    out, share = [], abs(last - first) / width
+    for (s, e), gone in zip(parts, under, strict=True):
+        if gone and lost == "slices":
+            continue
+        points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
+        t = s + (e - s) * (1 + points) / 2
+        at = roll[0] + (roll[1] - roll[0]) * t
+        out.append(np.column_stack([at, share * (e - s) / 2 * weights, np.full(t.size, left if lost == "hertz" else 1.0)]))
+    return out
+
+
+def _covered(pair, pits, roll, z, limits, lag):
+    """Ranges of t, between `limits`, of a contact line that the pits of both gears cover; they may overlap."""
+    out = []
+    for gear, found, at in ((pair.gear_1, pits[0], roll), (pair.gear_2, pits[1], pair.mate_roll(roll))):
+        offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
+        for pit in found:
+            out += [(max(a, limits[0]), min(b, limits[1])) for a, b in crossing(gear, pit, at, z + offset)]
+    return [(a, b) for a, b in out if b > a]

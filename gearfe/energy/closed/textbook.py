@@ -1,0 +1,91 @@
+"""The textbook: a cantilever of the true profile, Sainsot's foundation, plain sum of tooth pairs."""
+
+import numpy as np
+
+from geometry.tooth.profile import flank, root_half_angle
+
+from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
+from .integrals import integrals
+
+
+def components(
+    gear,
+    material,
+    roll,
+    *,
+    cracks=(),
+    pits=(),
+    crack_model="constant",
+    root="fillet",
+    foundation="sainsot",
+    lever="crossing",
+    theta_f=None,
+):
+    """Flexibility of one tooth by beam theory over its real profile, from the root circle to the load.
+
+    With force F at (x_F, y_F), turned by beta from the normal of the centre-line (y along it), and the half thickness
+    x(y) of fillet and involute::
+
+        bending = int (cos(beta) (y_F - y) - x_F sin(beta))**2 / (E I) dy,   I = 2 x**3 / 3
+        shear   = int 1.2 cos(beta)**2 / (G A) dy,                           A = 2 x
+        axial   = int sin(beta)**2 / (E A) dy
+        foundation = cos(beta)**2 / E (L* (u/S)**2 + M* u/S + P* (1 + Q* tan(beta)**2))
+
+    With damage, I and A are those of the sections it leaves (`gearfe.energy.closed.section`); axial compression and foundation do
+    not see cracks. Of a ring, y counts towards its centre, and there is no Sainsot foundation.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    roll : ndarray
+        Roll lengths of the contact [mm].
+    cracks, pits : sequences of Crack and Pit
+        Of this tooth (their numbers are not looked at). Pits also shorten the contact: see `gearfe.energy.closed.plain_sum`.
+    crack_model : {"constant", "straight", "parabola"}
+        Limit line of the material a crack leaves alive.
+    root : {"fillet", "base", "line", "prism"}
+        Where the beam begins: on the root circle over the true fillet; or where the involute, extended downwards, meets the
+        larger of base and root circle, ``base`` with nothing below it, ``line`` with a straight radial flank and ``prism``
+        with constant thickness down to the root circle.
+    foundation : {"sainsot", "external", "none"}
+        ``external``: Sainsot's of external gears, none of a ring.
+    lever : {"crossing", "contact"}
+        u: height over the root circle of the point where the load line crosses the centre-line (Sainsot), or of the
+        contact point itself (as some codes have it).
+    theta_f : float, optional
+        Root half angle [rad] in S = 2 r_f theta_f; default: where the fillet touches the root circle.
+
+    Returns
+    -------
+    Components
+
+    References
+    ----------
+    X. Liang, M. J. Zuo, M. Pandey, Mech. Mach. Theory 76 (2014) 20-38, eqs. 9-14; H. Ma et al., Eng. Fail. Anal. 44
+    (2014) 179-194 (from the root circle over the true fillet); X. Liang, H. Zhang, L. Liu, M. J. Zuo, Mech. Mach. Theory
+    106 (2016) 1-15 (pits as lost section and lost contact); Sainsot et al. 2004, eq. 8, its bracket as here.
+    """
+    if foundation not in FOUNDATIONS:
+        raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
+    if lever not in ("crossing", "contact"):
+        raise ValueError(f"lever = {lever!r}, but it must be 'crossing' or 'contact'")
+    roll = np.atleast_1d(np.asarray(roll, dtype=float))
+    beta = load_angle(gear, roll)
+    cos, sin = np.cos(beta), np.sin(beta)
+    radius, angle = flank(gear, roll)
+    i0, i1, i2, area, uncracked = integrals(gear, roll, root=root, cracks=cracks, pits=pits, crack_model=crack_model)
+    x_f, y_f = radius * np.sin(angle), gear.outward * radius * np.cos(angle)
+    arm = cos * y_f - sin * x_f
+    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
+    shear = 1.2 * cos**2 * area / material.shear_modulus
+    axial = sin**2 * uncracked / material.E
+    if foundation == "none" or (foundation == "external" and gear.internal):
+        return Components(bending, shear, axial, np.zeros(roll.shape))
+    theta = root_half_angle(gear) if theta_f is None else theta_f
+    outside = sainsot_outside(gear, theta)
+    height = y_f - gear.r_f - (x_f * np.tan(beta) if lever == "crossing" else 0.0)
+    ratio = height / (2 * gear.r_f * theta)
+    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
+    body = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + q * np.tan(beta) ** 2))
+    return Components(bending, shear, axial, body, outside)

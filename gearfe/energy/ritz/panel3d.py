@@ -1,0 +1,192 @@
+"""A pitch sector of a helical gear as an elastic body: section triangles times polynomials along the width.
+
+In the frame that turns with the helix no coefficient depends on z: with x = R(w z) X, u = R(w z) v(X, Y, z) and R clockwise,
+
+    d/dz at fixed (x, y) = D v = v_z - w T v,    T v = (Y d_X - X d_Y) v - (v_2, -v_1, 0)
+    xx = v1_X, yy = v2_Y, zz = (D v)_3, xy = v1_Y + v2_X, xz = (D v)_1 + v3_X, yz = (D v)_2 + v3_Y
+
+so that the stiffness is exactly ``K00 x M + K01 x C + K01' x C' + K11 x Dz`` of three matrices of the plane section and three of
+the axial polynomials f: ``M = int f f'``, ``C = int f df'``, ``Dz = int df df'`` (`axial`). The two nodes that face each other
+in a crack open over a part of the width are replaced by their mean and their distance: the mean has the functions of all other
+nodes, the distance those of the opening.
+"""
+
+import math
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import block_diag
+
+from geometry.mesh.triangle import BULGE, jacobians, lagrange, table
+from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
+
+from .axial import axial
+from .elimination import body_of, dissect, front, places
+from .panel import Panel, _numbering
+
+CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
+NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
+
+
+def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False, parts=(), tree=None):
+    """Reduce a sector to its two helicoidal sides.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its helix angle turns the section clockwise by ``tan(beta) / r`` per height z (negative: the other way).
+    sector : geometry.mesh.sector.Sector
+    material : Material
+    knots : ndarray, shape (3, n)
+        Start, top and end of hats of unit area along the arc of the loaded flank [mm]: unit loads per width along the inward
+        normal of the helicoid, times each axial mode of `halfspace.modes`.
+    width : float
+        [mm]; both end faces are free.
+    order, degree : int
+        Of the polynomials in the section and along the width.
+    plane : bool
+        The transverse section as if it were a spur gear's: with degree 0 and width 1 it is in plane strain.
+    parts : tuple
+        Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
+    tree : tuple, optional
+        Of `elimination.dissect`.
+
+    Returns
+    -------
+    Panel
+        Unknowns are node by node, polar components (radial, tangential, axial), modes innermost; loads hat by hat, modes
+        innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
+        at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
+    """
+    numbers, count, chain = _numbering(sector, order)
+    tilt = 0.0 if plane else gear.beta_b
+    load = _hats(gear, sector, chain, count, knots, order, tilt)
+    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
+    parts = parts or (None,) * len(sector.faces)
+    along = axial(width, degree, parts, gear.m_n)
+    apart, owner = (np.zeros((count, 3, 0)), []) if plane else _apart(sector, chain, count)
+    seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
+    seams = list(zip(seams[::2], seams[1::2], strict=True))
+    body = body_of(numbers, order, np.concatenate([load, apart], axis=2), sides, chain(sector.held), seams)
+    body.section = _section(sector, order, material, 0.0 if plane else math.tan(gear.beta) / gear.r)
+    body.axial = along
+    kind = np.zeros(body.size.size, dtype=int)  # which functions along the width
+    for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):
+        kind[_near(gear, sector, body, sector.faces[i])] = 3 + 3 * i
+        kind[right] = 1 + 3 * i
+    kind[sides] = 0
+    kind[body.first_load + knots.shape[1] :] = [2 + 3 * i for i in owner]
+    body.kind = kind
+    body.size = body.size * np.array([own.size for own in along.sets])[kind]
+    ids, matrix = front(body, dissect(sector) if tree is None else tree)
+    at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
+    matrix = matrix[np.ix_(at, at)]
+    border = 3 * sides.size * (degree + 1)
+    angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sides.size // 2)
+    edge = _polar(angle, _polar(angle, matrix[:border, :border]).T)
+    push = _polar(angle, matrix[:border, border:])
+    own = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
+    n = knots.shape[1] * (degree + 1)
+    points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
+    return Panel(
+        stiffness=(edge + edge.T) / 2,
+        push=push[:, :n],
+        own=own[:n, :n],
+        open_push=push[:, n:] @ points.T,
+        open_own=points @ own[n:, :n],
+        open_open=points @ own[n:, n:] @ points.T,
+        unknowns=3 * count * (degree + 1),
+    )
+
+
+def _apart(sector, chain, count):
+    """Forces ``(count, 3, k)`` that push facing nodes of the cracks apart, and the crack of each; those next to tips left out."""
+    columns, owner = [], []
+    for i, (left, right) in enumerate(sector.faces):
+        line = sector.points[:, left]
+        ahead = np.diff(line, axis=1)
+        lengths = np.hypot(*ahead)
+        normal = np.array([-ahead[1], ahead[0]]) / lengths
+        pairs = np.array([chain(left), chain(right)])[:, :-1]
+        each = pairs.shape[1] // lengths.size
+        to_tip = np.cumsum(lengths[::-1])[::-1]
+        for k in range(pairs.shape[1]):
+            if to_tip[k // each] > NEAR_TIP * lengths.sum():
+                force = np.zeros((count, 3))
+                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // each], -normal[:, k // each]
+                columns.append(force)
+                owner.append(i)
+    return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
+
+
+def _near(gear, sector, body, face):
+    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack."""
+    line = sector.points[:, face[0]]
+    part = np.arange(8) / 8
+    line = (line[:, :-1, None] + np.diff(line, axis=1)[..., None] * part).reshape(2, -1)
+    away = np.hypot(*(sector.points[:, :, None] - line[:, None, :])).min(axis=1)
+    close = (away < CLOSE * gear.m_n)[sector.triangles].any(axis=0)
+    return np.unique(body.numbers[:, close])
+
+
+def _polar(angle, matrix):
+    """Rows of side nodes at `angle`, from Cartesian to radial, tangential and axial components."""
+    sin, cos = np.sin(angle)[:, None], np.cos(angle)[:, None]
+    x, y, z = matrix.reshape(angle.size, 3, -1).transpose(1, 0, 2)
+    return np.stack([sin * x + cos * y, cos * x - sin * y, z], axis=1).reshape(matrix.shape)
+
+
+def _section(sector, order, material, twist):
+    """``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
+    basis = table(order)
+    bulges = sector.edge_bulges()
+    (xx, xy), (yx, yy) = jacobians(sector.points, sector.triangles, bulges, order).transpose(1, 2, 0, 3)
+    area = xx * yy - xy * yx
+    first, second = basis.slope
+    dx = (yy / area)[:, None] * first - (yx / area)[:, None] * second
+    dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first
+    place = np.einsum("cq,dcm->dmq", basis.corner, sector.points[:, sector.triangles])
+    x, y = place + np.einsum("kqg,kdgm->dmq", basis.bulge, bulges, optimize=True)
+    around = y[:, None] * dx - x[:, None] * dy
+    value = np.broadcast_to(basis.value, dx.shape)
+    flat, along = (np.zeros((6, 3, *dx.shape)) for _ in range(2))  # strains xx, yy, zz, xy, xz, yz of v and of v_z
+    flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
+    flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
+    flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * around
+    flat[4, 1], flat[5, 0] = twist * value, -twist * value
+    along[2, 2] = along[4, 0] = along[5, 1] = value
+    stiffness = np.zeros((6, 6))
+    stiffness[:3, :3] = material.lame("plane strain")[0]
+    stiffness += material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+    weight = np.sqrt(area * basis.weight)[:, None]
+    flat, along = ((part * weight).transpose(2, 3, 1, 0, 4).reshape(area.shape[0], 3 * basis.count, -1) for part in (flat, along))
+    flat_stress, along_stress = (
+        np.einsum("ij,mnjq->mniq", stiffness, part.reshape(*part.shape[:2], 6, -1), optimize=True).reshape(part.shape)
+        for part in (flat, along)
+    )
+    flat, along = flat.transpose(0, 2, 1), along.transpose(0, 2, 1)
+    return np.array([flat_stress @ flat, flat_stress @ along, along_stress @ along])
+
+
+def _hats(gear, sector, chain, count, knots, order, tilt):
+    """Nodal forces ``(count, 3, n)`` of the hats, in the section at z = 0 (they turn with it); `tilt` is beta_b.
+
+    The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
+    it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
+    """
+    gauss, weight = legendre.leggauss(BULGE)
+    arcs = arc_at(gear, sector.roll)
+    out = np.zeros((count, 3, knots.shape[1]))
+    for i, (start, top, stop) in enumerate(knots.T):
+        for k in range(arcs.size - 1):
+            ends = np.unique(np.clip([start, top, stop], arcs[k], arcs[k + 1]))
+            nodes = chain(sector.flank[k : k + 2])
+            for a, b in zip(ends[:-1], ends[1:], strict=True):
+                arc = (a + b) / 2 + (b - a) / 2 * gauss
+                roll = roll_at_arc(gear, arc)
+                place = 2 * (roll - sector.roll[k]) / (sector.roll[k + 1] - sector.roll[k]) - 1
+                height = 2 / (stop - start) * np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
+                normal = np.vstack([-math.cos(tilt) * flank_normal(gear, roll), np.full(arc.size, math.sin(tilt))])
+                shapes = lagrange(order, tuple(place.tolist()))
+                out[nodes, :, i] += (shapes * (weight * (b - a) / 2 * height)) @ normal.T
+    return out

@@ -1,0 +1,127 @@
+"""`Flexibility`: what a gear gives to its contacts, wherever it came from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.tooth.gear import Gear
+from geometry.tooth.profile import arc_at
+
+
+@dataclass(frozen=True, slots=True)
+class SeamFaces:
+    """The faces of all cracks of a gear, pair of facing nodes by pair.
+
+    The flexibility of a cracked gear between loads is that with every crack glued shut, which the splines of `Flexibility`
+    hold, plus ``opening' stiffness opening``: so it stays positive definite however deep the crack, and its faces can be kept
+    from passing through each other.
+
+    Attributes
+    ----------
+    opening : dict of int to spline
+        Over the arc of that tooth's flank: opening of the n face pairs under a unit load there [mm per N/mm].
+    influence : ndarray, shape (n, n)
+        Opening of the pairs under unit forces that push them apart [mm per N/mm].
+    stiffness : ndarray, shape (n, n)
+        Its inverse.
+    """
+
+    opening: dict
+    influence: np.ndarray
+    stiffness: np.ndarray
+
+    def at(self, arc, teeth):
+        """Opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
+
+        It is zero for teeth that were not solved.
+        """
+        arc = np.asarray(arc)
+        out = np.zeros((*arc.shape, self.influence.shape[0]))
+        for k, tooth in enumerate(teeth):
+            if tooth in self.opening:
+                out[..., k, :] = self.opening[tooth](arc[..., k])
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Flexibility:
+    """Flexibility of one gear between simultaneous contacts, local contact excluded.
+
+    Attributes
+    ----------
+    gear : Gear
+    near : dict of int to spline
+        Smooth part S(s, s) along the flank of each solved tooth [mm per N/mm], over the arc of `geometry.tooth.profile.arc_at`.
+    far : dict of (int, int) to spline
+        Influence of a load on one tooth at another, over both arcs; the second tooth is further to the loaded
+        side.
+    tip : dict of int to TipHats
+        The flank next to the tip corner of each solved tooth, hat by hat.
+    limits : tuple of float
+        Arcs between which the splines hold [mm]; contacts outside are clamped to them.
+    dofs : int
+        Unknowns of the solve.
+    healthy : Flexibility or None
+        Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
+    seam : SeamFaces or None
+        The cracks; the splines above then are those with the cracks glued shut.
+    """
+
+    gear: Gear
+    near: dict
+    far: dict
+    tip: dict
+    limits: tuple
+    dofs: int = 0
+    healthy: object = None
+    seam: SeamFaces | None = None
+
+    def near_of(self, tooth):
+        """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
+        tooth %= self.gear.z
+        return self.near[tooth] if tooth in self.near else self._whole().near[0]
+
+    def far_of(self, first, second):
+        """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
+        key = first % self.gear.z, second % self.gear.z
+        return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
+
+    def tip_of(self, tooth):
+        """Tip hats of a tooth."""
+        tooth %= self.gear.z
+        return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
+
+    def _whole(self):
+        return self if self.healthy is None else self.healthy
+
+    def matrix(self, roll, teeth):
+        """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
+
+        Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
+        """
+        arc = np.clip(arc_at(self.gear, roll), *self.limits)
+        teeth = np.asarray(teeth)
+        out = np.zeros((*np.shape(roll), teeth.size))
+        members = {tooth: np.flatnonzero(teeth == tooth) for tooth in np.unique(teeth).tolist()}
+        for tooth, own in members.items():
+            out[..., own, own] = self.near_of(tooth)(arc[..., own])
+            for other, theirs in members.items():
+                spline = self.far_of(tooth, other) if tooth < other else None
+                if spline is not None:
+                    block = spline.ev(arc[..., own, None], arc[..., None, theirs])
+                    out[..., own[:, None], theirs] = block
+                    out[..., theirs[:, None], own] = np.swapaxes(block, -1, -2)
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class TipHats:
+    """Hats of one flank next to its tip corner, the corner's last.
+
+    `arc` (n,) are their centroids from the base circle [mm], `knots` (3, n), `influence` (n, n) the full displacement
+    between them, half-plane logarithm and all [mm per N/mm].
+    """
+
+    arc: np.ndarray
+    knots: np.ndarray
+    influence: np.ndarray

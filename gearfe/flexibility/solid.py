@@ -1,0 +1,206 @@
+"""`Flexibility3D`: what a gear of finite width is to its contact lines, whoever solved for it.
+
+Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. What a patch does to itself
+like a half-space is taken out (`energy.halfspace`), the rest is smooth and carried between the patches by polynomials.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from geometry.tooth.gear import Gear
+from geometry.tooth.profile import arc_at, roll_at_arc
+
+from .halfspace import half_space, hat_points, modes, patch_kernel
+
+PLACES = 8  # hats on each flank
+HAT = 0.4  # half their width [m_n]
+# To the tip corner that values are read [m_n]; weighed on the limit of plane strain, judged on one spur pair against hexahedra.
+NEAREST = 0.01
+OFFSET = 0.2  # in the logarithm of the distance to the tip corner [m_n]
+
+
+@dataclass(frozen=True, slots=True)
+class Flexibility3D:
+    """Flexibility of one gear between loads anywhere on its loaded flanks, the half-space's part on the same flank left out.
+
+    A load is a force per width P(z) [N/mm], at right angles to the flank, on a line s(z) of it. The displacement against it is
+
+        u(z) = int P(z)' [bulk(s, z, s', z') + k / R] dz',    bulk = sum of p_a(z) c_i(s) B_ia,jb c_j(s') p_b(z')
+
+    with orthonormal Legendre polynomials p over the width, polynomials c through the hats, and R the flat distance.
+
+    Attributes
+    ----------
+    gear : Gear
+        Its `beta` says how the section turns.
+    width : float
+        [mm].
+    degree : int
+        Highest axial mode kept.
+    kernel : float
+        k of the half-space [mm**2/N].
+    near : dict of int to ndarray, shape (n, n)
+        B of each solved tooth, ``n = PLACES * (degree + 1)``, modes innermost [mm/N mm].
+    far : dict of (int, int) to ndarray, shape (n, n)
+        B between two teeth, nothing taken out; the second is further to the loaded side.
+    unknowns : int
+    healthy : Flexibility3D or None
+        Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
+    seam : Faces or None
+        The faces of its cracks, if they are to be kept from passing through each other; B is that of faces that may.
+    """
+
+    gear: Gear
+    width: float
+    degree: int
+    kernel: float
+    near: dict
+    far: dict
+    unknowns: int
+    healthy: object = None
+    seam: object = None
+
+    def basis(self, roll, z):
+        """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
+        across, along = carry(self.gear, roll), modes(z, self.width, self.degree)
+        return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
+
+    def between(self, first, second):
+        """B of a tooth, or between two teeth; None if they are too far apart to have been solved."""
+        z = self.gear.z
+        whole = self if self.healthy is None else self.healthy
+        if (second - first) % z == 0:
+            return self.near.get(first % z, whole.near[0])
+        for one, two, turned in ((first, second, False), (second, first, True)):
+            found = self.far.get((one % z, two % z), whole.far.get((0, (two - one) % z)))
+            if found is not None:
+                return found.T if turned else found
+        return None
+
+    def matrix(self, tooth, roll, z):
+        """Displacements ``(n, n)`` [mm/N] of loads at `roll`, `z` [mm] of teeth `tooth` on each other, half-space left out."""
+        tooth, rows = np.asarray(tooth), self.basis(roll, z)
+        out = np.zeros((tooth.size,) * 2)
+        members = {number: np.flatnonzero(tooth == number) for number in np.unique(tooth).tolist()}
+        for first, own in members.items():
+            for second, theirs in members.items():
+                kernel = self.between(first, second)
+                if kernel is not None:
+                    out[np.ix_(own, theirs)] = rows[own] @ kernel @ rows[theirs].T
+        return out
+
+    def opening(self, tooth, roll, z):
+        """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
+        tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z)
+        out = np.zeros((self.seam.influence.shape[0], tooth.size))
+        for number in np.unique(tooth).tolist():
+            if number in self.seam.opening:
+                own = tooth == number
+                out[:, own] = self.seam.opening[number] @ rows[own].T
+        return out
+
+
+@dataclass(frozen=True, slots=True)
+class Faces:
+    """Points at which the faces of cracks may touch, k of them.
+
+    Attributes
+    ----------
+    opening : dict of int to ndarray, shape (k, n)
+        Under the patches of that tooth.
+    influence : ndarray, shape (k, k)
+        Of unit forces that push the faces apart at these points [mm/N].
+    """
+
+    opening: dict
+    influence: np.ndarray
+
+
+def solved_teeth(gear, cracks, neighbours):
+    """Teeth to solve for: tooth 0 and `neighbours` following, or those around each crack."""
+    if not cracks:
+        return list(range(min(neighbours, gear.z - 1) + 1))
+    reach = max(1, neighbours)
+    return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+
+
+def parted(gear, material, width, degree, influence, unknowns, healthy=None):
+    """`Flexibility3D` from the influence between patches.
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    width : float
+        [mm].
+    degree : int
+        Highest axial mode.
+    influence : dict of (int, int) to ndarray, shape (n, n)
+        Between the patches of `solved_teeth`: `hats` of unit area times `halfspace.modes`, modes innermost [mm/N mm].
+    unknowns : int
+    healthy : Flexibility3D, optional
+        If the gear is cracked: of the gear without cracks.
+
+    Returns
+    -------
+    Flexibility3D
+    """
+    local = half_space(material) * own_distance(gear, width, degree)
+    cracked = healthy is not None
+    near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
+    far = {
+        (i, j): value for (i, j), value in influence.items() if i != j and (j - i) % gear.z <= gear.z // 2 and (cracked or i == 0)
+    }
+    return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy)
+
+
+@lru_cache(maxsize=8)
+def own_distance(gear, width, degree):
+    """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
+    knots = hats(gear)
+    roll = roll_at_arc(gear, knots.mean(axis=0))
+    slope = math.tan(gear.beta) / gear.r * (roll[:, None] + roll) / 2
+    n = PLACES * (degree + 1)
+    return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
+
+
+def _scale(gear):
+    """Ends of the flank as arcs, and the offset in the logarithm of the distance to the tip corner [mm]."""
+    return arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), OFFSET * gear.m_n
+
+
+def variable(gear, arc):
+    """Place on the flank in [-1, 1]: the logarithm of the distance to the tip corner."""
+    low, high, offset = _scale(gear)
+    away = high + offset - np.clip(arc, low, high)
+    return 2 * np.log(away / (high - low + offset)) / math.log(offset / (high - low + offset)) - 1
+
+
+@lru_cache(maxsize=64)
+def hats(gear):
+    """Hats ``(3, PLACES)`` on the flank [mm]: at Chebyshev points of `variable`, from root to tip, cut off at the ends."""
+    low, high, offset = _scale(gear)
+    part = (1 + chebyshev.chebpts1(PLACES)) / 2
+    middle = high + offset - (high - low + offset) * (offset / (high - low + offset)) ** part
+    reach = HAT * gear.m_n
+    return np.array([np.maximum(middle - reach, low), middle, np.minimum(middle + reach, high)])
+
+
+@lru_cache(maxsize=64)
+def _from_hats(gear):
+    """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hats."""
+    points, weight = hat_points(hats(gear), 12)
+    return np.linalg.inv(np.einsum("hg,hgk->hk", weight, chebyshev.chebvander(variable(gear, points), PLACES - 1)))
+
+
+def carry(gear, roll):
+    """Matrix ``(n, PLACES)`` from means over the hats to values at roll lengths [mm].
+
+    At the tip corner itself it would make much of small errors of the hats: closer than `NEAREST` it reads there.
+    """
+    arc = np.minimum(arc_at(gear, np.asarray(roll, dtype=float)), arc_at(gear, gear.roll_a) - NEAREST * gear.m_n)
+    return chebyshev.chebvander(variable(gear, arc), PLACES - 1) @ _from_hats(gear)

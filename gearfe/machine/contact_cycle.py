@@ -1,0 +1,204 @@
+"""Over the mesh phase: coefficients of the impact law, contact lines of helical gears, what pits take away, weights of friction.
+
+All are for gears whose damaged tooth is tooth 0 of the pinion, at the phases of `gearfe.GearPair`.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from ..flexibility.hertz import contact_modulus
+from .contact_law import friction_coefficient
+from .gear_mesh import Samples, Table, cycle_table, table
+
+SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
+
+
+def engaged(pair, phase):
+    """Phases of all pairs on the path of contact at `phase` ``(n, pairs)``, nan where there is none."""
+    own = np.asarray(phase, dtype=float)[..., None] + np.arange(-math.ceil(pair.eps_alpha) - 1, math.ceil(pair.eps_alpha) + 2)
+    own = own - np.floor(np.asarray(phase, dtype=float))[..., None]
+    return np.where((own >= 0) & (own < pair.eps_alpha), own, np.nan)
+
+
+def impact_cycle(pair, materials, *, lost=None, count=256):
+    """Coefficient of ``F = K delta**1.5`` over a cycle: the sum over the pairs in touch of ``4/3 sqrt(R) E*`` [N/m^1.5].
+
+    All pairs are pressed together by the same depth, each with the radius of curvature R at its contact. With `lost`, the part of
+    its contact line that tooth 0 lacks as a function of its phase: over its whole engagement, as a damaged tooth's curve.
+    """
+    if lost is None:
+        phase = (np.arange(count) + 0.5) / count  # between the ends of engagements, which fall on whole phases
+        own = engaged(pair, phase)
+        return Samples(phase, SI * np.nansum(_hertz(pair, own, materials), axis=1))
+    phase = np.arange(-count // 8, math.ceil((pair.eps_alpha + 0.125) * count)) / count + 0.5 / count
+    own = engaged(pair, phase)
+    first = np.abs(own - phase[:, None]) < 1e-9
+    weight = np.where(first, 1.0 - np.asarray(lost(phase))[:, None], 1.0)
+    return Samples(phase, SI * np.nansum(weight * _hertz(pair, own, materials), axis=1))
+
+
+def _hertz(pair, phase, materials):
+    one, two = pair.curvature_radii(phase)
+    return 4 / 3 * np.sqrt(pair.relative_radius(one, two)) * contact_modulus(materials)
+
+
+def pit_loss(pair, *, count, diameter, radius=None, width=None):
+    """Part of the contact line of a spur tooth lost to `count` circular pits in a row, as a function of its phase.
+
+    Pits of `diameter` [mm] lie side by side across the width at `radius` of the pinion (default: its pitch point); each
+    takes the chord at which the line of contact crosses it.
+    """
+    gear, width = pair.gear_1, width or min(pair.gear_1.b, pair.gear_2.b)
+    if count * diameter > width:
+        raise ValueError(f"{count} pits of {diameter} mm do not fit side by side on a width of {width} mm")
+    centre = math.sqrt((radius or pair.pitch_radius_1) ** 2 - gear.r_b**2)
+
+    def lost(phase):
+        roll = pair.path[0] + np.asarray(phase) * pair.p_bt
+        along = (roll**2 - centre**2) / (2 * gear.r_b)  # arc of an involute
+        return count * 2 * np.sqrt(np.maximum(diameter**2 / 4 - along**2, 0.0)) / width
+
+    return lost
+
+
+def contact_line(pair, phase, *, width=None):
+    """Length of the contact line of the pair at `phase` of a helical gear [mm], at an array of phases.
+
+    A line crosses the face in the phases ``0...eps_alpha + eps_beta``; it is cut at the ends of the path of contact.
+    """
+    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    over, slope = overlap_ratio(pair, width), math.cos(base_helix(pair.gear_1))
+    low, high = np.maximum(np.asarray(phase, dtype=float) - over, 0.0), np.minimum(phase, pair.eps_alpha)
+    return np.maximum(high - low, 0.0) / over * width / slope
+
+
+def base_helix(gear):
+    """Helix angle on the base cylinder [rad], ``sin(beta_b) = sin(beta) cos(alpha_n)``."""
+    return math.asin(math.sin(abs(gear.beta)) * math.cos(gear.alpha_n))
+
+
+def overlap_ratio(pair, width):
+    """Overlap ratio of a helical pair, ``b tan(beta_b) / p_bt``."""
+    return width * math.tan(base_helix(pair.gear_1)) / pair.p_bt
+
+
+def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
+    """Coefficient of the impact law of a helical pair over a cycle [N/m^1.5].
+
+    `coefficient` [N/mm^1.5] times the length of all contact lines over its mean, the contact-line-percentage method: the
+    force on a pair is in proportion to the length of its line. `lost` as in `impact_cycle`, in mm.
+    """
+    width = width or min(pair.gear_1.b, pair.gear_2.b)
+    total = pair.eps_alpha + overlap_ratio(pair, width)
+    mean = pair.eps_alpha * width / math.cos(base_helix(pair.gear_1))
+    steps = np.arange(count) if lost is None else np.arange(-count // 8, math.ceil((total + 0.125) * count))
+    phase = steps / count
+    around_it = phase[:, None] + np.arange(-math.ceil(total + 1 + phase.max()), math.ceil(total) + 2)
+    length = contact_line(pair, around_it, width=width).sum(axis=1)
+    if lost is not None:
+        length = length - np.minimum(lost(phase), contact_line(pair, phase, width=width))
+    return Samples(phase, SI * coefficient * length / mean)
+
+
+def ellipse_loss(pair, pits, *, width=None):
+    """Length of the contact line that elliptical pits take from a tooth of a helical pinion [mm], as a function of its phase.
+
+    Parameters
+    ----------
+    pits : sequence of (float, float, float, float)
+        Radius on the pinion, place across the width from where contact enters, axis along the width, axis along the profile [mm].
+    """
+    gear = pair.gear_1
+    width = width or min(gear.b, pair.gear_2.b)
+    angle = base_helix(gear)
+
+    def lost(phase):
+        out = np.zeros(np.shape(phase))
+        for radius, z0, major, minor in pits:
+            centre = math.sqrt(radius**2 - gear.r_b**2)
+            stretch = centre / gear.r_b  # arc of the profile per length on the line of action
+            # along the line: z, and roll = path start + phase p_bt - z tan(angle); it cuts (z - z0)**2/a**2 + s**2/b**2 = 1
+            offset = (pair.path[0] + np.asarray(phase) * pair.p_bt - z0 * math.tan(angle) - centre) * stretch
+            slant, a, b = math.tan(angle) * stretch, major / 2, minor / 2
+            size = (slant * a) ** 2 + b**2
+            out = out + 2 * a * b * np.sqrt(np.maximum(size - offset**2, 0.0)) / size / math.cos(angle)
+        return out
+
+    return lost
+
+
+def sliced(curve, overlap, *, healthy=None, count=128):
+    """Stiffness of a helical pair from that of its transverse section: the mean over the slices across the width.
+
+    ``k(phase) = 1/eps_beta integral of k_section from phase - eps_beta to phase``, exactly (by a cumulative integral, not a sum
+    of slices); neighbouring slices are not coupled.
+
+    Parameters
+    ----------
+    curve : StiffnessCurve or Samples
+        Of the section, as of a spur gear of the same width; with `healthy` a damaged tooth's over its whole engagement.
+    overlap : float
+        ``eps_beta`` of one helix.
+    healthy : StiffnessCurve or Samples, optional
+    count : int
+        Samples per cycle.
+
+    Returns
+    -------
+    Samples
+    """
+    base = cycle_table(curve if healthy is None else healthy)
+    first, rise = _integral(base)
+
+    def mean(phase):
+        return (_running(base, first, rise, phase) - _running(base, first, rise, phase - overlap)) / overlap
+
+    if healthy is None:
+        phase = np.arange(count) / count
+        return Samples(phase, mean(phase))
+    phase = np.arange(math.floor(curve.phase[0] * count) - 1, math.ceil((curve.phase[-1] + overlap) * count) + 2) / count
+    change = table(np.concatenate([[0.0], curve.k - base(curve.phase % 1.0), [0.0]]), 0.0, 1.0, periodic=False)
+    grid = np.diff(curve.phase)
+    if not np.allclose(grid, grid[0], rtol=1e-6):
+        raise ValueError("a damaged tooth's curve must have equally spaced phases to be sliced")
+    change = replace(change, start=curve.phase[0] - grid[0], width=grid[0])
+    low, up = _integral(change)
+
+    def total(phase):
+        inside = np.clip(phase, change.start, change.end)
+        return _running(change, low, up, inside, periodic=False)
+
+    return Samples(phase, mean(phase) + (total(phase) - total(phase - overlap)) / overlap)
+
+
+def _integral(one):
+    """Integral of a table up to the start of each cell, and coefficients of it within."""
+    inside = one.cells * (1, 1 / 2, 1 / 3, 1 / 4) * one.width
+    return np.concatenate([[0.0], np.cumsum(inside.sum(axis=1))]), inside
+
+
+def _running(one: Table, first, inside, phase, *, periodic=True):
+    place = (np.asarray(phase) - one.start) / one.width
+    turns = np.floor(place / len(inside)) if periodic else np.zeros_like(place)
+    place = place - turns * len(inside)
+    cell = np.clip(place.astype(np.int64), 0, len(inside) - 1)
+    u, c = place - cell, inside[cell]
+    return turns * first[-1] + first[cell] + u * (c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3])))
+
+
+def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):
+    """Weights of the three rows of `gearfe.machine.layout.Layout.rubbing` over a cycle, as tables.
+
+    The force is shared equally by the pairs in touch; each slips at ``speed_1 roll_1 + outward speed_2 roll_2``, the vibration
+    left out. `speeds` are those of both gears relative to the frame [rad/s], counter-clockwise positive.
+    """
+    phase = (np.arange(count) + 0.5) / count
+    roll_1, roll_2 = (1e-3 * r for r in pair.curvature_radii(engaged(pair, phase)))
+    slip = speeds[0] * roll_1 + pair.outward * speeds[1] * roll_2
+    mu = friction_coefficient(slip, static=static, dynamic=dynamic, v_static=v_static, v_dynamic=v_dynamic)
+    share = 1 / np.isfinite(slip).sum(axis=1, keepdims=True)
+    whole = (np.nansum(share * mu * arm, axis=1) for arm in (np.ones_like(roll_1), roll_1, roll_2))
+    grid = np.arange(count) / count
+    return tuple(table(np.interp(grid, phase, values, period=1.0), 0.0, 1 / count, periodic=True) for values in whole)

@@ -1,0 +1,108 @@
+"""Forces of a gear mesh: elastic with backlash, the impact function, Coulomb friction; and Hertz's coefficient.
+
+Everything takes arrays. The compression `x` of a mesh is positive when the driving flanks press on each other; its backlash is
+the play behind them, so that the back flanks touch at ``x = -backlash``.
+"""
+
+import math
+
+import numpy as np
+
+from ..flexibility.hertz import contact_modulus
+
+
+def step(x, x0, h0, x1, h1):
+    """Cubic step of multibody programs: `h0` up to `x0`, `h1` from `x1` on, ``3 u**2 - 2 u**3`` between.
+
+    >>> float(step(0.05, 0.0, 0.0, 0.1, 1.0))
+    0.5
+    """
+    u = np.clip((np.asarray(x, dtype=float) - x0) / (x1 - x0), 0.0, 1.0)
+    return h0 + (h1 - h0) * u * u * (3 - 2 * u)
+
+
+def hertz_coefficient(radius_1, radius_2, materials):
+    """Coefficient K of ``F = K delta**1.5`` from Hertz's theory, ``4/3 sqrt(R) E*`` [N/mm^1.5].
+
+    Parameters
+    ----------
+    radius_1, radius_2 : float
+        Radii of curvature of the flanks at the contact [mm], the second negative in an internal gear.
+    materials : (Material, Material)
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics, 1985, eq. 4.23; the law of the articles on pitted planetary and helical gears.
+
+    Examples
+    --------
+    At the pitch point of the 21/31 pair of module 2 the articles print 3.0459e5:
+
+    >>> from gearfe.material import Material
+    >>> half = math.sin(math.radians(20))
+    >>> round(hertz_coefficient(21 * half, 31 * half, (Material(E=207e3, nu=0.25),) * 2) / 1e5, 3)
+    3.046
+    """
+    return 4 / 3 / math.sqrt(1 / radius_1 + 1 / radius_2) * contact_modulus(materials)
+
+
+def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
+    """Coulomb friction as multibody programs smooth it, with the sign of the slip velocity.
+
+    0 without slip, `static` at a slip of `v_static`, `dynamic` from `v_dynamic` on, `step` between (odd in the slip).
+
+    Parameters
+    ----------
+    slip : ndarray
+        Slip velocity [m/s].
+    static, dynamic : float
+        Coefficients of friction.
+    v_static, v_dynamic : float
+        Transition velocities [m/s].
+    """
+    if not 0 < v_static < v_dynamic:
+        raise ValueError(f"v_static = {v_static}, v_dynamic = {v_dynamic} m/s, but they must rise from above 0")
+    size = np.abs(slip)
+    stick = step(size, -v_static, -static, v_static, static)
+    return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))
+
+
+def force(x, v, k, law):
+    """Force of each mesh along its line of action [N], positive when it pushes.
+
+    ``k delta**power + c step(delta / depth) delta'`` on either flank, delta the depth of penetration. The damping is
+    ``c = damping + beta k``; where no flank touches a part `film` of it stays. With `push` a flank never pulls, as the
+    impact function of multibody programs has it.
+
+    Parameters
+    ----------
+    x, v : ndarray, shape (..., m)
+        Compression [m] and its rate [m/s].
+    k : ndarray, shape (..., m)
+        Stiffness [N/m^power].
+    law : dict of ndarray, shape (m,)
+        ``power, damping, beta, depth, backlash, film, push`` (see `gearfe.machine.gear_mesh.Mesh`).
+    """
+    back = x < -law["backlash"]
+    delta = np.where(back, -law["backlash"] - x, np.maximum(x, 0.0))
+    inside = back | (x > 0)
+    full = law["damping"] + law["beta"] * k
+    u = np.minimum(delta * law["per_depth"], 1.0)
+    share = np.where(inside, np.where(law["per_depth"] > 0, u * u * (3 - 2 * u), 1.0), law["film"])
+    out = k * np.where(law["power"] == 1.0, delta, delta ** law["power"]) * np.where(back, -1.0, 1.0) + full * share * v
+    return np.where(law["push"], np.where(back, np.minimum(out, 0.0), np.maximum(out, 0.0)) * inside, out)
+
+
+def slopes(x, v, k, law):
+    """Derivatives of `force` by x and v, of the branch the state is on (shapes as there)."""
+    back = x < -law["backlash"]
+    delta = np.where(back, -law["backlash"] - x, np.maximum(x, 0.0))
+    inside = back | (x > 0)
+    full = law["damping"] + law["beta"] * k
+    u = np.minimum(delta * law["per_depth"], 1.0)
+    stepped = law["per_depth"] > 0
+    share = np.where(inside, np.where(stepped, u * u * (3 - 2 * u), 1.0), law["film"])
+    rise = np.where(stepped & inside, 6 * u * (1 - u) * law["per_depth"], 0.0) * np.where(back, -1.0, 1.0)
+    spring = np.where(inside, k * law["power"] * np.where(law["power"] == 1.0, 1.0, delta ** (law["power"] - 1)), 0.0)
+    pulls = law["push"] & (force(x, v, k, law) == 0.0)
+    return np.where(pulls, 0.0, spring + full * rise * v), np.where(pulls, 0.0, full * share)

@@ -1,0 +1,230 @@
+"""One gear mesh of a machine: its row, its stiffness over the mesh phase with damaged teeth, its errors and its contact law.
+
+The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
+``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
+damaged
+tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting interval.
+"""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..stiffness.curve import StiffnessCurve
+
+FINE = 1024  # samples per cycle that curves on uneven phases are brought to
+
+
+class Samples(NamedTuple):
+    """Stiffness `k` [N/m^power] at phases, where there is no `StiffnessCurve` (contact coefficients, curves of others)."""
+
+    phase: np.ndarray
+    k: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A function of the phase by monotone cubics over equal cells: a ramp stays a ramp, no overshoot, no staircase.
+
+    Attributes
+    ----------
+    start, width : float
+        Phase of the first sample and width of a cell.
+    cells : ndarray, shape (n, 4)
+        Coefficients of ``1, u, u**2, u**3`` in each cell, u from 0 to 1.
+    """
+
+    start: float
+    width: float
+    cells: np.ndarray
+
+    @property
+    def end(self):
+        """Phase at which the last cell ends."""
+        return self.start + self.width * len(self.cells)
+
+    def __call__(self, phase):
+        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
+        place = (np.asarray(phase) - self.start) / self.width
+        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
+        u = place - cell
+        c = self.cells[cell]
+        return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
+
+    @property
+    def mean(self):
+        """Mean over the table."""
+        return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
+
+
+def table(values, start, width, *, periodic):
+    """`Table` through equally spaced `values`; `periodic` ones close with the first value (F. N. Fritsch, J. Butland, 1984)."""
+    values = np.append(values, values[0]) if periodic else np.asarray(values, dtype=float)
+    rise = np.diff(values)
+    before, after = (np.roll(rise, 1), rise) if periodic else (rise[:-1], rise[1:])
+    product = before * after
+    slope = np.where(product > 0, 2 * product / np.where(product > 0, before + after, 1.0), 0.0)
+    slope = np.append(slope, slope[0]) if periodic else np.concatenate([[0.0], slope, [0.0]])
+    left, right = slope[:-1], slope[1:]
+    return Table(start, width, np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1))
+
+
+def cycle_table(stiffness):
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve` or of `Samples`."""
+    if isinstance(stiffness, Table):
+        return stiffness
+    if not isinstance(stiffness, (StiffnessCurve, Samples)):
+        values = np.atleast_1d(np.asarray(stiffness, dtype=float))
+    else:
+        phase = np.asarray(stiffness.phase, dtype=float) % 1.0
+        order = np.argsort(phase, kind="stable")
+        phase, values = phase[order], np.asarray(stiffness.k, dtype=float)[order]
+        if not np.allclose(phase, np.arange(phase.size) / phase.size, atol=1e-9):
+            values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
+    if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
+        raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
+    return table(values, 0.0, 1.0 / values.size, periodic=True)
+
+
+@dataclass(frozen=True, slots=True)
+class ToothDamage:
+    """A damaged tooth of one of the two bodies of a mesh.
+
+    Parameters
+    ----------
+    body : int
+        0 or 1: whose tooth.
+    tooth : int
+        Its number.
+    curve : StiffnessCurve or Samples
+        Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters.
+    """
+
+    body: int
+    tooth: int
+    curve: Any
+
+    def change(self, healthy):
+        """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
+        phase, k = np.asarray(self.curve.phase, dtype=float), np.asarray(self.curve.k, dtype=float)
+        if phase.size < 2 or not (np.diff(phase) > 0).all():
+            raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
+        width = np.diff(phase).min()
+        count = round((phase[-1] - phase[0]) / width)
+        grid = phase[0] + np.arange(count + 1) * (phase[-1] - phase[0]) / max(count, 1)
+        values = np.interp(grid, phase, k) - healthy(grid % 1.0)
+        width = grid[1] - grid[0]
+        return table(np.concatenate([[0.0], values, [0.0]]), grid[0] - width, width, periodic=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A gear mesh: the force ``F`` of `gearfe.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
+
+    Parameters
+    ----------
+    name : str
+    row : ndarray, shape (n,)
+        ``row @ q`` is the compression along the transverse line of action [m].
+    stiffness : float, ndarray, StiffnessCurve or Table
+        Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
+    frequency : float
+        Mesh frequency [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+    phase : float
+        At t = 0; whole cycles count (they number the teeth).
+    teeth, first : (int, int)
+        Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
+    damage : tuple of ToothDamage
+    error : tuple of (float, float, float)
+        Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
+    damping, beta, zeta : float
+        ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
+        m))`` by `gearfe.motion.simulate.Machine` over all degrees of freedom the row moves in rotation or translation.
+    power, depth, push : float, float, bool
+        Of the impact law: exponent, penetration at which the damping is full [m] (0: always), and that flanks never pull.
+    backlash : float
+        Play along the line of action [m]; 0: the mesh never opens; inf: there is no back flank.
+    film : float
+        Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
+    friction : tuple of (ndarray, Table)
+        Rows and weights: friction adds ``-row weight(phase) F``.
+    """
+
+    name: str
+    row: np.ndarray
+    stiffness: Any
+    frequency: float = 0.0
+    phase: float = 0.0
+    teeth: tuple = (1, 1)
+    first: tuple = (0, 0)
+    damage: tuple = ()
+    error: tuple = ()
+    damping: float = 0.0
+    beta: float = 0.0
+    zeta: float = 0.0
+    power: float = 1.0
+    depth: float = 0.0
+    push: bool = False
+    backlash: float = 0.0
+    film: float = 1.0
+    friction: tuple = ()
+    cycle: Table = field(init=False)
+    changes: tuple = field(init=False)
+
+    def __post_init__(self):
+        """Make the tables; refuse what cannot be."""
+        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth"):
+            value = getattr(self, name)
+            if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
+                raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
+        if not self.backlash >= 0 or not 0 <= self.film <= 1 or not self.power >= 1:
+            raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
+        if self.power != 1 and self.backlash == 0:
+            raise ValueError(f"mesh {self.name}: power = {self.power} needs a backlash > 0 (inf: no back flank)")
+        object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
+        object.__setattr__(self, "cycle", cycle_table(self.stiffness))
+        changes = []
+        for one in self.damage:
+            z = self.teeth[one.body]
+            made = one.change(self.cycle)
+            if made.end - made.start > z:
+                raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
+            changes.append((float(z), float((one.tooth - self.first[one.body]) % z), made))
+        object.__setattr__(self, "changes", tuple(changes))
+
+    def k(self, t):
+        """Stiffness at times `t` [N/m^power], never below zero."""
+        return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
+
+    def at_phase(self, phase):
+        """Stiffness at running phases."""
+        out = self.cycle(phase - np.floor(phase))
+        for z, first, change in self.changes:
+            own = phase - first - change.start
+            own = own - z * np.floor(own / z) + change.start
+            out = out + np.where(own < change.end, change(np.minimum(own, change.end)), 0.0)
+        return np.maximum(out, 0.0) if self.changes else out
+
+    def e(self, t):
+        """Mesh error and its rate at times `t` [m], [m/s]."""
+        out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
+        for amplitude, frequency, angle in self.error:
+            turn = 2 * math.pi * frequency * np.asarray(t) + angle
+            out = out + amplitude * np.sin(turn)
+            rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
+        return out, rate
+
+    def cycles(self):
+        """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
+        return math.lcm(1, *(int(z) for z, _, _ in self.changes))
+
+    def entries(self, duration):
+        """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
+        out = []
+        for z, first, _ in self.changes:
+            low, high = sorted((self.phase, self.phase + self.frequency * duration))
+            turns = np.arange(math.ceil((low - first) / z), math.floor((high - first) / z) + 1)
+            out.append(np.sort((first + z * turns - self.phase) / self.frequency))
+        return out

@@ -1,0 +1,146 @@
+"""Rows of springs and meshes from where bodies are and how they touch, and the phases of meshes along a train of gears.
+
+Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
+their
+carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .tables import Spring
+
+PLANE = "x y theta"
+SPACE = "x y z tilt_x tilt_y theta"
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A rigid body: mass [kg], moments of inertia about its axis and across it [kg m2], and the directions it can move in."""
+
+    name: str
+    mass: float
+    inertia: float
+    dofs: str = PLANE
+    across: float = 0.0
+
+
+class Layout:
+    """The degrees of freedom of some bodies, and rows over them."""
+
+    def __init__(self, bodies):
+        self.bodies = {body.name: body for body in bodies}
+        self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
+        self.place = {name: i for i, name in enumerate(self.dofs)}
+        sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
+        self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
+
+    def unit(self, name, dof):
+        """Row of one degree of freedom."""
+        row = np.zeros(len(self.dofs))
+        row[self.place[f"{name}.{dof}"]] = 1.0
+        return row
+
+    def point(self, name, direction, arm=(0.0, 0.0, 0.0)):
+        """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
+        direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
+        parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
+        row = np.zeros(len(self.dofs))
+        for dof in self.bodies[name].dofs.split():
+            row[self.place[f"{name}.{dof}"]] = parts[dof]
+        return row
+
+    def springs(self, one, two, stiffness, zeta, arm=None):
+        """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
+
+        Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
+        ``2 zeta sqrt(k m)``, m the mass or inertia of body `one` (a reduced mass would depend on the direction of the axes).
+        """
+        axes = dict(zip(SPACE.split()[:3], np.eye(3), strict=True))
+        out = []
+        for dof, k in stiffness.items():
+            row = self.point(one, axes[dof]) if dof in axes else self.unit(one, dof)
+            if two is not None and dof in axes:
+                row = row - self.point(two, axes[dof], (0.0, 0.0, 0.0) if arm is None else arm)
+            elif two is not None and dof in self.bodies[two].dofs.split():
+                row = row - self.unit(two, dof)
+            if k > 0 and row.any():
+                name = f"{one}-{two or 'ground'} {dof}"
+                out.append(Spring(name, row, float(k), 2 * zeta * math.sqrt(k * self.mass[self.place[f"{one}.{dof}"]])))
+        return out
+
+    def mesh(self, one, two, *, angle, alpha, radii, sense=1, helix=0.0, internal=False):
+        """Row of the mesh in which body `one` pushes body `two`.
+
+        The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
+        `one` to the pitch point, at `angle`, and t is e turned by 90 degrees. Its components along the plane have length 1.
+
+        Parameters
+        ----------
+        one, two : str
+        angle : float
+            [rad]
+        alpha : float
+            Working transverse pressure angle [rad].
+        radii : (float, float)
+            Base radii [m].
+        sense : {1, -1}
+            In which body `one` would turn if it drove with the loaded flanks; 1: counter-clockwise.
+        helix : float
+            ``tan(beta_b)`` with the sign of the axial force on body `two`.
+        internal : bool
+            Body `two` is a ring.
+        """
+        e = np.array([math.cos(angle), math.sin(angle), 0.0])
+        t = np.array([-e[1], e[0], 0.0])
+        along = sense * math.cos(alpha) * t + math.sin(alpha) * e + np.array([0.0, 0.0, helix])
+        first, second = (r / math.cos(alpha) for r in radii)
+        return self.point(one, along, first * e) - self.point(two, along, (second if internal else -second) * e)
+
+    def rubbing(self, one, two, *, angle, alpha, sense=1, internal=False):
+        """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
+
+        The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.
+        """
+        e = np.array([math.cos(angle), math.sin(angle)])
+        t = np.array([-e[1], e[0]])
+        along = sense * math.cos(alpha) * t + math.sin(alpha) * e
+        across = (-along[1], along[0])
+        turns = self.unit(one, "theta"), (-1 if internal else 1) * self.unit(two, "theta")
+        return self.point(one, across) - self.point(two, across), *turns
+
+
+def around(phase, z, sense, angle):
+    """Phase of a mesh of a gear at another `angle` [rad] round it than the mesh of `phase`; tooth n forms pair n in both.
+
+    `sense` is as in `Layout.mesh` for the gear itself, the one it turns in if contacts run forward.
+
+    R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eq. 6, without dropping whole cycles.
+    """
+    return phase - sense * z * angle / (2 * math.pi)
+
+
+def through(phase, pair_1, pair_2, sense, turn):
+    """Phase of the mesh in which an idler drives, from that in which it is driven; its tooth n forms pair n in both.
+
+    One flank of the idler's tooth is loaded in one mesh and the other flank in the other, so that its thicknesses on both
+    working pitch circles count (R. G. Parker, J. Lin, J. Mech. Des. 126 (2004) 525-534, eqs. 14-20, for a planet; here for any
+    angle between the meshes).
+
+    Parameters
+    ----------
+    phase : float
+        Of `pair_1`.
+    pair_1, pair_2 : GearPair
+        The idler is gear 2 of the first and gear 1 of the second.
+    sense : {1, -1}
+        In which the idler turns (if contacts run forward); 1: counter-clockwise.
+    turn : float
+        Angle from the first to the second pitch point about the idler's centre [rad].
+    """
+    idler = pair_2.gear_1
+    thick = idler.half_thickness(pair_1.pitch_radius_2) + idler.half_thickness(pair_2.pitch_radius_1)
+    ahead = idler.z / (2 * math.pi) * (thick - sense * turn)
+    return phase - pair_1.pitch_phase + pair_2.pitch_phase + ahead

@@ -1,0 +1,150 @@
+"""The exact linear part of a machine and the matrices of exponential steps: what `gearfe.motion.exponential` steps with."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig
+
+from ..machine.tables import modal
+
+LEVELS = 6  # a step is halved at most so often
+CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a run needs: coordinates, linear part, and the matrices of each level of step.
+
+    Attributes
+    ----------
+    basis, inverse : ndarray, shape (2n, 2n)
+        ``(q, v) = basis @ z``.
+    P : ndarray, shape (m or 2m, 2n)
+        What the forces depend on: compressions (without errors), and their rates where the law needs them; where all forces are
+        affine ``x + beta v`` alone.
+    affine : bool
+        Whether they are: ``f = (k - plan.k) P z + shift(t)``.
+    k, c : ndarray, shape (m,)
+        Mesh stiffness and damping in the linear part.
+    h : float
+        Step [s].
+    levels : list of tuple
+        Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
+        for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
+    """
+
+    basis: np.ndarray
+    inverse: np.ndarray
+    P: np.ndarray
+    affine: bool
+    k: np.ndarray
+    c: np.ndarray
+    h: float
+    levels: list
+
+
+def is_affine(machine):
+    """Whether all mesh forces are ``k(t) (x - e) + (damping + beta k(t)) (x - e)'`` at any time, and the loads never bend."""
+    law = machine.law
+    plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
+    smooth = all(one.breaks.size < 2 for one in machine.loads) and not any(m.friction for m in machine.meshes)
+    return bool(plain.all()) and smooth
+
+
+def plan(machine, h, x=None):
+    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]."""
+    K, C, k, c = machine.linear(x)
+    squared, modes = modal(K, machine.mass)
+    n = len(squared)
+    unit = math.sqrt(squared[-1]) or 1.0  # so that displacements and velocities are of one size
+    D = modes.T @ C @ modes
+    A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-np.diag(squared) / unit, -D]])
+    turn, size = _blocks(A, squared, D)
+    back = np.linalg.inv(turn)
+    A = (back @ A @ turn).reshape(2 * n // size, size, 2 * n // size, size)
+    A = A[np.arange(len(A)), :, np.arange(len(A))]
+    zero = np.zeros((n, n))
+    basis = np.block([[modes / unit, zero], [zero, modes]]) @ turn
+    to_modes = modes.T * machine.mass
+    inverse = back @ np.block([[unit * to_modes, zero], [zero, to_modes]])
+    rub = [row for m in machine.meshes for row, _ in m.friction]
+    rows = np.concatenate([-machine.G, -np.array(rub).reshape(-1, n), np.array([p.row for p in machine.loads]).reshape(-1, n)])
+    B = back[:, n:] @ modes.T @ rows.T
+    x, v, law = machine.G @ basis[:n], machine.G @ basis[n:], machine.law
+    affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
+    rates = (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | film | (len(rub) > 0)
+    P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
+    count = 1 + (LEVELS if (law["backlash"] > 0).any() or any(one.breaks.size > 1 for one in machine.loads) else 0)
+    return Plan(basis, inverse, P, affine, k, c, h, [_matrices(A, B, P, h / 2**level) for level in range(count)])
+
+
+def _blocks(A, squared, D):
+    """Coordinates in which A is made of real blocks along its diagonal, and their size: 2, or all of it if that fails."""
+    n = len(squared)
+    small = 1e-12 * np.abs(D).max(initial=0.0)
+    rigid = (squared == 0) & (np.abs(D) <= small).all(axis=1)
+    others = np.flatnonzero(np.concatenate([~rigid, ~rigid]))
+    values, vectors = eig(A[np.ix_(others, others)])
+    up = values.imag > 0
+    real = np.argsort(values.real)[values.imag[np.argsort(values.real)] == 0]
+    columns = [part for j in np.flatnonzero(up) for part in (vectors[:, j].real, vectors[:, j].imag)]
+    columns += [vectors[:, j].real for j in real]
+    turn = np.zeros((2 * n, 2 * n))
+    for j, mode in enumerate(np.flatnonzero(rigid)):
+        turn[mode, 2 * j] = turn[n + mode, 2 * j + 1] = 1.0
+    turn[others, 2 * rigid.sum() :] = np.array(columns).T if columns else 0.0
+    if np.linalg.cond(turn) > CONDITION:
+        return np.eye(2 * n), 2 * n
+    return turn, 2
+
+
+def dense(blocks):
+    """Matrix ``(2n, 2n)`` of blocks along its diagonal."""
+    count, size, _ = blocks.shape
+    out = np.zeros((count, size, count, size))
+    out[np.arange(count), :, np.arange(count)] = blocks
+    return out.reshape(count * size, count * size)
+
+
+def _matrices(A, B, P, h):
+    """Matrices of one step length."""
+    count, size, _ = A.shape
+
+    def on(blocks, columns):
+        return (blocks @ columns.reshape(count, size, -1)).reshape(columns.shape)
+
+    def before(blocks):  # P times the blocks
+        return np.einsum("pis,ist->pit", P.reshape(-1, count, size), blocks).reshape(P.shape)
+
+    half, one, _, _ = _phi(A * (h / 2))
+    E, *phi = _phi(A * h)
+    Q = h / 2 * on(one, B)
+    phi = [h * on(each, B) for each in phi]
+    F = phi[0] - 3 * phi[1] + 4 * phi[2], 2 * phi[1] - 4 * phi[2], 4 * phi[2] - phi[1]
+    S, R = P @ Q, P @ on(half, Q)
+    return E, np.concatenate([before(half), before(E)]), S, np.hstack([R - S, 2 * S]), np.hstack(F)
+
+
+def _phi(Z):
+    """``exp(Z), phi_1(Z), phi_2(Z), phi_3(Z)`` of blocks ``(n, s, s)``, ``phi_j(z) = sum z**i / (i + j)!``.
+
+    Taylor's series of each block brought below 1/2 in size, then doubled by ``2**j phi_j(2 z) = exp(z) phi_j(z) + sum over i
+    from 1 to j of phi_i(z) / (j - i)!`` (B. Skaflestad, W. M. Wright, Appl. Numer. Math. 59 (2009) 783-799).
+    """
+    size = np.abs(Z).sum(axis=-1).max(axis=-1)
+    halved = np.maximum(np.ceil(np.log2(np.maximum(size, 1e-300) / 0.5)), 0).astype(int)
+    Z, one = Z / 2.0 ** halved[:, None, None], np.eye(Z.shape[-1])
+    third = np.zeros_like(Z)
+    for i in range(14, -1, -1):
+        third = Z @ third + one / math.factorial(i + 3)
+    second = Z @ third + one / 2
+    first = Z @ second + one
+    E = Z @ first + one
+    for done in range(halved.max(initial=0)):
+        more = (done < halved)[:, None, None]
+        third = np.where(more, (E @ third + first / 2 + second + third) / 8, third)
+        second = np.where(more, (E @ second + first + second) / 4, second)
+        first = np.where(more, (E @ first + first) / 2, first)
+        E = np.where(more, E @ E, E)
+    return E, first, second, third

@@ -1,0 +1,173 @@
+"""`Response`: what a machine did, by named channels with units."""
+
+import json
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..machine.contact_law import force
+from ..machine.tables import Machine
+from . import excitation
+
+KINDS = {"velocity": "/s", "acceleration": "/s2"}
+MESH = {"compression": "m", "stiffness": "N/m", "force": "N"}
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Motion of a machine at equal intervals.
+
+    ``response[name]`` is a channel, an array like `time`: a degree of freedom (``"sun.theta"``), with ``" velocity"`` or
+    ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``.
+
+    Attributes
+    ----------
+    machine : Machine
+    time : ndarray, shape (t,)
+        [s]
+    states : ndarray, shape (t, 2n)
+        Coordinates of the integrator.
+    basis : ndarray, shape (2n, 2n)
+        ``(q, v) = basis @ state``.
+    stats : dict
+        Solver, step, calls or steps, seconds, losses of contact, error estimate if asked for.
+    """
+
+    machine: Machine
+    time: np.ndarray
+    states: np.ndarray
+    basis: np.ndarray
+    stats: dict = field(default_factory=dict)
+
+    @property
+    def names(self):
+        """Names of all channels."""
+        dofs = self.machine.dofs
+        own = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
+        return [*own, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
+
+    def unit(self, name):
+        """Unit of a channel."""
+        head, _, tail = name.partition(" ")
+        if head in MESH and tail in self._meshes:
+            power = self.machine.meshes[self._meshes.index(tail)].power
+            return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
+        self._dof(head, name)
+        return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
+
+    def __getitem__(self, name):
+        """Channel `name` ``(t,)``."""
+        head, _, tail = name.partition(" ")
+        if head in MESH and tail in self._meshes:
+            return self.mesh(head)[:, self._meshes.index(tail)]
+        dof, n = self._dof(head, name), len(self.machine.dofs)
+        if tail == "acceleration":
+            return self.accelerations()[:, dof]
+        return self.states @ self.basis[dof + (n if tail == "velocity" else 0)]
+
+    @property
+    def q(self):
+        """Displacements ``(t, n)``."""
+        return self.states @ self.basis[: len(self.machine.dofs)].T
+
+    @property
+    def v(self):
+        """Velocities ``(t, n)``."""
+        return self.states @ self.basis[len(self.machine.dofs) :].T
+
+    def mesh(self, kind="force"):
+        """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
+        if kind not in MESH:
+            raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
+        machine, n = self.machine, len(self.machine.dofs)
+        flat = excitation.flatten(machine, self.time)
+        k = excitation.stiffness(flat, self.time)[0]
+        if kind == "stiffness":
+            return k
+        e, rate = excitation.errors(flat, self.time)
+        x = self.states @ (machine.G @ self.basis[:n]).T - e
+        v = self.states @ (machine.G @ self.basis[n:]).T - rate
+        return x if kind == "compression" else force(x, v, k, machine.law)
+
+    def accelerations(self):
+        """Accelerations ``(t, n)``, from the equations of motion."""
+        return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
+
+    def save(self, path, names=None):
+        """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
+        writers = {".csv": self.to_csv, ".npz": self.to_npz, ".mat": self.to_mat}
+        suffix = "." + str(path).rpartition(".")[2].lower()
+        if suffix not in writers:
+            raise ValueError(f"{path}: no format for {suffix!r}; use one of {', '.join(writers)}")
+        writers[suffix](path, names)
+
+    def to_csv(self, path, names=None):
+        """Write a table of repr-exact numbers under comment lines with the solver's statistics (JSON)."""
+        from ..stiffness.curve_file import written
+
+        columns = self._columns(names)
+        with written(path) as name, open(name, "w", encoding="utf-8") as file:
+            file.write(f"# gearfe response, version 1\n# meta: {json.dumps(self.stats)}\n")
+            file.write(",".join(["time [s]", *(f"{key} [{self.unit(key)}]" for key in columns)]) + "\n")
+            for row in zip(self.time.tolist(), *(c.tolist() for c in columns.values()), strict=True):
+                file.write(",".join(map(repr, row)) + "\n")
+
+    def to_npz(self, path, names=None):
+        """Write a numpy archive: ``time``, ``values`` (t, channels), ``names``, ``units``, ``meta`` (JSON)."""
+        from ..stiffness.curve_file import written
+
+        with written(path) as name, open(name, "wb") as file:
+            np.savez(file, **self._arrays(names))
+
+    def to_mat(self, path, names=None):
+        """Write a MATLAB 5 file with the variables of `to_npz`."""
+        from scipy.io import savemat
+
+        from ..stiffness.curve_file import written
+
+        data = self._arrays(names)
+        for key in ("names", "units"):
+            data[key] = data[key].astype(object)
+        with written(path) as name:
+            savemat(name, data, appendmat=False, oned_as="column")
+
+    def _arrays(self, names):
+        columns = self._columns(names)
+        units = np.array([self.unit(name) for name in columns])
+        values = np.array(list(columns.values())).T
+        return {
+            "time": self.time,
+            "values": values,
+            "names": np.array(list(columns)),
+            "units": units,
+            "meta": json.dumps(self.stats),
+        }
+
+    def _columns(self, names):
+        names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)
+        forces = self.mesh() if any(name.startswith("force ") for name in names) else None
+        plain = {f"force {name}": i for i, name in enumerate(self._meshes)}
+        return {name: forces[:, plain[name]] if name in plain else self[name] for name in names}
+
+    @property
+    def _meshes(self):
+        return [mesh.name for mesh in self.machine.meshes]
+
+    def _dof(self, head, name):
+        if head not in self.machine.dofs or name.partition(" ")[2] not in ("", *KINDS):
+            raise ValueError(f"no channel {name!r}; there are {', '.join(self.names)}")
+        return self.machine.dofs.index(head)
+
+
+def acceleration(machine, flat, t, q, v):
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``."""
+    k, phase = excitation.stiffness(flat, t)
+    e, rate = excitation.errors(flat, t)
+    total = force(q @ machine.G.T - e, v @ machine.G.T - rate, k, machine.law)
+    out = -q @ machine.K - v @ machine.C - total @ machine.G
+    rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
+    if rub:
+        out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)
+    if machine.loads:
+        out = out + excitation.loads(flat, t) @ np.array([one.row for one in machine.loads])
+    return out / machine.mass

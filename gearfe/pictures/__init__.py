@@ -1,0 +1,4 @@
+"""Plots of stiffness and vibration with matplotlib.
+
+Nothing is computed here.
+"""

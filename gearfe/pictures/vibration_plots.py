@@ -1,0 +1,120 @@
+"""Plots (matplotlib) of vibration: spectra, kurtogram, phase portraits."""
+
+import numpy as np
+
+from ..stiffness.curve_file import written
+
+
+def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
+    """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
+
+    Parameters
+    ----------
+    spectra : dict of str to gearfe.signal.series.Spectrum
+    lines : dict of str to float, optional
+        See `gearfe.expected_lines`.
+    path : path, optional
+    top : float, optional
+        Largest frequency or order; default 1.2 times the last line.
+    dpi : int
+        Dots per inch of the picture.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
+    rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    largest = max(one.values.max() for one in spectra.values())
+    for axes, (name, found) in zip(rows, spectra.items(), strict=True):
+        axes.semilogy(found.frequency, found.values, linewidth=0.8)
+        axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
+        axes.set_ylabel(f"{name} [{found.unit}]")
+        for value in (lines or {}).values():
+            axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
+    for name, value in (lines or {}).items():
+        rows[0].annotate(name, (value, 1), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom")
+    end = 1.2 * max(lines.values()) if lines and top is None else top
+    rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
+    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=dpi)
+    return figure
+
+
+def plot_kurtogram(kurtogram, path=None):
+    """Draw a `gearfe.signal.kurtogram.Kurtogram`, the best band framed; save to `path` if given."""
+    from matplotlib import colormaps
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 4), layout="constrained")
+    axes = figure.subplots()
+    levels = np.unique(kurtogram.level)
+    top = kurtogram.kurtosis.max()
+    low = kurtogram.centre - kurtogram.bandwidth / 2
+    for row, level in enumerate(levels):
+        own = kurtogram.level == level
+        shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[own] / max(top, 1e-300), 0, 1))
+        axes.barh(row, kurtogram.bandwidth[own], 1.0, left=low[own], color=shades, align="center")
+    best = kurtogram.best
+    row = int(np.searchsorted(levels, kurtogram.level[best]))
+    axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="red", linewidth=1.5)
+    axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
+    axes.invert_yaxis()
+    axes.set_xlabel("frequency [Hz]")
+    axes.set_ylabel("level")
+    axes.set_title(f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz", fontsize=9)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_phase(portrait, section=None, unit="m", path=None):
+    """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5, 4), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(*portrait, linewidth=0.4)
+    if section is not None:
+        axes.plot(*np.transpose(section), "k.", markersize=4)
+    axes.set_xlabel(f"displacement [{unit}]")
+    axes.set_ylabel(f"velocity [{unit}/s]")
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=120)
+    return figure
+
+
+def plot_phases(portraits, unit="m", path=None):
+    """Phase portraits with their Poincare points side by side, on common axes.
+
+    Parameters
+    ----------
+    portraits : dict of str to ((ndarray, ndarray), ndarray)
+        By case what `plot_phase` takes as portrait and section.
+    unit : str
+        Of the displacement.
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    columns = min(3, len(portraits))
+    rows = -(-len(portraits) // columns)
+    figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
+        place.plot(x, v, linewidth=0.3)
+        place.plot(*np.transpose(points), "k.", markersize=3)
+        place.set_title(name, fontsize=8)
+        place.tick_params(labelsize=7)
+    figure.supxlabel(f"displacement [{unit}]", fontsize=8)
+    figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
+    if path is not None:
+        with written(path) as name:
+            figure.savefig(name, dpi=80)
+    return figure

@@ -1,0 +1,254 @@
+"""Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
+
+import math
+import tomllib
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+
+from geometry.damage.crack import Crack
+from geometry.damage.pit import pit_row
+from geometry.pair.gear_pair import GearPair
+from geometry.tooth.gear import Gear
+
+from ..material import Material
+from . import machine_table
+from .references import read_references
+from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, WHOLE, checked, known, placed
+
+TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
+TABLES = {
+    "material": {"E_MPa": (NUMBER, REQUIRED), "nu": (NUMBER, REQUIRED)},
+    "gear": {
+        "z": (WHOLE, REQUIRED),
+        "m_n_mm": (NUMBER, REQUIRED),
+        "alpha_n_deg": (NUMBER, REQUIRED),
+        "b_mm": (NUMBER, REQUIRED),
+        "material": (TEXT, REQUIRED),
+        "r_bore_mm": (NUMBER, None),
+        "r_rim_mm": (NUMBER, None),
+        "z_cutter": (WHOLE, 20),
+        "beta_deg": (NUMBER, 0.0),
+        "x": (NUMBER, 0.0),
+        "addendum": (NUMBER, 1.0),
+        "dedendum": (NUMBER, 1.25),
+        "tip_radius": (NUMBER, 0.38),
+    },
+    "pair": {
+        "gear_1": (TEXT, REQUIRED),
+        "gear_2": (TEXT, REQUIRED),
+        "force_N": (NUMBER, REQUIRED),
+        "a_mm": (NUMBER, None),
+        "face": (TEXT, None),
+        "groove_mm": (NUMBER, 0.0),
+    },
+}
+DAMAGE = {
+    "crack": {
+        "case": (TEXT, REQUIRED),
+        "gear": (TEXT, REQUIRED),
+        "level": (NUMBER, None),
+        "length_mm": (NUMBER, None),
+        "angle_deg": (NUMBER, 45.0),
+        "start": (TEXT, "30deg"),
+        "turning": (TRUTH, False),
+        "tooth": (WHOLE, 0),
+        "pair": (TEXT, None),
+        "width_mm": (TWO, None),
+        "ends": (TWO, [1.0, 1.0]),
+    },
+    "pits": {
+        "case": (TEXT, REQUIRED),
+        "gear": (TEXT, REQUIRED),
+        "radius_mm": (NUMBER, REQUIRED),
+        "count": (WHOLE, 1),
+        "first_mm": (NUMBER, REQUIRED),
+        "last_mm": (NUMBER, None),
+        "axes_mm": (TWO, REQUIRED),
+        "depth_mm": (NUMBER, REQUIRED),
+        "angle_deg": (NUMBER, 0.0),
+        "tooth": (WHOLE, 0),
+        "pair": (TEXT, None),
+    },
+}
+MACHINE = {
+    "model": (TEXT, REQUIRED),
+    "speed_rpm": (NUMBER, REQUIRED),
+    "torque_Nm": (NUMBER, REQUIRED),
+    "n_planets": (WHOLE, 3),
+} | machine_table.MACHINE
+ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, "")}
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePair:
+    """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
+
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage.
+    """
+
+    pair: GearPair
+    materials: tuple
+    force: float
+    face: str | None = None
+    groove: float = 0.0
+    damage: dict = field(default_factory=dict)
+
+    def case(self, name=None):
+        """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case of this pair.
+        """
+        if name is not None and name not in self.damage:
+            raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
+        out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
+        return out if name is None else out | {"damage": self.damage[name]}
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.machine.of_scene` needs to run it.
+
+    `references` are what its sources print, `gearfe.scene.references.Reference`.
+    """
+
+    name: str
+    title: str
+    source: str
+    gears: dict
+    pairs: dict
+    assumptions: tuple
+    later: tuple
+    machine: dict = field(default_factory=dict)
+    references: tuple = ()
+
+    def pair(self, name=None):
+        """The pair called `name`; the first one if None.
+
+        Raises
+        ------
+        ValueError
+            If there is no such pair.
+        """
+        if name is None:
+            return next(iter(self.pairs.values()))
+        if name not in self.pairs:
+            raise ValueError(f"scene {self.name} has no pair {name!r}; it has {', '.join(self.pairs)}")
+        return self.pairs[name]
+
+
+def scene_names():
+    """Names of the built-in scenes."""
+    return sorted(f.name.removesuffix(".toml") for f in resources.files("gearfe.scenes").iterdir() if f.name.endswith(".toml"))
+
+
+def load_scene(name_or_path):
+    """Read a built-in scene by name, or a scene file by path.
+
+    Raises
+    ------
+    ValueError
+        Naming file, table and key if anything is unknown, missing, or of the wrong type, or if a gear or pair cannot be.
+    """
+    if isinstance(name_or_path, str) and name_or_path in scene_names():
+        file = resources.files("gearfe.scenes") / f"{name_or_path}.toml"
+    else:
+        file = Path(name_or_path)
+        if not file.is_file():
+            raise ValueError(f"no scene {str(name_or_path)!r}: built in are {', '.join(scene_names())}; or give a .toml file")
+    try:
+        data = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
+    return _scene(file.name, data)
+
+
+def _scene(file, data):
+    tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
+    damage = {kind: data.pop(kind, []) for kind in DAMAGE}
+    run = _machine(file, data.pop("machine")) if "machine" in data else {}
+    printed = data.pop("reference", [])
+    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "reference"))
+    for name in ("gear", "pair", "material"):
+        if not isinstance(tables[name], dict) or not tables[name]:
+            raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
+    if not isinstance(tables["assumption"], list):
+        raise ValueError(f"{file}: assumptions are written as [[assumption]] tables")
+    rows = {
+        kind: {name: checked(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
+        for kind in TABLES
+    }
+    materials = {
+        n: placed(file, f"material.{n}", lambda r=r: Material(E=r["E_MPa"], nu=r["nu"])) for n, r in rows["material"].items()
+    }
+    gears = {n: placed(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
+    for name, row in rows["gear"].items():
+        known(file, f"gear.{name}", "material", row["material"], materials, "material")
+    pairs = {}
+    for name, row in rows["pair"].items():
+        where = f"pair.{name}"
+        for key in ("gear_1", "gear_2"):
+            known(file, where, key, row[key], gears, "gear")
+        made = placed(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
+        used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
+        if not row["force_N"] > 0:
+            raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
+        found = _cases(file, damage, gears, name, rows["pair"])
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
+    notes = tuple(checked(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
+    rows = read_references(file, printed, pairs)
+    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run, rows)
+
+
+def _machine(file, table):
+    """Check a [machine] table and its [machine.impact]."""
+    flat = {key: value for key, value in table.items() if key != "impact"} if isinstance(table, dict) else table
+    out = checked(file, "machine", flat, MACHINE, extra=("impact",))
+    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT)}
+
+
+def _cases(file, damage, gears, name, pairs):
+    """Damage of the pair `name` by case, from the scene's [[crack]] and [[pits]] tables.
+
+    Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
+    """
+    out, pair = {}, pairs[name]
+    for kind, tables in damage.items():
+        if not isinstance(tables, list):
+            raise ValueError(f"{file}: damage is written as [[{kind}]] tables")
+        for i, table in enumerate(tables):
+            where = f"{kind} {i + 1}"
+            row = checked(file, where, table, DAMAGE[kind])
+            known(file, where, "gear", row["gear"], gears, "gear")
+            if row["pair"] is not None:
+                known(file, where, "pair", row["pair"], pairs, "pair")
+                if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
+                    raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
+            made = placed(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
+            for side, key in (("pinion", "gear_1"), ("wheel", "gear_2")):
+                if pair[key] == row["gear"] and row["pair"] in (None, name):
+                    out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
+    return out
+
+
+def _crack(row):
+    numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
+    return [Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends")})]
+
+
+def _pits(row):
+    numbers = {"radius": row["radius_mm"], "axes": tuple(row["axes_mm"]), "depth": row["depth_mm"], "tooth": row["tooth"]}
+    last = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
+    return list(pit_row(row["count"], row["first_mm"], last, angle=math.radians(row["angle_deg"]), **numbers))
+
+
+def _gear(row):
+    if (row["r_bore_mm"] is None) == (row["r_rim_mm"] is None):
+        raise ValueError("give r_bore_mm (an external gear) or r_rim_mm (a ring), one of them, a number in mm")
+    plain = {key: row[key] for key in ("z", "x", "addendum", "dedendum", "tip_radius", "z_cutter")}
+    lengths = {key: row[f"{key}_mm"] for key in ("m_n", "b", "r_bore", "r_rim")}
+    angles = {key: math.radians(row[f"{key}_deg"]) for key in ("alpha_n", "beta")}
+    return Gear(**plain, **lengths, **angles)

@@ -1,0 +1,179 @@
+"""What the sources of a scene print beside what gearfe finds: rows with verdicts, and their table."""
+
+import math
+from typing import NamedTuple
+
+REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
+NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
+DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
+COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict")
+
+
+class Row(NamedTuple):
+    """A printed value and ours; `difference` in percent of the printed (corrected) value, of tolerances in the unit: in it."""
+
+    id: str
+    case: str
+    pair: str
+    printed: float
+    corrected: float
+    ours: float
+    difference: float
+    verdict: str
+
+
+def judge(reference, found):
+    """Rows of a reference.
+
+    Parameters
+    ----------
+    reference : gearfe.scene.references.Reference
+    found : dict
+        Our value by case, or by (case, pair) where the row names a pair; None where there is none (a measured value).
+
+    Returns
+    -------
+    list of Row
+    """
+    ours = [_of(found, row) for row in reference.rows]
+    ordered = reference.trend and _ordered([row.value for row in reference.rows], ours)
+    out = []
+    for row, value in zip(reference.rows, ours, strict=True):
+        word = _verdict(reference, row, value, ordered)
+        target = row.corrected if word == CORRECTED and row.corrected is not None else row.value
+        corrected = math.nan if row.corrected is None else row.corrected
+        difference = _rounded(math.nan if value is None else _difference(reference, value, target))
+        numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
+        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word))
+    return out
+
+
+def _of(found, row):
+    key = row.case if row.pair is None else (row.case, row.pair)
+    if key not in found:
+        raise ValueError(f"nothing computed for {key}; there is {', '.join(map(str, found))}")
+    return found[key]
+
+
+def _verdict(reference, row, ours, ordered):
+    if math.isnan(row.value):
+        return FORMULA
+    if ours is None:
+        return NEVER
+    if reference.within(ours, row.value):
+        return CORRECTED if row.correction and row.corrected is None else REPRODUCED
+    if row.corrected is not None and reference.within(ours, row.corrected):
+        return CORRECTED
+    return TREND if ordered else NOT
+
+
+def _ordered(printed, ours):
+    """Whether all our values have the order of the printed ones."""
+    if len(ours) < 2 or any(value is None for value in ours):
+        return False
+    for i, (a, x) in enumerate(zip(printed, ours, strict=True)):
+        for b, y in zip(printed[:i], ours[:i], strict=True):
+            close = abs(x - y) <= DISTINCT * max(abs(x), abs(y))
+            if a != b and (close or not (a - b) * (x - y) > 0):
+                return False
+    return True
+
+
+def _difference(reference, ours, target):
+    if abs(ours - target) <= 1e-9 * abs(target):
+        return 0.0
+    if reference.unit == "statement" or reference.relative is None:
+        return ours - target
+    return 100 * (ours / target - 1) if target else math.nan
+
+
+def _rounded(value):
+    return float(f"{value:.6g}")
+
+
+def reason(reference, row):
+    """Why a row has its verdict: the correction, or why it cannot be reproduced."""
+    printed = next(one for one in reference.rows if (one.case, one.pair or "") == (row.case, row.pair))
+    if row.verdict == CORRECTED:
+        return printed.correction
+    return printed.reason if row.verdict in (TREND, NOT, NEVER) else ""
+
+
+def counts(rows):
+    """One line: how many rows have which verdict."""
+    words = (REPRODUCED, CORRECTED, TREND, NOT, NEVER, FORMULA)
+    many = {word: sum(row.verdict == word for row in rows) for word in words}
+    return f"{len(rows)} rows: " + ", ".join(f"{n} {word}" for word, n in many.items() if n)
+
+
+def text(references, rows):
+    """Rows as Markdown: one table for each quantity that has its own tolerance and source."""
+    lines = [f"{counts(rows)}.", ""]
+    lines += ["| quantity | case | printed | gearfe | difference | verdict |", "|---|---|---|---|---|---|"]
+    notes = []
+    for reference in references:
+        mark = ""
+        own = [row for row in rows if row.id == reference.id]
+        told = _told(reference, own)
+        if told:
+            notes.append(told)
+            mark = f" [{len(notes)}]"
+        for i, row in enumerate(own):
+            name = f"{reference.quantity}{_unit(reference)}{mark}" if i == 0 else ""
+            case = f"{row.case}, {row.pair}" if row.pair else row.case
+            printed = _shown(reference, row.printed)
+            if not math.isnan(row.corrected):
+                printed += f" (corrected {_shown(reference, row.corrected)})"
+            cells = (name, case, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
+            lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
+
+
+def _told(reference, rows):
+    silent = reference.unit == "statement" or all(row.verdict == FORMULA for row in rows)
+    size = "" if silent else f" {_tolerance(reference)} ({reference.tolerance})."
+    parts = [f"{reference.source}.{size}"]
+    parts += [_sentence(reference.note)] if reference.note else []
+    found = {}
+    for row in rows:
+        why = reason(reference, row)
+        if why:
+            found.setdefault((row.verdict, why), []).append(f"{row.case}, {row.pair}" if row.pair else row.case)
+    for (word, why), cases in found.items():
+        which = "" if len(cases) == len(rows) else f" ({'; '.join(cases)})"
+        parts.append(f"{_sentence(word)[:-1]}{which}: {why}.")
+    return " ".join(parts)
+
+
+def _sentence(words):
+    return f"{words[0].upper()}{words[1:]}."
+
+
+def _tolerance(reference):
+    if (reference.absolute if reference.relative is None else reference.relative) < 1e-8:
+        return "Exactly"
+    if reference.relative is None:
+        return f"Within {reference.absolute:g} {reference.unit}".rstrip()
+    return f"Within {100 * reference.relative:g} %"
+
+
+def _unit(reference):
+    return "" if reference.unit in ("-", "statement") else f" [{reference.unit}]"
+
+
+def _shown(reference, value):
+    if math.isnan(value):
+        return ""
+    if reference.unit == "statement":
+        return "yes" if value else "no"
+    return f"{value:.5g}"
+
+
+def _away(reference, row):
+    if math.isnan(row.difference) or reference.unit == "statement":
+        return ""
+    return f"{row.difference:+.3g}" if reference.relative is None else f"{row.difference:+.2f} %"
+
+
+def _bold(word):
+    return f"**{word}**" if word in (NOT, NEVER) else word

@@ -1,0 +1,81 @@
+"""Faults under noise: the band with the most impulsive signal, and the spectrum of its squared envelope."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .kurtogram import Kurtogram, fast_kurtogram
+from .series import Signal, Spectrum, squared_envelope_spectrum
+from .spectral_lines import find_lines
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Demodulated:
+    """What the kurtogram and the squared envelope show of a signal.
+
+    `lines` holds by name ``k f_fault`` the frequency [Hz] and amplitude found; `background` is the median amplitude of the
+    squared envelope's spectrum from half the fault frequency to past the last line [its unit].
+    """
+
+    kurtogram: Kurtogram
+    spectrum: Spectrum
+    lines: dict
+    background: float
+
+    def text(self):
+        """Best band and lines, as one paragraph."""
+        low, high = self.kurtogram.band
+        top = self.kurtogram.kurtosis[self.kurtogram.best]
+        found = ", ".join(f"{name} {f:.2f} Hz {a / self.background:.3g} x" for name, (f, a) in self.lines.items())
+        return f"kurtogram: {low:.0f} to {high:.0f} Hz, kurtosis {top:.3g}; squared envelope there, over its median: {found}"
+
+
+def demodulate(signal, fault_frequency, *, count=3, levels=None, band=None):
+    """Squared-envelope spectrum of the best band of the fast kurtogram, and the lines of a fault in it.
+
+    Parameters
+    ----------
+    signal : Signal
+    fault_frequency : float
+        [Hz]
+    count : int
+        Harmonics of it.
+    levels : int, optional
+        Of `fast_kurtogram`. Default: as deep as bands still pass `count` harmonics of the fault.
+    band : (float, float), optional
+        To use instead of the best one [Hz].
+
+    Returns
+    -------
+    Demodulated
+
+    References
+    ----------
+    J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124; the way article S2 treats its measured signals.
+    """
+    if not 0 < (count + 1) * fault_frequency < signal.rate / 4:
+        raise ValueError(
+            f"fault_frequency = {fault_frequency} Hz with {count} harmonics, but {signal.name} at {signal.rate:g} Hz shows up to "
+            f"{signal.rate / 4:g} Hz in its envelope: give a positive frequency below, or fewer harmonics"
+        )
+    if levels is None:
+        deepest = int(np.log2(signal.values.size / 128)) if signal.values.size >= 256 else 1
+        levels = max(1, min(deepest, int(np.log2(signal.rate / 2 / ((count + 1) * fault_frequency)))))
+    kurtogram = fast_kurtogram(signal, levels)
+    spectrum = squared_envelope_spectrum(signal, kurtogram.band if band is None else band)
+    names = {("" if k == 1 else f"{k} ") + "f_fault": k * fault_frequency for k in range(1, count + 1)}
+    _, around = spectrum.within(0.5 * fault_frequency, (count + 0.5) * fault_frequency)
+    return Demodulated(kurtogram, spectrum, find_lines(spectrum, names), float(np.median(around)))
+
+
+def with_noise(signal, decibels, seed=0):
+    """The signal with white Gaussian noise, its power `decibels` below that of the signal without its mean."""
+    size = np.std(signal.values) * 10 ** (-decibels / 20)
+    noise = np.random.default_rng(seed).standard_normal(signal.values.size)
+    return replace(signal, values=signal.values + size * noise, name=f"{signal.name} with noise {-decibels:+g} dB")
+
+
+def measured_like(response, channel, *, decibels=10.0, seed=0):
+    """A channel of a response as an accelerometer in noise would show it: a `Signal` for `demodulate`."""
+    rate = 1 / (response.time[1] - response.time[0])
+    return with_noise(Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), channel), decibels, seed)

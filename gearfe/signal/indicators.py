@@ -1,0 +1,245 @@
+"""Condition indicators of the articles: of the time signal, of the sidebands, and their increments against a healthy signal.
+
+All but `rms` take the mean out first, as an accelerometer does: with the mean force or displacement left in, they would
+measure the load. S0 ... S4 are the articles.
+"""
+
+import math
+
+import numpy as np
+
+from .series import spectrum
+from .spectral_lines import find_lines
+
+SOURCES = {
+    "rms": "sqrt(mean(x**2)), S4; with the mean",
+    "peak": "max|x - mean|, S4 (numerator of its crest factor)",
+    "crest factor": "max|x - mean| / sqrt(mean((x - mean)**2)); sine 1.414",
+    "crest factor S4": "max|x - mean| / rms as S4 prints it, with the mean in the rms only",
+    "kurtosis": "mean((x - mean)**4) / mean((x - mean)**2)**2, S4 (Pearson); Gaussian noise 3, sine 1.5",
+    "shape factor": "sqrt(mean(y**2)) / mean|y|, y = x - mean, S0 and S1 (no formula printed); Gaussian noise 1.253, sine 1.111",
+    "impulse factor": "max|y| / mean|y|, y = x - mean; sine 1.571",
+    "mesh line": "amplitude of f_m",
+    "sideband index": "mean amplitude of the first-order sidebands f_m +- f_fault, S4",
+    "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
+    "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
+}
+LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
+GREAT = 1e8  # percent: beyond, there was nothing to grow from
+
+
+def rms(values):
+    """Root mean square, ``sqrt(mean(x**2))`` (S4), the mean included; in the unit of `values`, an ndarray, shape (n,)."""
+    return math.sqrt(np.mean(np.square(values)))
+
+
+def peak(values):
+    """Largest deviation from the mean, ``max|x - mean|`` (S4)."""
+    return float(np.abs(values - np.mean(values)).max())
+
+
+def crest_factor(values):
+    """Peak over root mean square, both without the mean; sine ``sqrt(2)``."""
+    return peak(values) / _spread(values)
+
+
+def crest_factor_s4(values):
+    """``max|x - mean| / rms`` as S4 prints it: the same as `crest_factor` only if the mean is 0.
+
+    S4's healthy sun moves from -7.21 to -10.77 um: with that mean the quotient is about 0.2, and a fault that moves the mean
+    changes it.
+    """
+    if not rms(values) > 0:
+        raise ValueError("a signal of zeros has no crest factor")
+    return peak(values) / rms(values)
+
+
+def kurtosis(values):
+    """Pearson's kurtosis, ``mean((x - mean)**4) / mean((x - mean)**2)**2`` (S4): 3 for Gaussian noise, 1.5 for a sine."""
+    y = (values - np.mean(values)) / _spread(values)
+    return float(np.mean(y**4))
+
+
+def shape_factor(values):
+    """Root mean square over mean modulus, without the mean: sine ``pi / (2 sqrt(2))``, Gaussian noise ``sqrt(pi / 2)``."""
+    return _spread(values) / float(np.abs(values - np.mean(values)).mean())
+
+
+def impulse_factor(values):
+    """Peak over mean modulus, without the mean: sine ``pi / 2``."""
+    return crest_factor(values) * shape_factor(values)
+
+
+def _spread(values):
+    spread = float(np.std(values))
+    if not spread > 1e-12 * np.abs(values).max():
+        raise ValueError("a constant signal has no crest, kurtosis, shape or impulse factor")
+    return spread
+
+
+def sideband_index(found, mesh_frequency, fault_frequency, *, tolerance=None, harmonics=1):
+    """Mean amplitude of the first-order sidebands (S4).
+
+    ::
+
+        SI = 1/M sum(|X(k)|), k over n f_m - f_fault and n f_m + f_fault, n = 1 ... harmonics, M = 2 harmonics
+
+    In the unit of the spectrum. S4 prints 1.03 to 2.26 without unit, beside a mesh line of 0.097 um: not amplitudes in um.
+    """
+    if fault_frequency < LOBES * found.resolution:
+        raise ValueError(
+            f"fault_frequency = {fault_frequency:g} Hz, but {found.name} has bins of {found.resolution:g} Hz, so that the mesh "
+            f"line covers its sidebands; record {LOBES / fault_frequency:.3g} s or longer"
+        )
+    sides = [(n, sign) for n in range(1, harmonics + 1) for sign in (-1, 0, 1)]
+    lines = {(n, sign): n * mesh_frequency + sign * fault_frequency for n, sign in sides}
+    amplitudes = [amplitude for (_, sign), (_, amplitude) in find_lines(found, lines, tolerance).items() if sign]
+    return float(np.mean(amplitudes))
+
+
+def sideband_centroid_s0(found, mesh_frequency, fault_frequency):
+    """Centroid of the spectrum around the mesh frequency, S0's definition of SC [Hz].
+
+    ::
+
+        SC = sum(f(n) E(n)) / sum(E(n)), f(n) from f_m - f_fault to f_m + f_fault
+
+    f is frequency, E energy, here the square of the amplitude. A mean of frequencies with positive weights lies between the
+    smallest and the largest: for S0's machine in 240 ... 320 Hz. Its printed 349.8 and 352.9 are impossible, and 312.7 would
+    need 82 % of the energy above f_m. Symmetric sidebands give f_m whatever their size: it does not measure severity.
+    """
+    frequency, amplitude = _around(found, mesh_frequency, fault_frequency)
+    energy = amplitude**2
+    if not energy.sum() > 0:
+        raise ValueError(f"{found.name} is zero around {mesh_frequency:g} Hz: no centroid")
+    return float(frequency @ energy / energy.sum())
+
+
+def sideband_centroid_s1(found, mesh_frequency, fault_frequency):
+    """Mean amplitude around the mesh frequency, S1's definition of SC, in the unit of the spectrum.
+
+    ::
+
+        SC = sum(f(n) E(n)) / sum(E(n)), over the same bins
+
+    but f is the amplitude and E the distance of the bin from the origin of the spectrum, here its frequency. It rises with the
+    sidebands, and as much with those of impact loads. Twice the duration halves it (the lines stay, the bins between them
+    double): compare signals of one length, rate and window. The fault sidebands are the ends of the sum, so with a Hann window
+    half of their outer bins is left out; the same holds for S0's form.
+    """
+    frequency, amplitude = _around(found, mesh_frequency, fault_frequency)
+    return float(amplitude @ frequency / frequency.sum())
+
+
+def _around(found, mesh_frequency, fault_frequency):
+    if not 0 < fault_frequency < mesh_frequency:
+        raise ValueError(
+            f"fault_frequency = {fault_frequency} Hz, but sidebands need one between 0 and f_m = {mesh_frequency} Hz"
+        )
+    if mesh_frequency + fault_frequency > found.frequency[-1] * (1 + 1e-9):
+        raise ValueError(
+            f"{found.name} ends at {found.frequency[-1]:g} Hz, below f_m + f_fault = {mesh_frequency + fault_frequency:g} Hz"
+        )
+    frequency, amplitude = found.within(mesh_frequency - fault_frequency, mesh_frequency + fault_frequency)
+    if frequency.size < 9:
+        raise ValueError(f"{found.name} has {frequency.size} bins around f_m, {found.resolution:g} Hz apart: record longer")
+    return frequency, amplitude
+
+
+def indicators(signal, mesh_frequency=None, fault_frequency=None, *, window="hann", tolerance=None, harmonics=1):
+    """All indicators of a signal, by the names of `SOURCES`, which states their formulae.
+
+    Parameters
+    ----------
+    signal : Signal
+        Without its transient.
+    mesh_frequency, fault_frequency : float, optional
+        [Hz]; without them only the indicators of the time signal.
+    window, tolerance, harmonics
+        See `gearfe.spectrum`, `find_lines`, `sideband_index`.
+
+    Returns
+    -------
+    dict of str to float
+    """
+    x = signal.values
+    if not np.ptp(x) > 1e-12 * np.abs(x).max():
+        raise ValueError(f"{signal.name} is constant: it has no indicators")
+    out = {
+        "rms": rms(x),
+        "peak": peak(x),
+        "crest factor": crest_factor(x),
+        "crest factor S4": crest_factor_s4(x),
+        "kurtosis": kurtosis(x),
+        "shape factor": shape_factor(x),
+        "impulse factor": impulse_factor(x),
+    }
+    if (mesh_frequency is None) != (fault_frequency is None):
+        raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
+    if mesh_frequency is None:
+        return out
+    found = spectrum(signal, window=window)
+    at = mesh_frequency, fault_frequency
+    return out | {
+        "mesh line": find_lines(found, {"f_m": mesh_frequency}, tolerance)["f_m"][1],
+        "sideband index": sideband_index(found, *at, tolerance=tolerance, harmonics=harmonics),
+        "SC (S0)": sideband_centroid_s0(found, *at),
+        "SC (S1)": sideband_centroid_s1(found, *at),
+    }
+
+
+def increment(value, healthy):
+    """``(value - healthy) / healthy`` in percent (S4)."""
+    if not healthy:
+        raise ValueError(f"healthy = {healthy}, but an increment in percent needs a value other than 0")
+    return 100 * (value - healthy) / healthy
+
+
+def indicator_table(signals, mesh_frequency=None, fault_frequency=None, *, healthy="healthy", **options):
+    """Indicators of several cases, each with its increment against the healthy one.
+
+    Parameters
+    ----------
+    signals : dict of str to Signal
+        By case; all of one unit, rate and length, on which the sideband indicators depend.
+    mesh_frequency, fault_frequency, **options
+        See `indicators`.
+    healthy : str
+        The case to compare with.
+
+    Returns
+    -------
+    dict of str to dict of str to (float, float)
+        ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0.
+    """
+    if healthy not in signals:
+        raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
+    first = signals[healthy]
+    for case, signal in signals.items():
+        if (signal.unit, signal.rate, signal.values.size) != (first.unit, first.rate, first.values.size):
+            raise ValueError(
+                f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
+                f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
+            )
+    found = {case: indicators(signal, mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    reference = found[healthy]
+    return {
+        case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
+        for case, row in found.items()
+    }
+
+
+def table_text(table):
+    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments in brackets.
+
+    What is a millionth or less in the healthy signal is taken for none there.
+    """
+    names = list(next(iter(table.values())))
+    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
+    lines += [[name, *(_cell(*row[name]) for row in table.values())] for name in names]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _cell(value, more):
+    told = f"{more:+.1f} %" if abs(more) < GREAT else "healthy: none"
+    return f"{value:.4g} ({told})"

@@ -1,0 +1,103 @@
+"""`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessCurve:
+    """Mesh stiffness along the line of action.
+
+    Attributes
+    ----------
+    phase : ndarray, shape (n,)
+        Mesh phase: 0 when a pair enters at the start of the path of contact, 1 one transverse base pitch later.
+    k : ndarray, shape (n,)
+        Secant stiffness, force over loaded transmission error [N/m].
+    k_tangent : ndarray, shape (n,)
+        Tangent stiffness dF/dx [N/m].
+    lte : ndarray, shape (n,)
+        Loaded minus unloaded transmission error, as a length on the line of action [m].
+    order : ndarray, shape (pairs,)
+        Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
+    force : ndarray, shape (n, pairs)
+        Force each pair carries [N]; nan where a model gives only the total stiffness.
+    pressure : ndarray, shape (n, pairs)
+        Largest contact pressure of each pair [Pa]; nan for methods without one.
+    error : ndarray, shape (n,) or None
+        Estimated discretisation error of k [N/m], if one was asked for.
+    meta : dict
+        Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
+    """
+
+    phase: np.ndarray
+    k: np.ndarray
+    k_tangent: np.ndarray
+    lte: np.ndarray
+    order: np.ndarray
+    force: np.ndarray
+    pressure: np.ndarray
+    error: np.ndarray | None = None
+    meta: dict = field(default_factory=dict)
+
+    @property
+    def share(self):
+        """Load share of each pair ``(n, pairs)``, rows sum to 1."""
+        return self.force / self.force.sum(axis=1, keepdims=True)
+
+    def zones(self):
+        """Mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs, on the path of contact), ``mean``, ``max``.
+
+        A zone none of the phases falls into is left out, and so are those of helical teeth.
+        """
+        out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
+        return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
+
+    def zone_errors(self):
+        """Largest relative error estimate by the same zones; empty if none was asked for."""
+        if self.error is None:
+            return {}
+        relative = self.error / self.k
+        out = {name: float(relative[rows].max()) for name, rows in self._rows().items()}
+        return out | {"mean": float(relative.max()), "max": float(relative[np.argmax(self.k)])}
+
+    def _rows(self):
+        if self.meta.get("face") in ("helical", "herringbone"):
+            return {}  # lines of several lengths, no zones
+        inside = (self.phase + 1e-9) % 1.0 <= self.meta["eps_alpha"] % 1.0 + 2e-9
+        low = int(self.meta["eps_alpha"])
+        names = {1: "single", 2: "double", 3: "triple"}
+        zones = {names.get(pairs, f"{pairs} pairs"): rows for pairs, rows in ((low, ~inside), (low + 1, inside))}
+        return {name: rows for name, rows in zones.items() if rows.any()}
+
+    def save(self, path):
+        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        from .curve_file import save
+
+        save(self, path)
+
+    def to_csv(self, path):
+        """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
+        from .curve_file import write_csv
+
+        write_csv(self, path)
+
+    @classmethod
+    def from_csv(cls, path):
+        """Read what `to_csv` wrote.
+
+        Raises
+        ------
+        ValueError
+            If the file is not such a table, or its phases do not rise.
+        """
+        from .curve_file import read_csv
+
+        return read_csv(path)
+
+    def plot(self, path=None):
+        """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
+        from ..pictures.stiffness_plots import plot_curves
+
+        return plot_curves({self.meta.get("method", "k"): self}, path)

@@ -1,0 +1,88 @@
+"""Stiffness curves of gears of finite width, from contact along their contact lines."""
+
+import time
+from functools import partial
+
+import numpy as np
+
+from ..contact.solid import pair_stiffness3d
+from .cache import solved_solid
+from .curve import StiffnessCurve
+
+MORE = 1.01  # load of the second solve that gives the tangent
+COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elements; the first whose section can be meshed in quads
+LESS = 2  # axial degrees less in it
+
+
+def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cache=True, tell=None):
+    """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
+
+    Parameters
+    ----------
+    pair : GearPair
+    force : float
+        Along the transverse line of action [N].
+    materials : (Material, Material)
+    phase : ndarray
+    cracks, pits : (tuple, tuple)
+        In each gear's own frame.
+    meta : dict
+        Holds ``method``, ``face``, ``groove``, ``refine``, ``extended`` and (energy model) ``order``.
+    error : bool
+        Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
+        Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
+    cache, tell
+        Of the finite elements, see `gearfe.stiffness.cache.solved_solid`.
+
+    Returns
+    -------
+    StiffnessCurve
+        `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
+    """
+    started = time.perf_counter()
+    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "extended")}}
+    brute = meta["method"] == "fe3d"
+    if brute:
+        model = partial(solved_solid, refine=meta["refine"], cache=cache, tell=tell)
+        options["model"] = model
+    else:
+        options |= {"refine": meta["refine"], "order": meta["order"]}
+    found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
+    more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
+    doubt = found.error
+    if error and brute:
+        ratio, k = _coarser((pair, force, materials, phase), options, meta["refine"], cache, tell)
+        away = np.abs(k - found.k)
+        doubt = np.maximum(away, away.mean())
+        meta = meta | {"error_refine": ratio * meta["refine"]}
+    pressure = np.zeros(found.load.shape)
+    for i, cells in enumerate(found.cells):
+        for k, order in enumerate(found.order):
+            own = cells.pressure[(cells.order == order) & (cells.load > 0)]
+            flat = own[np.isfinite(own)]
+            pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
+    used = found.load.max(axis=0) > 0
+    if any(cracks) and not brute:
+        meta = meta | {"crack_closed_phases": phase[list(found.closed)].tolist()}
+    return StiffnessCurve(
+        phase=phase,
+        k=found.k,
+        k_tangent=1e3 * (MORE - 1) * force / (more.approach - found.approach),
+        lte=1e-3 * found.approach,
+        order=found.order[used],
+        force=found.load[:, used],
+        pressure=1e6 * pressure[:, used],
+        error=doubt,
+        meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
+    )
+
+
+def _coarser(case, options, refine, cache, tell):
+    """Part of the resolution at which a coarser mesh was possible, and its k."""
+    for ratio in COARSER:
+        model = partial(solved_solid, refine=ratio * refine, cache=cache, tell=tell, less=LESS)
+        try:
+            return ratio, pair_stiffness3d(*case, **(options | {"model": model})).k
+        except RuntimeError as error:
+            failed = error
+    raise failed

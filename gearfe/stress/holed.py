@@ -1,0 +1,287 @@
+"""A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
+
+The load is that of `contact3d.pair_stiffness3d` along the true contact lines, spread over a narrow strip to either side. The
+sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.mesh.holes import Holed, holed_sector, skin
+from geometry.mesh.solid import twist_rate
+from geometry.tooth.profile import arc_at, flank_normal
+
+from ..contact.solid import Contact3D, pair_stiffness3d
+from ..elements.hexahedron import assemble
+from ..elements.solver import factor, plan
+from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
+from ..stiffness.inputs import by_gear, overlap, two_materials
+from .fields import Field
+
+SPREAD = 0.15  # of the load to either side of its line, in modules
+BEND = math.radians(40)  # edges at which the surface bends by more are drawn
+PARTS = 5  # a loaded triangle is cut into the square of so many
+
+
+@dataclass(frozen=True, slots=True)
+class Pressed:
+    """A damaged tooth under load at some phases.
+
+    Attributes
+    ----------
+    sector : geometry.mesh.holes.Holed
+    nodes : ndarray, shape (3, n)
+        Vertices and edge middles [mm].
+    cells : ndarray, shape (10, m)
+        Of the gear with holes, in VTK's order.
+    contact : Contact3D
+    gear : str
+        ``pinion`` or ``wheel``.
+    load : ndarray, shape (phases,)
+        On tooth 0, at right angles to its flank [N].
+    moved : ndarray, shape (phases, 3, n)
+        Displacement [mm], nan at nodes inside of the pits.
+    stress : ndarray, shape (phases, 6, n)
+        xx, yy, zz, xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume.
+    extra : ndarray, shape (phases,)
+        By how much the removed material adds to the approach of the pair under the same loads, relative: an upper bound of the
+        change of k, because a load that may choose anew chooses no worse. Empty if not asked for.
+    unknowns : int
+    """
+
+    sector: Holed
+    nodes: np.ndarray
+    cells: np.ndarray
+    contact: Contact3D
+    gear: str
+    load: np.ndarray
+    moved: np.ndarray
+    stress: np.ndarray
+    extra: np.ndarray
+    unknowns: int
+
+
+def pressed_tooth(
+    pair,
+    force,
+    material,
+    damage,
+    *,
+    phases=None,
+    face=None,
+    groove=0.0,
+    refine=1.0,
+    teeth=3,
+    removal=False,
+    sizes=None,
+    tell=None,
+):
+    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+
+    Parameters
+    ----------
+    pair, force, material, damage, face, groove
+        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone. Without any it is
+        tooth 0 of the pinion.
+    phases : array, optional
+        Default: the one of 16 at which the damaged tooth carries most.
+    refine, teeth, sizes
+        As of `geometry.mesh.holes.holed_sector`.
+    removal : bool
+        Solve the tooth without its holes too, for `Pressed.extra`.
+    tell : callable, optional
+        Gets the `gearfe.elements.solver.Plan` before anything costly starts.
+
+    Returns
+    -------
+    Pressed
+
+    Raises
+    ------
+    ValueError
+        If the damage is not that of one tooth, or cannot be.
+    RuntimeError
+        If a hole was not cut as it should, or the system does not fit.
+    """
+    materials = two_materials(material)
+    face = face or ("helical" if pair.gear_1.beta else "spur")
+    cracks, pits = by_gear(pair, damage)
+    which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
+    if len(which) > 1 or len(cracks[which[0]]) > 1:
+        raise ValueError("give pits, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+    side = which[0]
+    gear, half, own_pits = _own(pair, side, face, groove, pits[side])
+    crack = next(iter(cracks[side]), None)
+    sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
+    tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
+    order = (1, -1)[side] * tooth
+    contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
+    nodes, cells, number = second_order(sector.points, sector.cells)
+    kept = cells[:, sector.plug < 0]
+    lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
+    loads = np.column_stack([_pressure(sector, nodes, number, found) for found in lines])
+    held = _held(sector, number)
+    moved, unknowns = _moved(nodes, kept, materials[side], held, loads, tell)
+    extra = np.zeros(0)
+    if removal:
+        whole, _ = _moved(nodes, cells, materials[side], held, loads, tell)
+        work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
+        extra = work / (force * contact.approach)
+    moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
+    load = np.array([sum(part[3].sum() for part in found.get(0, ())) for found in lines])
+    stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
+    return Pressed(sector, nodes, kept, contact, ("pinion", "wheel")[side], load, moved, stress, extra, unknowns)
+
+
+def tooth_field(pressed, phase=0):
+    """`gearfe.stress.fields.Field` of the gear with holes at one of its phases, without the nodes inside of the pits."""
+    sector = pressed.sector
+    there, cells = np.unique(pressed.cells, return_inverse=True)
+    cells = cells.reshape(pressed.cells.shape)
+    place = np.full(pressed.nodes.shape[1], -1)
+    place[there] = np.arange(there.size)
+    points, moved = pressed.nodes[:, there], pressed.moved[phase][:, there]
+    body, tooth = (place[sector.faces.get(f"crack {name}", np.zeros((3, 0), dtype=int))] for name in ("body", "tooth"))
+    opening = np.linalg.norm(moved[:, tooth] - moved[:, body], axis=0).max(initial=0.0)
+    made = points, "tetra10", cells, moved, pressed.stress[phase][:, there], _edges(points, cells)
+    field = Field(*made, 0.0, float(opening))
+    return replace(field, root=float(field.mises[place[sector.faces["fillets 0"]]].max()))
+
+
+def _edges(points, cells):
+    """Pieces ``(2, k)`` of the edges at which the surface of tets bends by more than `BEND`."""
+    faces = skin(cells[:4])
+    a, b, c = points[:, faces].transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a, axis=0)
+    normal /= np.linalg.norm(normal, axis=0)
+    sides = np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]])
+    order = np.lexsort(sides)
+    first, second = order[::2] % faces.shape[1], order[1::2] % faces.shape[1]
+    sharp = sides[:, order[::2]][:, np.abs((normal[:, first] * normal[:, second]).sum(axis=0)) < math.cos(BEND)]
+    middle = {}
+    for k, (i, j) in enumerate(EDGES):
+        middle |= dict(zip(map(tuple, np.sort(cells[[i, j]], axis=0).T.tolist()), cells[4 + k].tolist(), strict=True))
+    half = np.array([middle[tuple(side)] for side in sharp.T.tolist()], dtype=int)
+    return np.hstack([[sharp[0], half], [half, sharp[1]]])
+
+
+def _own(pair, side, face, groove, pits):
+    """The gear as it is drawn, the half of it that is (0 or 1), and its pits there; half 1 is seen in the mirror."""
+    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
+    if face != "herringbone":
+        return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
+    width = (gear.b - groove) / 2
+    halves = {int(pit.z > gear.b / 2) for pit in pits}
+    if len(halves) > 1:
+        raise ValueError("pits in both halves of a herringbone gear: its halves are drawn one at a time, give those of one")
+    half = halves.pop() if halves else 0
+    if half:
+        pits = tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
+    return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
+
+
+def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, *, extended=True):
+    """`Contact3D` at `phases`, or at the one of 16 where pair `order` carries most; damage numbered in each gear's own frame."""
+    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
+    if phases is not None:
+        return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
+    end = pair.eps_alpha + overlap(pair, face, groove)
+    found = pair_stiffness3d(pair, force, materials, -order + end * (np.arange(16) + 0.5) / 16, **options)
+    best = int(found.load[:, found.order == order].sum(axis=1).argmax())
+    numbers = {name: getattr(found, name)[[best]] for name in ("phase", "k", "approach", "load")}
+    return replace(found, cells=(found.cells[best],), **numbers)
+
+
+def _lines(pair, cells, side, tooth, half):
+    """Contact lines by tooth of the sector: lists of (z, width, roll, load)."""
+    gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
+    offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    out = {}
+    for order in np.unique(cells.order):
+        own = np.flatnonzero((cells.order == order) & (cells.half == half))
+        z = cells.z[own] + offset
+        z = gear.b - z if half else z
+        own, z = own[np.argsort(z)], np.sort(z)
+        place = (sense * int(order) - tooth + gear.z // 2) % gear.z - gear.z // 2
+        roll = (cells.roll_1, cells.roll_2)[side][own]
+        out.setdefault(place, []).append((z, cells.width[own], roll, cells.load[own]))
+    return out
+
+
+def _held(sector, number):
+    faces = np.hstack([sector.faces["held"], sector.faces["sides"]])
+    a, b, c = faces
+    return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
+
+
+def _moved(nodes, cells, material, held, loads, tell):
+    """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell, and the number of unknowns."""
+    there = np.unique(cells)
+    free = np.setdiff1d(there, held)
+    made = plan(3 * free.size)
+    if tell:
+        tell(made)
+    rows = (3 * free[:, None] + np.arange(3)).ravel()
+    solve = factor(assemble(nodes, cells, material, free, tet_stiffness), made)
+    moved = np.full(loads.shape, np.nan)
+    moved[(3 * there[:, None] + np.arange(3)).ravel()] = 0.0
+    moved[rows] = solve(loads[rows])
+    if not np.isfinite(moved[rows]).all():
+        raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
+    return moved, rows.size
+
+
+def _pressure(sector, nodes, number, lines):
+    """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
+
+    On each line the pressure is its line load times a hat of `SPREAD` along the profile, at small triangles of the flank; it is
+    scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
+    """
+    gear, rate = sector.gear, twist_rate(sector.gear)
+    force = np.zeros((nodes.shape[1], 3))
+    spread = SPREAD * gear.m_n
+    bary = _thirds()
+    shape = np.vstack([bary * (2 * bary - 1), 4 * bary[[0, 1, 0]] * bary[[1, 2, 2]]])
+    for tooth, found in lines.items():
+        faces = sector.faces.get(f"flank {tooth}")
+        if faces is None or not faces.size:
+            continue
+        a, b, c = faces
+        six = np.array([a, b, c, number(a, b), number(b, c), number(a, c)])
+        x, y, z = np.einsum("dkf,kq->dfq", nodes[:, six[:3]], bary)
+        area = np.linalg.norm(np.cross((nodes[:, b] - nodes[:, a]).T, (nodes[:, c] - nodes[:, a]).T), axis=1)
+        roll = np.sqrt(np.maximum(np.hypot(x, y) ** 2 - gear.r_b**2, 0.0))
+        normal = _normal(gear, roll, 2 * math.pi * tooth / gear.z + rate * z)
+        for heights, width, rolls, load in found:
+            if load.sum() <= 0:
+                continue
+            cell = np.clip(np.searchsorted(heights + width / 2, z), 0, heights.size - 1)
+            inside = np.abs(z - heights[cell]) <= width[cell] / 2 * (1 + 1e-9)
+            away = np.abs(arc_at(gear, roll) - arc_at(gear, np.interp(z, heights, rolls)))
+            press = np.where(inside, load[cell] / width[cell] * np.maximum(1 - away / spread, 0.0), 0.0) * area[:, None]
+            if press.sum() <= 0:
+                raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
+            press *= load.sum() / press.sum()
+            np.add.at(force, six.T, -np.einsum("kq,dfq,fq->fkd", shape, normal, press))
+    return force.ravel()
+
+
+def _thirds():
+    """Barycentric middles ``(3, q)`` of the small triangles a triangle is cut into."""
+    i, j = np.meshgrid(np.arange(PARTS), np.arange(PARTS), indexing="ij")
+    up, down = i + j < PARTS, i + j < PARTS - 1
+    first = np.concatenate([i[up] + 1 / 3, i[down] + 2 / 3]) / PARTS
+    second = np.concatenate([j[up] + 1 / 3, j[down] + 2 / 3]) / PARTS
+    return np.array([first, second, 1 - first - second])
+
+
+def _normal(gear, roll, turn):
+    """Unit normals out of the loaded flank at `roll` on a section turned clockwise by `turn`."""
+    plane = flank_normal(gear, roll)
+    cos, sin, tilt = np.cos(turn), np.sin(turn), math.cos(gear.beta_b)
+    return np.array([
+        tilt * (plane[0] * cos + plane[1] * sin), tilt * (plane[1] * cos - plane[0] * sin),
+        np.full(roll.shape, -math.sin(gear.beta_b)),
+    ])  # fmt: skip

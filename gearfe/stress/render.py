@@ -1,0 +1,284 @@
+"""Pictures of stress fields (pyvista), without a screen."""
+
+import contextlib
+import ctypes
+import math
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ..stiffness.curve_file import written
+from ..stiffness.inputs import by_gear
+from .fields import MISES, loaded_phase, stressed_gears, write_vtu
+from .holed import contact_of, pressed_tooth, tooth_field
+
+RENDERER_HELP = (
+    "rendering needs pyvista and, without a screen, EGL or OSMesa: "
+    "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
+)
+OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
+OPENING = 0.2  # of a crack in a picture, in modules
+STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
+DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
+FINE = {
+    "tooth": 0.5,
+    "flank": 0.18,
+    "fillet": 0.22,
+    "tip": 0.1,
+    "rim": 0.3,
+}  # edge lengths of such a picture, see geometry.mesh.holes.SIZES
+# corners and middles of a second-order tet (VTK's order) to eight tets
+EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
+
+
+def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050), refine=1.0, title=""):
+    """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
+
+    Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.
+    Helical and herringbone gears and pits: the damaged tooth in three dimensions, pits as holes, with the load of the pair
+    along its contact lines (`gearfe.stress.holed`). Displacements are enlarged if there is a crack, so that it opens; the picture
+    says how much.
+
+    Parameters
+    ----------
+    scene_pair : ScenePair
+    path : path
+        A ``.png`` file, or ``.vtu``: mesh, displacement and stress.
+    case : str, optional
+        Case of damage of the pair; default healthy.
+    phase : float, optional
+        Mesh phase; default where the damaged tooth carries most, 0 for healthy spur gears.
+    size : tuple of int
+        Pixels.
+    refine : float
+        Divides the edge lengths.
+    title : str
+        First line of the text in the picture.
+
+    Returns
+    -------
+    dict
+        What is shown: ``phase``, ``largest`` and ``root`` (von Mises stress anywhere and on the loaded fillets) [MPa],
+        ``enlarged`` (by which displacements are), ``load`` [N] (on the tooth shown; in a plane on the pair), ``text``.
+
+    Raises
+    ------
+    RuntimeError
+        If pyvista or a renderer is missing; the message names what to install.
+    """
+    suffix = Path(path).suffix
+    if suffix not in (".png", ".vtu"):
+        raise ValueError(f"output {path}: give a .png or a .vtu file")
+    if suffix == ".png":
+        _pyvista()
+    damage = scene_pair.case(case).get("damage")
+    wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
+    told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
+    told["text"] = _text(title or (case or ""), told)
+    if suffix == ".vtu":
+        write_vtu(path, fields)
+    else:
+        (_draw_tooth if wide else _draw_gears)(scene_pair.pair, fields, told, path, size)
+    return told
+
+
+def render_contact(scene_pair, path, *, case=None, phase=None):
+    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`plots.plot_contact`).
+
+    Parameters as of `render_stress`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
+
+    Returns
+    -------
+    dict
+        ``phase``, ``k`` [N/m], ``pressure`` (the largest) [MPa].
+    """
+    from ..pictures.stiffness_plots import plot_contact
+
+    cracks, pits = by_gear(scene_pair.pair, scene_pair.case(case).get("damage"))
+    order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
+    face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
+    phases = None if phase is None else [phase]
+    run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
+    found = contact_of(*run, order)
+    plot_contact(scene_pair.pair, found, path=path, pits=pits[0])
+    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": float(found.cells[0].pressure.max())}
+
+
+def _gears(scene_pair, damage, phase, refine):
+    phase = loaded_phase(scene_pair, damage) if phase is None else phase
+    fields = stressed_gears(scene_pair, phase, refine, damage)
+    scale = enlarged(max(field.opening for field in fields), scene_pair.pair.gear_1.m_n)
+    return fields, {"phase": phase, "load": scene_pair.force, "enlarged": scale, "where": "on the pair"}
+
+
+def _tooth(scene_pair, damage, phase, refine):
+    phases = None if phase is None else [phase]
+    options = {"phases": phases, "face": scene_pair.face, "groove": scene_pair.groove, "refine": refine, "sizes": FINE}
+    made = pressed_tooth(scene_pair.pair, scene_pair.force, scene_pair.materials, damage, **options)
+    field = tooth_field(made)
+    told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
+    return [field], told | {"enlarged": enlarged(field.opening, made.sector.gear.m_n)}
+
+
+def enlarged(opening, module):
+    """Factor of displacements in a picture that opens a crack by about `OPENING` modules; 0 without a crack: not drawn."""
+    if opening <= 0:
+        return 0
+    power = math.floor(math.log10(OPENING * module / opening))
+    return int(max(1, max(s * 10.0**power for s in STEPS if s * 10.0**power <= OPENING * module / opening * (1 + 1e-9))))
+
+
+def _text(title, told):
+    lines = [title, f"phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}"]
+    if told["enlarged"]:
+        lines.append(f"displacements x {told['enlarged']}, which opens the crack")
+    return "\n".join(line for line in lines if line)
+
+
+def _pyvista():
+    try:
+        import pyvista
+    except ImportError as error:
+        raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
+    _choose_window()
+    return pyvista
+
+
+@contextlib.contextmanager
+def _picture(path, size, text, top):
+    """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
+    pyvista = _pyvista()
+    from pyvista.plotting.colors import get_cmap_safe
+
+    bright = get_cmap_safe("turbo")(np.linspace(0.07, 0.97, 256), bytes=True)
+    colours = ["#{:02x}{:02x}{:02x}".format(*row[:3]) for row in bright]
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
+    try:
+        plotter.set_background("white")
+        look = {"scalars": MISES, "clim": [0, top], "cmap": colours, "above_color": "#6b0000", "show_scalar_bar": False}
+        yield plotter, look
+        scale = (size[0] / 1400) ** 0.7  # small pictures keep letters that can be read
+        mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
+        fonts = {"title_font_size": round(26 * scale), "label_font_size": round(24 * scale), "color": "black", "fmt": "%.0f"}
+        place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
+        plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
+        plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
+        words = plotter.actors[next(reversed(plotter.actors))].prop
+        words.SetFontSize(round(28 * scale))
+        words.SetVerticalJustificationToTop()
+        words.SetBackgroundColor(1.0, 1.0, 1.0)
+        words.SetBackgroundOpacity(0.8)
+        plotter.enable_anti_aliasing("ssaa")
+        with written(path) as name:
+            plotter.screenshot(name)
+    finally:
+        plotter.close()
+
+
+def _grid(field, scale):
+    """Pyvista grid of a field, displaced."""
+    import pyvista
+
+    kind = {"triangle6": pyvista.CellType.QUADRATIC_TRIANGLE, "tetra10": pyvista.CellType.QUADRATIC_TETRA}[field.kind]
+    grid = pyvista.UnstructuredGrid({kind: field.cells.T}, (field.points + scale * field.moved).T)
+    grid.point_data[MISES] = field.mises
+    return grid
+
+
+def _lines(field, scale, kept=None, lift=0.0):
+    import pyvista
+
+    pieces = field.lines if kept is None else field.lines[:, kept[field.lines].all(axis=0)]
+    cells = np.hstack([np.full((pieces.shape[1], 1), 2), pieces.T]).ravel()
+    return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
+
+
+def _round_up(value):
+    """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
+
+
+def _draw_gears(pair, fields, told, path, size):
+    """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
+    import pyvista
+
+    scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
+    if scale:
+        shown = [field for field in fields if field.opening > 0]
+    with _picture(path, size, told["text"], _round_up(max(field.root for field in shown))) as (plotter, look):
+        for k, field in enumerate(shown):
+            plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
+            plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
+        for field in fields if scale else ():
+            plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
+        half = (2.6 if scale else 3.6) * pair.gear_1.m_n
+        wide = half * size[0] / size[1]
+        middle = (focus[0] + 0.9 * wide, focus[1], 0.1)
+        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.21 * wide, j_size=3 * half)  # behind the colour bar
+        plotter.add_mesh(strip, color="white", lighting=False)
+        plotter.view_xy()
+        plotter.camera.focal_point = (*focus, 0)
+        plotter.camera.position = (*focus, 1)
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = half
+
+
+def _draw_tooth(pair, fields, told, path, size):
+    """The loaded flank of tooth 0; the tooth before it is cut away, because it would hide it."""
+    import pyvista
+
+    (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
+    x, y, z = field.points
+    rate = math.tan(gear.beta) / gear.r
+    angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
+    deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
+    linear = np.hstack([field.cells[list(part)] for part in EIGHT])
+    grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: linear.T}, (field.points + scale * field.moved).T)
+    for name, values in ((MISES, field.mises), ("pitch", angle), ("deep", deep)):
+        grid.point_data[name] = values
+    for name, value, invert in (("pitch", 0.5, True), ("pitch", -0.5, False), ("deep", -DEEP, False)):
+        grid = grid.clip_scalar(scalars=name, value=value, invert=invert)
+    surface = grid.extract_surface(algorithm="dataset_surface").compute_normals(feature_angle=50, split_vertices=True)
+    turn = rate * gear.b / 2
+    out = np.array([math.cos(turn), -math.sin(turn), 0.0])
+    up = gear.outward * np.array([math.sin(turn), math.cos(turn), 0.0])
+    view = out + 0.45 * up + np.array([0, 0, 0.6])
+    view /= np.linalg.norm(view)
+    right = np.cross(up, view) / np.linalg.norm(np.cross(up, view))
+    plane = np.array([right, np.cross(view, right)])  # of the picture
+    low, high = (edge((plane @ surface.points.T).T, axis=0) for edge in (np.min, np.max))
+    focus = plane.T @ ((low + high) / 2)
+    wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
+    size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
+    with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
+        plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
+        kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
+        plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
+        half = max(tall, wide * size[1] / size[0]) / 2
+        focus = focus + plane.T @ np.array([0.08 * half * size[0] / size[1], 0.18 * half])
+        plotter.camera.focal_point = focus
+        plotter.camera.position = focus + 200 * gear.m_n * view
+        plotter.camera.up = plane[1]
+        plotter.camera.parallel_projection = True
+        plotter.camera.parallel_scale = half
+        light = focus + 200 * gear.m_n * (view + 0.7 * up)
+        plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
+        plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
+
+
+def _choose_window():
+    """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none."""
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
+        return
+    for library, window in OFFSCREEN.items():
+        try:
+            ctypes.CDLL(library)
+        except OSError:
+            continue
+        os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = window
+        return
+    raise RuntimeError(f"no display, and neither of {', '.join(OFFSCREEN)} can be loaded: {RENDERER_HELP}")

@@ -1,0 +1,103 @@
+"""Many cases at once, over processes, each timed; a case that cannot be gives its error in place of its result."""
+
+import multiprocessing
+import os
+import time
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+
+from ..stiffness.solve import mesh_stiffness
+
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Results of `batch`, in the order of its cases.
+
+    `results` holds what the work returned, or the ValueError or RuntimeError it raised; `seconds` the time of each case;
+    `elapsed` that of all, by `workers` processes.
+    """
+
+    results: list
+    seconds: list
+    elapsed: float
+    workers: int
+
+
+def batch(cases, *, work=None, workers=None, progress=None):
+    """Work through many cases.
+
+    Parameters
+    ----------
+    cases : iterable of dict
+        Keyword arguments of `work`.
+    work : callable, optional
+        Default `mesh_stiffness`; for several processes a function that can be imported by name.
+    workers : int, optional
+        Processes, one thread each; default one per core. 1: in this process. Scripts with more need the usual guard
+        ``if __name__ == "__main__":``.
+    progress : callable, optional
+        Called with (cases done, cases in all).
+
+    Returns
+    -------
+    Batch
+
+    Raises
+    ------
+    ValueError
+        If `workers` is not a whole number from 1 on, or `work` cannot be handed to other processes.
+
+    Examples
+    --------
+    >>> batch([{"x": 2.0}, {"x": -1.0}], work=float.fromhex, workers=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: workers = 0, but give a number of processes >= 1, or None for one per core
+    """
+    cases, work = list(cases), work or mesh_stiffness
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
+    workers = min(workers or os.cpu_count() or 1, max(1, len(cases)))
+    progress = progress or (lambda done, total: None)
+    started = time.perf_counter()
+    jobs = [(work, case) for case in cases]
+    done = _collect(map(_timed, jobs), len(cases), progress) if workers == 1 else _spread(jobs, workers, progress)
+    results, seconds = ([row[k] for row in done] for k in (0, 1))
+    return Batch(results, seconds, time.perf_counter() - started, workers)
+
+
+def _spread(jobs, workers, progress):
+    """Over new processes of one thread each: what the libraries read at their start stands in the environment."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+            size = max(1, min(16, len(jobs) // (4 * workers)))
+            return _collect(pool.map(_timed, jobs, chunksize=size), len(jobs), progress)
+    except (AttributeError, TypeError) as error:
+        if "pickle" not in str(error).lower():
+            raise
+        raise ValueError(f"{error}: processes need functions that can be imported by name; or use workers = 1") from error
+    finally:
+        for name, value in before.items():
+            os.environ.pop(name) if value is None else os.environ.update({name: value})
+
+
+def _collect(results, total, progress):
+    out = []
+    for row in results:
+        out.append(row)
+        progress(len(out), total)
+    return out
+
+
+def _timed(job):
+    work, case = job
+    started = time.perf_counter()
+    try:
+        result = work(**case)
+    except (ValueError, RuntimeError) as error:
+        result = error
+    return result, time.perf_counter() - started

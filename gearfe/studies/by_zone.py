@@ -1,0 +1,116 @@
+"""How far analytical stiffness is from finite elements: tables of error by zone, with what each value cost."""
+
+import time
+import warnings
+from dataclasses import dataclass
+
+from geometry.damage.pit import Pit
+
+from ..stiffness.solve import mesh_stiffness
+from .own_model import own_curve, own_models
+
+FORMULATIONS = ("ritz", "coupled", "textbook", "published")  # of spur gears
+ZONES = ("single", "double", "triple", "mean", "max")
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Curves by method, the first being the reference, and the seconds each took.
+
+    Imports and the error estimate of the reference are not counted.
+    """
+
+    pair_name: str
+    curves: dict
+    seconds: dict
+
+    @property
+    def reference(self):
+        """The curve the others are compared with."""
+        return next(iter(self.curves.values()))
+
+    def rows(self):
+        """Rows (zone, reference k [N/m], its relative error estimate, {method: (k [N/m], relative error)})."""
+        truth, doubt = self.reference.zones(), self.reference.zone_errors()
+        others = {name: curve.zones() for name, curve in list(self.curves.items())[1:]}
+        for zone in sorted(truth, key=lambda z: ZONES.index(z) if z in ZONES else 2):
+            yield (
+                zone,
+                truth[zone],
+                doubt.get(zone, float("nan")),
+                {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()},
+            )
+
+    def table(self):
+        """Markdown table: per zone the reference and every formulation with its error; last row the seconds."""
+        names = list(self.curves)
+        lines = [
+            "| zone | " + " | ".join([f"{names[0]} [N/m] | estimate", *(f"{n} [N/m] | error" for n in names[1:])]) + " |",
+            "|---" * (2 * len(names) + 1) + "|",
+        ]
+        for zone, truth, doubt, others in self.rows():
+            cells = [f"{k:.4g} | {100 * error:+.1f} %" for k, error in others.values()]
+            lines.append(f"| {zone} | " + " | ".join([f"{truth:.4g} | ± {100 * doubt:.2f} %", *cells]) + " |")
+        cost = [f"{self.seconds[names[0]]:.3f} | ", *(f"{self.seconds[n]:.4f} | " for n in names[1:])]
+        lines.append("| seconds | " + " | ".join(cost) + " |")
+        return "\n".join(lines)
+
+
+def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
+    """Compare every formulation that models it with the reference, on one pair of `scene`, healthy or damaged.
+
+    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`.
+
+    Parameters
+    ----------
+    scene : Scene
+    pair : str, optional
+        Name of the pair; default the first.
+    case : str, optional
+        Name of a case of damage: the phases then are those of the damaged tooth's whole engagement.
+    models : sequence or dict of str to model
+        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair, or files
+        with stated units (see `gearfe.studies.own_model` and `gearfe.read_model`).
+    phases : int or array
+        As in `mesh_stiffness`.
+    refine : float
+        Resolution of the reference.
+
+    Returns
+    -------
+    Comparison
+        Without the formulations that have no value for this damage; a warning says why.
+    """
+    chosen = scene.pair(pair)
+    methods = _methods(chosen, case)
+    own = own_models(models, taken=("fe", *FORMULATIONS))
+    run = chosen.case(case) | {"phases": phases, "span": "tooth" if case else "cycle"}
+    mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
+    curves, seconds = {}, {}
+    for method in methods:
+        started = time.perf_counter()
+        options = {"refine": refine} if method == methods[0] else {}
+        face = None if method in ("fe", "ritz", "coupled") else chosen.face
+        try:
+            curves[method] = mesh_stiffness(**(run | {"face": face}), method=method, cache=False, **options)
+        except ValueError as error:
+            if method == methods[0]:
+                raise
+            warnings.warn(f"{method} has no value here: {error}", stacklevel=2)
+            continue
+        seconds[method] = time.perf_counter() - started
+    curves[methods[0]] = mesh_stiffness(**run, method=methods[0], refine=refine, error=True)
+    for name, model in own.items():
+        started = time.perf_counter()
+        curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
+        seconds[name] = time.perf_counter() - started
+    return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
+
+
+def _methods(chosen, case):
+    """Reference and formulations for a pair of a scene."""
+    damage = [one for found in chosen.case(case).get("damage", {}).values() for one in found]
+    closed = () if chosen.pair.gear_2.internal else ("textbook", "published")
+    if chosen.face in ("helical", "herringbone") or any(isinstance(one, Pit) for one in damage):
+        return ("ritz3d", *closed)
+    return ("fe", "ritz", *(("coupled",) if closed and not damage else ()), *closed)

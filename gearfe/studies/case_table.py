@@ -1,0 +1,237 @@
+"""All pairs of a scene in all their cases of damage: stiffness by each method beside finite elements, and what damage takes."""
+
+import time
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.damage.pit import Pit
+
+from ..scene.stored import read_curves
+from ..scene.verdicts import judge, text
+from ..stiffness.inputs import CLOSED, overlap
+from ..stiffness.solve import mesh_stiffness
+
+PHASES = 32  # of the cycle looked at
+
+
+@dataclass(frozen=True, slots=True)
+class CaseCurve:
+    """Stiffness over the cycle in which the damaged tooth is in the middle of its engagement.
+
+    Attributes
+    ----------
+    k : ndarray, shape (n,)
+        Of the mesh [N/m].
+    tooth : ndarray, shape (n,)
+        Of the damaged tooth's own pair: its force over the common approach [N/m].
+    seconds : float
+        What it took, when it was computed.
+    estimate : float
+        Relative error estimate of the mean; nan if there is none.
+    """
+
+    k: np.ndarray
+    tooth: np.ndarray
+    seconds: float
+    estimate: float
+
+    @property
+    def mean(self):
+        """Mean over the cycle [N/m]."""
+        return float(self.k.mean())
+
+    @property
+    def largest(self):
+        """Maximum over the cycle [N/m]."""
+        return float(self.k.max())
+
+
+@dataclass(frozen=True, slots=True)
+class CaseTable:
+    """Curves by (pair, case, method) for every pair and case of a scene; case None is healthy, `reference` names a method."""
+
+    phases: dict
+    curves: dict
+    methods: tuple
+    reference: str
+
+    def cases(self):
+        """(pair, case) in order."""
+        return list(dict.fromkeys((pair, case) for pair, case, _ in self.curves))
+
+    def errors(self, pair, case, method):
+        """Relative errors of a method against the reference: of the mean, of the maximum, and the largest at one phase."""
+        truth, found = (self.curves[pair, case, name] for name in (self.reference, method))
+        return found.mean / truth.mean - 1, found.largest / truth.largest - 1, float(np.abs(found.k / truth.k - 1).max())
+
+    def drops(self, pair, case, method):
+        """What damage takes of the stiffness [-]: largest over the cycle, of the mean, and of the damaged tooth's own pair.
+
+        The last is the mean of its pair's own stiffness over the cycle.
+        """
+        healthy, hurt = (self.curves[pair, which, method] for which in (None, case))
+        return (
+            float((1 - hurt.k / healthy.k).max()),
+            1 - hurt.mean / healthy.mean,
+            1 - float(hurt.tooth.mean() / healthy.tooth.mean()),
+        )
+
+    def table(self):
+        """Markdown: per pair and case the reference, and every method's error of the mean and of the maximum."""
+        others = [name for name in self.methods if name != self.reference]
+        lines = [
+            f"| pair | case | {self.reference} mean | max [GN/m] | "
+            + " | ".join(f"{name} mean | max" for name in others) + " |",
+            "|---" * (4 + 2 * len(others)) + "|",
+        ]  # fmt: skip
+        for pair, case in self.cases():
+            truth = self.curves[pair, case, self.reference]
+            cells = [_percent(error, "+.1f") for name in others for error in self.errors(pair, case, name)[:2]]
+            head = [pair, case or "healthy", f"{truth.mean / 1e9:.4f}", f"{truth.largest / 1e9:.4f}"]
+            lines.append("| " + " | ".join([*head, *cells]) + " |")
+        total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
+        return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
+
+    def drop_table(self):
+        """Markdown: what each case takes, largest over the cycle, by method."""
+        lines = ["| pair | case | " + " | ".join(self.methods) + " |", "|---" * (2 + len(self.methods)) + "|"]
+        for pair, case in self.cases():
+            if case is not None:
+                cells = [_percent(self.drops(pair, case, name)[0], ".2f") for name in self.methods]
+                lines.append("| " + " | ".join([pair, case, *cells]) + " |")
+        return "\n".join(lines)
+
+
+def _percent(value, form):
+    return "none" if np.isnan(value) else f"{100 * value:{form}} %"
+
+
+def printed_beside(scene, published, reference, drops):
+    """Our values for the stiffnesses that the source of a scene prints, by id of its reference.
+
+    Parameters
+    ----------
+    scene : Scene
+    published, reference : dict
+        Mean stiffness [N/m] by (case, pair): by the source's own formulas and by the reference; case "healthy" without damage.
+    drops : dict
+        Largest loss of stiffness [%] by (case, pair).
+
+    Returns
+    -------
+    dict of str to dict
+        For `gearfe.scene.verdicts.judge`; the printed errors are recomputed from the printed stiffnesses. Empty without such
+        rows.
+    """
+    ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
+    said = {one.id: {(row.case, row.pair): row.value for row in one.rows} for one in scene.references}
+    if not all(name in said for name in (*ids, "stiffness_error")):
+        return {}
+    own, other = said["stiffness_analytical"], said["stiffness_fe"]
+    return ids | {"stiffness_error": {key: round(100 * abs(own[key] - other[key]) / own[key], 2) for key in own}}
+
+
+def printed_cases(scene):
+    """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears; none if it does not."""
+    rows = [row for one in scene.references if one.id == "stiffness_fe" for row in one.rows]
+    return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
+
+
+def printed_text(scene, table):
+    """The source's own table of stiffness beside a `CaseTable`, as Markdown with verdicts; empty if it prints none."""
+    means = {
+        name: {(case or "healthy", pair): table.curves[pair, case, name].mean for pair, case in table.cases()}
+        for name in ("published", table.reference)
+    }
+    drops = {(case, pair): 100 * table.drops(pair, case, table.reference)[0] for pair, case in table.cases() if case}
+    ours = printed_beside(scene, means["published"], means[table.reference], drops)
+    asked = [one for one in scene.references if one.id in ours]
+    return text(asked, [row for one in asked for row in judge(one, ours[one.id])]) if asked else ""
+
+
+def damage_cycle(chosen):
+    """Phases ``(PHASES,)`` of the cycle in which tooth 0 of a scene's pair is in the middle of its engagement."""
+    length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
+    return length / 2 - 0.5 + (np.arange(PHASES) + 0.5) / PHASES
+
+
+def is_wide(chosen):
+    """Whether a scene's pair needs three dimensions in any of its cases."""
+    pits = any(isinstance(one, Pit) for case in chosen.damage.values() for found in case.values() for one in found)
+    return pits or chosen.face in ("helical", "herringbone")
+
+
+def case_curve(chosen, case, method, phase, **options):
+    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `mesh_stiffness`."""
+    run = chosen.case(case) | {"phases": phase, "method": method} | options
+    if method in ("ritz", "fe"):
+        run |= {"face": None, "groove": 0.0}
+    if method in CLOSED and chosen.pair.gear_2.internal:
+        run["variants"] = {"foundation": "external"}
+    started = time.perf_counter()
+    curve = mesh_stiffness(**run)
+    seconds = time.perf_counter() - started
+    own = np.flatnonzero(curve.order == 0)
+    tooth = curve.force[:, own].sum(axis=1) / curve.lte
+    doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
+    return CaseCurve(curve.k, tooth, seconds, doubt)
+
+
+def case_table(scene, cases=None, *, compute=False, progress=None):
+    """Every pair and case of a scene by every method that has it.
+
+    The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
+    The latter take minutes a gear: those of a built-in scene are read from the file that comes with it; without one for just
+    these gears, loads and damages, the energy model `ritz3d` is the reference unless `compute` asks for them.
+
+    Parameters
+    ----------
+    scene : Scene
+        With cases of damage.
+    cases : sequence of (str, str or None), optional
+        Pairs with their cases, each pair with None (healthy) too; default all.
+    compute : bool
+        Compute three-dimensional finite elements that are not on file.
+    progress : callable, optional
+        Gets a text before each solve.
+
+    Returns
+    -------
+    CaseTable
+        Formulas that have no value for a damage have nan; a warning says why.
+
+    Raises
+    ------
+    ValueError
+        If the scene has no damage.
+    """
+    if not any(pair.damage for pair in scene.pairs.values()):
+        raise ValueError(f"scene {scene.name} has no cases of damage: add [[crack]] or [[pits]] tables")
+    tell = progress or (lambda text: None)
+    wide = any(is_wide(pair) for pair in scene.pairs.values())
+    stored = read_curves(scene) if wide else {}
+    wanted = [(name, case) for name, pair in scene.pairs.items() if pair.damage for case in (None, *pair.damage)]
+    wanted = wanted if cases is None else list(cases)
+    solid = wide and (compute or all(key in stored for key in wanted))
+    reference = "fe3d" if solid else "ritz3d" if wide else "fe"
+    methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), "textbook", "published")
+    curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
+    for name, case in wanted:
+        chosen = scene.pairs[name]
+        for method in methods:
+            if method == "fe3d" and (name, case) in stored:
+                _, k, tooth, estimate, seconds = stored[name, case]
+                curves[name, case, method] = CaseCurve(k, tooth, seconds, estimate)
+                continue
+            tell(f"{name} {case or 'healthy'}: {method}")
+            try:
+                curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
+            except ValueError as error:
+                if method not in CLOSED:
+                    raise
+                warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
+                nothing = np.full(PHASES, np.nan)
+                curves[name, case, method] = CaseCurve(nothing, nothing, 0.0, np.nan)
+    return CaseTable(cycles, curves, methods, reference)

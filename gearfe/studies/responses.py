@@ -1,0 +1,166 @@
+"""A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
+
+import math
+import warnings
+from dataclasses import dataclass, replace
+from importlib.util import find_spec
+
+import numpy as np
+
+from geometry.damage.pit import Pit
+
+from ..machine.of_scene import build_machine
+from ..motion.simulate import simulate
+from ..signal.indicators import LOBES, indicator_table, table_text
+from ..signal.series import Signal, spectrum
+from ..signal.spectral_lines import expected_lines, find_lines
+
+SETTLE = 0.5  # of the duration, before it, left out
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """Spectra and indicators of one channel of some responses, or of a measured signal, by case.
+
+    `signals` are what was analysed, `fault` the frequency of the fault looked for [Hz], `lines` the expected frequencies by name
+    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicator_table`.
+    """
+
+    channel: str
+    signals: dict
+    fault: float | None
+    lines: dict
+    spectra: dict
+    amplitudes: dict
+    indicators: dict
+
+    @property
+    def unit(self):
+        """Of the channel."""
+        return next(iter(self.signals.values())).unit
+
+    def lines_text(self):
+        """Amplitudes as Markdown."""
+        rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
+        for name, frequency in self.lines.items():
+            rows.append([name, f"{frequency:.2f}", *(f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)])
+        return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+
+    def indicators_text(self):
+        """Indicators as Markdown, increments against healthy in brackets."""
+        return table_text(self.indicators)
+
+    def plot(self, path=None):
+        """Spectra below each other; returns the figure."""
+        from ..pictures.vibration_plots import plot_spectra
+
+        return plot_spectra(self.spectra, self.lines, path)
+
+
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
+    """Responses of a scene's machine, healthy and, if asked for, in a case of damage.
+
+    Parameters
+    ----------
+    scene : Scene
+    case : str, optional
+    duration : float
+        Kept, after half as much in which the motion settles [s].
+    method : str
+        Of `gearfe.simulate`.
+    phases : int
+        Of the stiffness curves, per mesh cycle.
+
+    Returns
+    -------
+    dict of str to Response
+        ``"healthy"`` and the case.
+    """
+    if not duration > 0:
+        raise ValueError(f"duration = {duration} s, but it must be positive")
+    found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
+    damage = [] if scene.machine.get("contact") == "impact" else found
+    along = any(isinstance(one, Pit) or not one.through for one in damage)
+    curves = "ritz3d" if along else "auto"  # one method for what is compared
+    if scene.machine.get("contact") == "impact" and method == "fast" and find_spec("numba") is None:
+        warnings.warn(
+            "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
+        )
+    out = {}
+    for name in ("healthy", *([case] if case else [])):
+        made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+        whole = simulate(made, (1 + SETTLE) * duration, method=method)
+        kept = whole.time >= SETTLE * duration
+        out[name] = replace(whole, time=whole.time[kept], states=whole.states[kept])
+    return out
+
+
+def analysis(found, channel=None):
+    """Spectrum lines and indicators of a channel of `responses`.
+
+    Parameters
+    ----------
+    found : dict of str to Response
+    channel : str, optional
+        Default: the force of the first mesh of the driven stage.
+
+    Returns
+    -------
+    Analysis
+    """
+    first = next(iter(found.values()))
+    notes = first.machine.notes
+    mesh, fault = _last(notes, "mesh frequenc"), _last(notes, "fault frequenc")
+    driven = next(one for one in first.machine.meshes if abs(one.frequency - mesh) < 1e-6 * mesh)
+    turning, channel = mesh / driven.teeth[0], channel or f"force {driven.name}"
+    rate = 1 / (first.time[1] - first.time[0])
+    signals = {
+        case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
+    }
+    return analyse(signals, mesh, fault, turning=turning, carrier=_last(notes, "carrier frequency"), channel=channel)
+
+
+def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
+    """Spectrum lines and indicators of signals, computed or measured.
+
+    Parameters
+    ----------
+    signals : dict of str to Signal
+        By case, the first the healthy one.
+    mesh, fault, turning, carrier : float, optional
+        Frequencies [Hz] of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one of both
+        is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
+    channel : str
+
+    Returns
+    -------
+    Analysis
+    """
+    spectra = {case: spectrum(replace(one, values=one.values - one.values.mean())) for case, one in signals.items()}
+    first = next(iter(spectra.values()))
+    lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
+    lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
+    amplitudes = {case: {name: two[1] for name, two in find_lines(one, lines).items()} for case, one in spectra.items()}
+    both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
+    table = indicator_table(signals, *both, healthy=next(iter(signals)))
+    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)
+
+
+def _lines(mesh, fault, turning, carrier, resolution):
+    """Lines of the fault twice with two mesh harmonics, of the gear's turning (alone: as of the fault), of the carrier."""
+    lines = expected_lines(mesh, fault, count=2, harmonics=2)
+    if turning is not None:
+        own = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)
+        lines |= {name.replace("f_fault", "f_r"): value for name, value in own.items()}
+    apart = min((abs(other - carrier) for other in (fault, turning) if other), default=math.inf) if carrier else 0.0
+    if carrier and carrier > LOBES * resolution and apart > LOBES / 2 * resolution:
+        lines |= expected_lines(mesh, None, carrier, count=1)
+    return lines
+
+
+def _last(notes, start):
+    """Last frequency of the note whose name starts so, None without one (the last stage is the driven one)."""
+    for name, value in notes.items():
+        if name.startswith(start):
+            return float(np.atleast_1d(value)[-1])
+    return None

@@ -1,0 +1,246 @@
+"""`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from numbers import Integral, Real
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
+
+STARTS = ("30deg", "root", "middle")
+
+
+@dataclass(frozen=True, slots=True)
+class Crack:
+    """A crack through the root of one tooth, described in the transverse section.
+
+    It starts on the fillet and runs at `angle` to the tooth centre-line down towards it. Its size is `length` [mm], or
+    `level`: at 0.5 the straight crack reaches the centre-line, so a straight crack of level p is p / 0.5 times as long as
+    that. With ``turning=True`` it turns there towards the mirror image of its starting point: level 0.5 is the centre-line,
+    level 1 the opposite fillet, where the tooth is off.
+
+    Parameters
+    ----------
+    level, length : float
+        One of them. ``0 < level < 1``.
+    angle : float
+        To the tooth centre-line [rad], default 45 degrees.
+    start : {"30deg", "root", "middle"}
+        Where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3), where the fillet meets the root
+        circle, or the middle of the fillet's arc.
+    turning : bool
+    tooth : int
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (see `GearPair.contacts`).
+    side : {"loaded", "unloaded"}
+        Flank side on which it starts.
+    width : (float, float), optional
+        It is open between these heights z [mm], counted as those of a `Pit`; default the whole width, of both halves of a
+        herringbone gear.
+    ends : (float, float)
+        The part of its length over which it is open at the two ends of `width`, linear in between: ``(1, 0)`` runs out.
+
+    Raises
+    ------
+    ValueError
+        If the description is contradictory; a crack that leaves the body is refused when it meets its gear.
+
+    >>> Crack(level=0.6, width=(0.0, 12.5), ends=(1.0, 0.0)).width
+    (0.0, 12.5)
+    """
+
+    level: float | None = None
+    length: float | None = None
+    angle: float = math.pi / 4
+    start: str = "30deg"
+    turning: bool = False
+    tooth: int = 0
+    side: str = "loaded"
+    width: tuple[float, float] | None = None
+    ends: tuple[float, float] = (1.0, 1.0)
+
+    def __post_init__(self):
+        """Refuse contradictory descriptions."""
+        for name in ("level", "length", "angle"):
+            value = getattr(self, name)
+            if value is not None and (isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)):
+                raise ValueError(f"{name} = {value!r}, but a crack needs a finite number here")
+        if isinstance(self.tooth, bool) or not isinstance(self.tooth, Integral):
+            raise ValueError(f"tooth = {self.tooth!r}, but it is a whole number")
+        object.__setattr__(self, "tooth", int(self.tooth))
+        if (self.level is None) == (self.length is None):
+            raise ValueError(f"level = {self.level}, length = {self.length}: give one of them")
+        if self.level is not None and not 0 < self.level < 1:
+            raise ValueError(
+                f"level = {self.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
+            )
+        if self.length is not None and not (math.isfinite(self.length) and self.length > 0):
+            raise ValueError(f"length = {self.length} mm, but a crack has a positive length")
+        if self.angle is None or not math.radians(5) <= self.angle <= math.radians(90):
+            raise ValueError(f"angle = {self.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
+        if self.start not in STARTS:
+            raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
+        if self.side not in ("loaded", "unloaded"):
+            raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
+        if self.turning and self.length is not None:
+            raise ValueError("a turning crack is given by its level, not its length")
+        if self.width is not None:
+            object.__setattr__(self, "width", _two("width", self.width))
+            if not 0 <= self.width[0] < self.width[1]:
+                raise ValueError(f"width = {self.width} mm, but a crack is open from a height z >= 0 to a greater one")
+        object.__setattr__(self, "ends", _two("ends", self.ends))
+        if not (min(self.ends) >= 0 and 0 < max(self.ends) <= 1):
+            raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not both 0")
+
+    @property
+    def through(self):
+        """Whether the crack is open over its whole length and over the whole width."""
+        return self.width is None and self.ends == (1.0, 1.0)
+
+
+def _two(name, values):
+    try:
+        values = tuple(values)
+    except TypeError:
+        values = (values,)
+    if len(values) != 2 or any(isinstance(v, bool) or not isinstance(v, Real) or not math.isfinite(v) for v in values):
+        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end")
+    return float(values[0]), float(values[1])
+
+
+def open_part(crack, b, z):
+    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
+    low, high = crack.width or (0.0, b)
+    part = crack.ends[0] + (crack.ends[1] - crack.ends[0]) * (np.asarray(z, dtype=float) - low) / (high - low)
+    return np.where((z >= low) & (z <= high), part, 0.0)
+
+
+def crack_in_band(crack, b, first, last):
+    """The crack of a gear of width `b` as a band of it sees it, heights counted from the band's end at z = `first` to `last`.
+
+    Parameters
+    ----------
+    crack : Crack
+    b, first, last : float
+        [mm]; `first` may be the higher one.
+
+    Returns
+    -------
+    Crack or None
+        None if it is not open anywhere in the band.
+    """
+    if crack.through:
+        return crack
+    low, high = crack.width or (0.0, b)
+    low, high = max(low, min(first, last)), min(high, max(first, last))
+    ends = tuple(open_part(crack, b, np.array([low, high])).tolist())
+    if not (low < high and max(ends) > 0):
+        return None
+    width, band = (low - first, high - first), abs(last - first)
+    if last < first:
+        width, ends = (first - high, first - low), ends[::-1]
+    whole = width[0] <= 1e-9 * band and width[1] >= (1 - 1e-9) * band
+    return replace(crack, width=None if whole else width, ends=ends)
+
+
+@lru_cache(maxsize=256)
+def start_arc(gear, crack):
+    """Where the crack starts, as arc of `geometry.tooth.profile.root_curve` [mm]."""
+    if crack.start == "root":
+        return 0.0
+    if crack.start == "middle":
+        return fillet_length(gear) / 2
+    phi = np.linspace(math.pi / 2, form_point(gear)[0], 200)
+    wanted = float(fillet(gear, tangent_point(gear))[0])
+    radii = fillet(gear, phi)[0]
+    if not min(radii) < wanted < max(radii):
+        return fillet_length(gear) / 2
+    return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear))
+
+
+def crack_path(gear, crack):
+    """Corners ``(2, 2 or 3)`` [mm] of the crack in the frame of its tooth (centre-line +y), from the fillet to its tip.
+
+    Raises
+    ------
+    ValueError
+        If the crack leaves the body: reaches the held edge, the opposite fillet or the next tooth's sector.
+    """
+    first = cartesian(*root_curve(gear, start_arc(gear, crack)))
+    heading = np.array([-math.sin(crack.angle), -gear.outward * math.cos(crack.angle)])
+    half = first[0] / math.sin(crack.angle)
+    length = crack.length if crack.length is not None else 2 * half * min(crack.level, 0.5 if crack.turning else 1.0)
+    corners = [first, first + heading * length]
+    if crack.turning and crack.level > 0.5:
+        goal = first * [-1, 1]
+        corners.append(corners[1] + (goal - corners[1]) * (2 * crack.level - 1))
+    path = np.array(corners).T
+    _check_inside(gear, crack, path)
+    return path if crack.side == "loaded" else path * [[-1], [1]]
+
+
+def mirrored(gear, crack):
+    """Mirror image [mm] of the crack's starting point, in the frame of its tooth: where a turning crack breaks through."""
+    sign = -1 if crack.side == "loaded" else 1
+    return cartesian(*root_curve(gear, start_arc(gear, crack))) * [sign, 1]
+
+
+def check_apart(gear, cracks):
+    """Raise ValueError if a crack is open beyond the face, or if two cracks of one tooth meet, or nearly do."""
+    for crack in cracks:
+        if crack.width is not None and crack.width[1] > gear.b * (1 + 1e-9):
+            raise ValueError(
+                f"crack open from z = {crack.width[0]:g} to {crack.width[1]:g} mm, but the face ends at {gear.b:g} mm"
+            )
+    paths = [(crack.tooth % gear.z, crack.side, crack.width or (0.0, gear.b), crack_path(gear, crack)) for crack in cracks]
+    for i, (tooth, side, width, path) in enumerate(paths):
+        for other_tooth, other_side, other_width, other in paths[:i]:
+            if tooth != other_tooth or width[1] <= other_width[0] or other_width[1] <= width[0]:
+                continue
+            if side == other_side:
+                raise ValueError(f"two cracks on the {side} side of tooth {tooth}; one is enough")
+            near = np.abs(_sampled(path)[:, :, None] - _sampled(other)[:, None, :])
+            if np.hypot(*near).min() < 0.1 * gear.m_n:
+                raise ValueError(f"two cracks of tooth {tooth} meet: the tooth is off; make one of them shorter")
+
+
+def check_single(gear, cracks):
+    """Raise ValueError if a body has two cracks on one side of a tooth, even beside each other along the width."""
+    if len({(crack.tooth % gear.z, crack.side) for crack in cracks}) < len(cracks):
+        raise ValueError(f"two cracks on one side of a tooth of a body of b = {gear.b:g} mm; only one can be meshed")
+
+
+def check_through(cracks, what):
+    """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
+    for crack in cracks:
+        if not crack.through:
+            raise ValueError(
+                f"crack open from z = {crack.width or 'end to end'} mm over parts {crack.ends} of its length, but {what} has "
+                "only cracks through the whole width: use method = 'fe3d' of mesh_stiffness"
+            )
+
+
+def _sampled(path, count=200):
+    place = np.linspace(0, path.shape[1] - 1, count)
+    return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
+
+
+def _check_inside(gear, crack, path):
+    tip = path[:, -1]
+    radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
+    size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
+    margin = 0.02 * gear.m_n
+    if gear.outward * (radius - gear.held) < margin:
+        raise ValueError(
+            f"crack of {size}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
+        )
+    if abs(angle) > math.pi / gear.z:
+        raise ValueError(f"crack of {size}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")
+    arcs = np.linspace(-gear.r_f * math.pi / gear.z / 4, fillet_length(gear), 400)
+    fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
+    if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
+        raise ValueError(
+            f"crack of {size}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+        )

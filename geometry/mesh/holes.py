@@ -1,0 +1,311 @@
+"""A sector of a gear in tets with pits cut out of one tooth as holes, and a crack as a seam of zero width.
+
+The sector is drawn and cut in the frame that turns with the helix, where a tooth is a prism and its traces are straight; the
+finished nodes are then turned by ``w z``, which keeps volumes. A pit is what `gearfe.Pit` says: an elliptic cylinder
+pushed along the flank's normal at its centre, with a bottom `depth` below the flank there. The volume that was really cut is
+compared with an integral that knows nothing of the boundary representation, so no cut can fail in silence.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..damage.crack import Crack, crack_path, start_arc
+from ..damage.pit import centre_arc, check_pits
+from ..damage.pit_volume import pit_frame, removed_volume
+from ..tooth.gear import Gear
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from .mesher import tetrahedra
+from .solid import twist_rate
+
+# edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
+# of the smallest half axis
+SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
+CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
+FINER = (1.0, 1.07, 1.15, 1.3)  # attempts: flat tets may be turned inside out by the helix
+MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
+
+
+@dataclass(frozen=True, slots=True)
+class Holed:
+    """A sector of a gear, tooth 0 in its middle.
+
+    Attributes
+    ----------
+    points : ndarray, shape (3, n)
+        Vertices [mm].
+    cells : ndarray, shape (4, m)
+        Straight-sided tets, also those inside of the pits.
+    plug : ndarray, shape (m,)
+        The pit a tet is in, -1 outside of all: the gear with holes is ``cells[:, plug < 0]``.
+    faces : dict of str to ndarray, shape (3, k)
+        Triangles by name: ``held`` (bore or outside of a ring), ``sides`` (where the sector was cut off), ``end 0``, ``end b``,
+        ``flank -1``, ``flank 0``, ... (loaded, without the pits), ``fillets 0`` (both of tooth 0), ``pits`` (walls and bottoms),
+        ``crack body``, ``crack tooth`` (facing each other).
+    removed : (float, float, float)
+        Volume of the pits [mm**3]: by the integral, cut, in the mesh.
+    """
+
+    gear: Gear
+    points: np.ndarray
+    cells: np.ndarray
+    plug: np.ndarray
+    faces: dict
+    removed: tuple
+
+
+def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
+    """Mesh a sector of `gear` with holes.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its beta with its sign: at height z the section is turned clockwise by ``tan(beta) / r z``.
+    pits : sequence of Pit
+        All on one tooth, which becomes tooth 0 of the sector. They may overlap and cross the tip edge and the end faces.
+    crack : Crack, optional
+        Of the same tooth, through the whole width.
+    teeth : int
+        Odd number of teeth in the sector.
+    refine : float
+        Divides all edge lengths.
+    sizes : dict, optional
+        Edge lengths instead of those of `SIZES`.
+
+    Returns
+    -------
+    Holed
+
+    Raises
+    ------
+    ValueError
+        If a pit or the crack cannot be, or a pit reaches below the form circle.
+    RuntimeError
+        If what was cut is not what the pits take.
+    """
+    if teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2:
+        raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
+    if not (math.isfinite(refine) and refine > 0):
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0")
+    if crack is not None and not isinstance(crack, Crack):
+        raise ValueError(f"crack = {crack!r}, but give a Crack or None")
+    pits = tuple(dict.fromkeys(pits))
+    check_pits(gear, pits)
+    _check_place(gear, pits, crack)
+    size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
+    for finer in FINER:
+        made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()})
+        if _sizes_of(made.points, made.cells).min() > 0:
+            return made
+    raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
+
+
+def _attempt(gear, pits, crack, teeth, size):
+    rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
+    points, curves, faces = _section(gear, crack, teeth)
+    made = tetrahedra(
+        points, curves, faces, gear.b, [_tool(gear, pit) for pit in pits], fine=_fine(gear, crack, size), rim=rim, far=size["far"]
+    )
+    meshed = float(_sizes_of(made.points, made.tets)[made.plug >= 0].sum())
+    cut = float(sum(v for (_, plug), v in made.volume.items() if plug >= 0))
+    volumes = float(removed_volume(gear, pits)), cut, meshed
+    _check_volume(gear, pits, volumes, made)
+    nodes, cells, seam = _opened(gear, crack, made)
+    flat = np.hstack([made.points, made.points[:, nodes]])
+    named = _named(gear, flat, cells, made.plug, teeth) | seam
+    return Holed(gear, _twisted(flat, twist_rate(gear)), cells, made.plug, named, volumes)
+
+
+def _check_place(gear, pits, crack):
+    places = {one.tooth % gear.z for one in (*pits, *([] if crack is None else [crack]))}
+    if len(places) > 1:
+        raise ValueError(f"damage on teeth {sorted(places)}, but holes are cut into one tooth at a time: give those of one")
+    for pit in pits:
+        least = centre_arc(gear, pit) - pit.reach[0]
+        if least < arc_at(gear, gear.roll_f):
+            raise ValueError(
+                f"pit at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the form circle "
+                f"({gear.r_form:.6g} mm): holes are cut into the involute only; move it towards the tip or make it smaller"
+            )
+
+
+# ---- the drawing
+
+
+def _section(gear, crack, teeth):
+    """Points ``(2, n)``, curves and faces of the sector: one face, or body and cracked tooth."""
+    points, curves = [], []
+
+    def at(xy):
+        points.append(np.asarray(xy, dtype=float).reshape(2))
+        return len(points) - 1
+
+    def join(kind, *ends):
+        curves.append((kind, list(ends)))
+        return len(curves) - 1
+
+    pitch, reach = 2 * math.pi / gear.z, teeth // 2
+    edge = (reach + 0.5) * pitch
+    first = last = at(cartesian(gear.r_f, -edge))
+    rim, above, marks = [], [], {}  # where the crack's parting line meets the outline
+    for tooth in range(-reach, reach + 1):
+        for side in ("unloaded", "loaded"):
+            mark = None if crack is None or tooth else start_arc(gear, crack)
+            for kind, radius, angle, cut in _half(gear, side, mark):
+                own = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in zip(radius[1:], angle[1:], strict=True))]
+                if cut and side == "unloaded":
+                    marks["unloaded"], before = own[0], len(rim)
+                (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *own))
+                last = own[-1]
+                if cut and side == "loaded":
+                    marks["loaded"] = last
+    inner = [at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
+    rim += [join("line", last, inner[0]), join("arc", *inner[:2]), join("arc", *inner[1:]), join("line", inner[2], first)]
+    if crack is None:
+        return np.array(points).T, curves, [rim]
+    path = crack_path(gear, crack)
+    corners = [marks[crack.side], *(at(xy) for xy in path.T[1:])]
+    corners.append(marks["loaded" if crack.side == "unloaded" else "unloaded"])
+    parting = [join("line", a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)]
+    clockwise = parting if crack.side == "unloaded" else parting[::-1]
+    return np.array(points).T, curves, [rim[:before] + clockwise + rim[before:], above + clockwise[::-1]]
+
+
+def _half(gear, side, mark):
+    """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
+    sign = 1 if side == "loaded" else -1
+    rolls = roll_at_arc(gear, np.linspace(arc_at(gear, gear.roll_a), arc_at(gear, gear.roll_f), 17))
+    rolls[[0, -1]] = gear.roll_a, gear.roll_f
+    arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
+    fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]
+    tip, half = gear.half_thickness(gear.r_a), math.pi / gear.z
+    out = [("arc", [gear.r_a] * 2, np.array([0.0, tip]), False), ("spline", *flank(gear, rolls), False)]
+    out += [("spline", radius, angle, mark is not None and k == 0) for k, (radius, angle) in enumerate(fillets)]
+    if half - root_half_angle(gear) > 1e-6:
+        out.append(("arc", [gear.r_f] * 2, np.array([root_half_angle(gear), half]), False))
+    for k, (kind, radius, angle, cut) in enumerate(out):
+        out[k] = kind, np.asarray(radius)[::sign], sign * np.asarray(angle)[::sign], cut
+    return out[::sign]
+
+
+def _fine(gear, crack, size):
+    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip."""
+    middle = (gear.r_a + gear.r_f) / 2
+    out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]
+    for arc in np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 8):
+        x, y = cartesian(*flank(gear, roll_at_arc(gear, arc)))
+        out.append((float(x), float(y), 0.15 * gear.m_n, size["flank"]))
+    for sign in (1, -1):
+        x, y = cartesian(*root_curve(gear, 0.6 * fillet_length(gear)))
+        out.append((sign * float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))
+    if crack is not None:
+        path = crack_path(gear, crack)
+        out.append((*path[:, -1].tolist(), 0.0, size["tip"]))
+        out.append((*path[:, 0].tolist(), 0.0, 2 * size["tip"]))
+    return out
+
+
+def _tool(gear, pit):
+    """Disk above the flank and the push that makes it the pit's cylinder."""
+    centre, axes, push, _ = pit_frame(gear, pit)
+    roll = math.sqrt(pit.radius**2 - gear.r_b**2)
+    above = (0.2 + (max(pit.axes) ** 2 / roll if gear.internal else 0.0) / pit.depth) * push
+    return centre - above, axes, push + above
+
+
+def _sizes_of(points, cells):
+    """Volumes ``(m,)`` of tets [mm**3]."""
+    a, b, c, d = points[:, cells].transpose(1, 0, 2)
+    return np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a) / 6
+
+
+def _check_volume(gear, pits, volumes, made):
+    """RuntimeError if the body is not what was drawn, or the pits are not what was cut and meshed."""
+    want, cut, meshed = volumes
+    missing = [k for k in range(len(pits)) if not (made.plug == k).any()]
+    if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # nan fails too
+        raise RuntimeError(
+            f"the pits should take {want:.6g} mm**3 from the tooth of z = {gear.z}, but {cut:.6g} mm**3 were cut and "
+            f"{meshed:.6g} mm**3 meshed"
+            + (f"; nothing of pit {missing[0]}" if missing else "")
+            + ": a boolean operation failed or "
+            "the mesh is too coarse; change refine, or move the pits by a little"
+        )
+
+
+# ---- the mesh
+
+
+def _twisted(points, rate):
+    x, y, z = points
+    cos, sin = np.cos(rate * z), np.sin(rate * z)
+    return np.array([cos * x + sin * y, cos * y - sin * x, z])
+
+
+def _opened(gear, crack, made):
+    """Nodes to be doubled, cells with the new ones on the tooth's side, faces of the crack."""
+    if crack is None:
+        return np.zeros(0, dtype=int), made.tets, {}
+    body, tooth = (_triangles(made.tets[:, made.face == k]) for k in (0, 1))
+    walls = np.array(sorted(set(map(tuple, body.T.tolist())) & set(map(tuple, tooth.T.tolist())))).T
+    path = crack_path(gear, crack)
+    away = _distance(made.points[:2], path)
+    on = (away[walls] < 1e-6 * gear.m_n).all(axis=0)
+    if not on.any():
+        raise RuntimeError("the mesh lost the crack: change refine")
+    free = np.setdiff1d(walls[:, on], walls[:, ~on])
+    free = free[np.hypot(*(made.points[:2, free] - path[:, -1:])) > 1e-6 * gear.m_n]
+    double = np.arange(made.points.shape[1])
+    double[free] = made.points.shape[1] + np.arange(free.size)
+    cells = made.tets.copy()
+    cells[:, made.face == 1] = double[cells[:, made.face == 1]]
+    return free, cells, {"crack body": walls[:, on], "crack tooth": double[walls[:, on]]}
+
+
+def _distance(points, path):
+    """Distance ``(n,)`` of points from a polyline."""
+    out = np.full(points.shape[1], np.inf)
+    for a, b in zip(path.T[:-1], path.T[1:], strict=True):
+        t = np.clip((b - a) @ (points - a[:, None]) / ((b - a) @ (b - a)), 0, 1)
+        out = np.minimum(out, np.hypot(*(points - a[:, None] - np.outer(b - a, t))))
+    return out
+
+
+def _triangles(cells):
+    """All faces of tets, their nodes ascending ``(3, 4 m)``."""
+    return np.sort(np.hstack([cells[[1, 2, 3]], cells[[0, 2, 3]], cells[[0, 1, 3]], cells[[0, 1, 2]]]), axis=0)
+
+
+def skin(cells):
+    """Triangles ``(3, k)`` that belong to one tet only."""
+    found, count = np.unique(_triangles(cells), axis=1, return_counts=True)
+    return found[:, count == 1]
+
+
+def _named(gear, points, cells, plug, teeth):
+    """Outer triangles of the gear with holes by name, from the points before they are turned."""
+    outer, whole = skin(cells[:, plug < 0]), skin(cells)
+    key = {tuple(face) for face in whole.T.tolist()}
+    kept = np.array([tuple(face) in key for face in outer.T.tolist()])
+    x, y, z = points
+    radius, angle = np.hypot(x, y), np.arctan2(x, y)
+    near = 1e-4 * gear.m_n
+    roll = np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0))
+    edge = teeth * math.pi / gear.z
+    on = {
+        "end 0": np.abs(z) < near,
+        "end b": np.abs(z - gear.b) < near,
+        "held": np.abs(radius - gear.held) < near,
+        "sides": np.abs(np.abs(angle) - edge) * radius < near,
+    }
+    curve = root_curve(gear, np.linspace(0.0, fillet_length(gear), 400))
+    order = np.argsort(curve[0])
+    off = np.abs(angle) - np.interp(radius, curve[0][order], curve[1][order])
+    on["fillets 0"] = (np.abs(off) * radius < 10 * near) & (gear.outward * (gear.r_form - radius) > -near)
+    low, high = sorted((gear.roll_f, gear.roll_a))
+    for tooth in range(-(teeth // 2), teeth // 2 + 1):
+        off = angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1]
+        on[f"flank {tooth}"] = (np.abs(off) * radius < near) & (roll > low - near) & (roll < high + near)
+    own = outer[:, kept]
+    return {name: own[:, mask[own].all(axis=0)] for name, mask in on.items()} | {"pits": outer[:, ~kept]}

@@ -1,0 +1,160 @@
+"""Outline of a whole gear for meshing: vertices and edge middles, exactly on the profile, as fine as asked for."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..tooth.profile import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+
+NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
+GROWTH = 0.25  # of the edge length per length, away from fine places
+
+
+@dataclass(frozen=True, slots=True)
+class Half:
+    """Half a tooth from tip middle to root middle: vertices at even places, edge middles at odd; the last is left out.
+
+    `flank`, `fillet` are the vertex numbers of flank (tip to form point) and fillet (form point to root), `mark` that of a
+    crack's start.
+    """
+
+    radius: np.ndarray
+    angle: np.ndarray
+    flank: np.ndarray | None = None
+    fillet: np.ndarray | None = None
+    mark: int | None = None
+
+
+def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
+    """Roll lengths [mm] of flank vertices, from the form point to the tip.
+
+    The arc between them is about `spacing` [mm], graded down to `tip` and `low` towards the two ends, where the
+    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle].
+    The number of intervals is a multiple of `span`.
+    """
+    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
+    return roll_at_arc(gear, spaced(start, stop, spacing, fine, span))
+
+
+def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
+    """Places from `start` to `stop`, about `spacing` apart, closer near each ``(first, last, size)`` of `fine`."""
+    smallest = min([size for _, _, size in fine], default=spacing)
+    place = np.linspace(start, stop, 2 + int(4 * (stop - start) / min(smallest, spacing)))
+    step = np.full(place.size, float(spacing))
+    for first, last, size in fine:
+        away = np.maximum(np.maximum(first - place, place - last), 0.0)
+        step = np.minimum(step, size + growth * away)
+    count = np.concatenate([[0.0], np.cumsum(np.diff(place) * (1 / step[1:] + 1 / step[:-1]) / 2)])
+    intervals = span * max(1, math.ceil(count[-1] / span - 1e-6))
+    placed = np.interp(np.linspace(0, count[-1], intervals + 1), count, place)
+    placed[0], placed[-1] = start, stop
+    return placed
+
+
+def _doubled(values):
+    """Insert the middles: parameters of vertices and, at odd places, of edge middles."""
+    values = np.asarray(values, dtype=float)
+    out = np.empty(2 * values.size - 1)
+    out[::2] = values
+    out[1::2] = (values[1:] + values[:-1]) / 2
+    return out
+
+
+def half(gear, roll, fillet_size, size, *, mark=None):
+    """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm]."""
+    width = gear.half_thickness(gear.r_a) * gear.r_a
+    corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
+    tip = _doubled(spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
+    below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
+    if mark is None:
+        parts = [np.linspace(top, below, max(2, round((top - below) / fillet_size)) + 1)]
+    else:
+        fine = [(mark[0], mark[0], mark[1])]
+        parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in ((mark[0], top), (below, mark[0]))]
+    root = _doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
+    pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, _doubled(roll[::-1])), root_curve(gear, root)]
+    radius, angle = (np.concatenate([p[k][:-1] for p in pieces]) for k in (0, 1))
+    ends = np.cumsum([p[0].size - 1 for p in pieces]) // 2
+    marked = None if mark is None else int(ends[1] + parts[0].size - 1)
+    return Half(radius, angle, ends[0] + np.arange(roll.size), ends[1] + np.arange(root.size // 2 + 1), marked)
+
+
+def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None):
+    """All teeth clockwise, starting at the middle of tooth 0's tip.
+
+    Parameters
+    ----------
+    gear : Gear
+    rolls : dict of int to ndarray
+        Roll lengths of the loaded-flank vertices of some teeth (0 <= tooth < z).
+    fillet_size, size, far_size : float
+        Edge lengths [mm].
+    teeth : int, optional
+        Real teeth around each of `rolls`; the others become root circle.
+    marks : dict of (int, str) to (float, float)
+        Crack starts: tooth and side to arc and edge length [mm].
+
+    Returns
+    -------
+    points : ndarray, shape (2, 2 n)
+        Vertices at even places, edge middles at odd [mm].
+    flanks, fillets : dict of int to ndarray
+        Vertex numbers, flanks from root to tip, fillets from flank to root.
+    starts : dict of (int, str) to int
+        Vertex numbers of the marks.
+    """
+    marks = marks or {}
+    plain, coarse, far = (
+        half(gear, stations(gear, s), f, s) for s, f in ((size, fillet_size), (size, size), (far_size, far_size))
+    )
+    arc = math.pi / gear.z * _doubled(np.linspace(0, 1, max(1, round(math.pi / gear.z * gear.r_f / far_size)) + 1))[:-1]
+    gone = Half(np.full(arc.size, gear.r_f), arc)
+
+    def choose(tooth, side):
+        distance = min(abs((tooth - k + gear.z // 2) % gear.z - gear.z // 2) for k in rolls)
+        if teeth is not None and distance > teeth // 2:
+            return gone
+        if (tooth, side) in marks or distance == 0:
+            roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)
+            return (
+                half(gear, roll, fillet_size, size, mark=marks[tooth, side])
+                if (tooth, side) in marks
+                else (half(gear, roll, fillet_size, size) if side == "loaded" else plain)
+            )
+        return coarse if distance <= NEAR else far
+
+    radii, angles, flanks, fillets, starts, count = [], [], {}, {}, {}, 0
+    for tooth in range(gear.z):
+        right, left = choose(tooth, "loaded"), choose((tooth + 1) % gear.z, "unloaded")
+        turn = 2 * math.pi * tooth / gear.z
+        radii += [right.radius, [gear.r_f], left.radius[:0:-1]]
+        angles += [turn + right.angle, [turn + math.pi / gear.z], turn + 2 * math.pi / gear.z - left.angle[:0:-1]]
+        if tooth in rolls:
+            flanks[tooth], fillets[tooth] = (count + right.flank)[::-1], count + right.fillet
+        if right.mark is not None:
+            starts[tooth, "loaded"] = count + right.mark
+        count += (right.radius.size + left.radius.size) // 2
+        if left.mark is not None:  # counted back from the next tooth's tip middle
+            starts[(tooth + 1) % gear.z, "unloaded"] = count - left.mark
+    radius, angle = np.concatenate(radii), np.concatenate(angles)
+    return np.array([radius * np.sin(angle), radius * np.cos(angle)]), flanks, fillets, starts
+
+
+def held_circle(gear):
+    """The held circle, bore or outside of a ring: vertices at even places, edge middles at odd."""
+    size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
+    count = max(12, math.ceil(2 * math.pi * gear.held / size))
+    angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)
+    return gear.held * np.array([np.sin(angle), np.cos(angle)])
+
+
+def along(corners, first, last, largest):
+    """Points ``(2, n)`` on a polyline of `corners`, edge lengths from `first` at its start to `last` at its end [mm]."""
+    legs = np.hypot(*np.diff(corners, axis=1))
+    ends = np.concatenate([[0.0], np.cumsum(legs)])
+    fine = [(0.0, 0.0, first), (ends[-1], ends[-1], last)]
+    places = [spaced(a, b, largest, fine)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    place = np.concatenate([[0.0], *places])
+    return np.array([np.interp(place, ends, row) for row in corners])

@@ -1,0 +1,310 @@
+"""The transverse section of a whole gear in curved eight-node quads, every boundary node exactly on the profile.
+
+A tooth with cracks is a surface of its own: a line runs from the mouth along the crack to its tip and on to the mirror image
+of the mouth (or to the tip of the crack on the other side). The crack is the part of that line that is opened later.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..damage.crack import check_apart, check_single, crack_path, mirrored, start_arc
+from ..tooth.gear import Gear
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from .mesher import quadrangulate
+from .outline import spaced
+
+# edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
+# largest crack edge, crack tip
+SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
+ATTEMPTS = (
+    (1.0, 8),
+    (1.0, 5),
+    (1.07, 8),
+    (1.07, 5),
+    (1.15, 8),
+    (1.24, 5),
+    (1.4, 8),
+    (1.6, 8),
+)  # finer, algorithm: gmsh may leave triangles
+GROWTH = 0.4  # of the edge length per length, away from fine places
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """The line that parts a cracked tooth from the body: `edges` (3, n) start, middle, end from a mouth on.
+
+    `crack` (n,) is the number of the crack each edge belongs to, -1 on the part that stays closed; `depth` (n,) the distance of
+    the edge's middle from that crack's mouth along the crack [mm].
+    """
+
+    edges: np.ndarray
+    crack: np.ndarray
+    depth: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class QuadSection:
+    """A section in eight-node quads.
+
+    Attributes
+    ----------
+    points : ndarray, shape (2, n)
+        Nodes [mm]: `corners` vertices first, then the middles of edges.
+    quads : ndarray, shape (8, m)
+        Corners counter-clockwise, then the middles of the edges 01, 12, 23, 30.
+    corners : int
+    part : ndarray, shape (m,)
+        0 the body, k + 1 the tooth above `cuts[k]`.
+    held : ndarray, shape (3, n)
+        Edges on the held circle: start, middle, end.
+    flank : dict of int to ndarray, shape (3, n)
+        Edges of loaded flanks from root to tip.
+    roll : dict of int to ndarray, shape (n + 1,)
+        Roll lengths of their ends [mm]; middles are half-way in roll.
+    cuts : tuple of Cut
+    """
+
+    gear: Gear
+    points: np.ndarray
+    quads: np.ndarray
+    corners: int
+    part: np.ndarray
+    held: np.ndarray
+    flank: dict
+    roll: dict
+    cuts: tuple
+
+
+def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None):
+    """Mesh the section of `gear`, all teeth and the true rim.
+
+    Parameters
+    ----------
+    gear : Gear
+    loaded : sequence of int
+        Teeth whose loaded flanks carry or read loads.
+    cracks : sequence of Crack
+    patches : sequence of (float, float, float)
+        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm].
+    refine : float
+        Divides all edge lengths.
+    sizes : dict, optional
+        Edge lengths in modules instead of those of `SIZES`.
+
+    Returns
+    -------
+    QuadSection
+
+    Raises
+    ------
+    ValueError
+        If a tooth is named twice or an edge length is not positive.
+    RuntimeError
+        If the quads fold.
+    """
+    size = {name: length * gear.m_n for name, length in (SIZES | (sizes or {})).items()}
+    if not all(math.isfinite(value) and value > 0 for value in (refine, *size.values())):
+        raise ValueError(f"refine = {refine}, sizes = {sizes}: edge lengths must be positive")
+    if not loaded or len({tooth % gear.z for tooth in loaded}) != len(loaded):
+        raise ValueError(f"teeth {sorted(loaded)} are not distinct teeth of a gear of z = {gear.z}: name at least one, each once")
+    check_apart(gear, cracks)
+    check_single(gear, cracks)
+    teeth = [tooth % gear.z for tooth in loaded]
+    for finer, algorithm in ATTEMPTS:
+        edges = {name: value / refine / finer for name, value in size.items()}
+        try:
+            return _attempt(gear, teeth, cracks, patches, edges, algorithm)
+        except RuntimeError as error:
+            failed = error
+    raise failed
+
+
+def _attempt(gear, teeth, cracks, patches, size, algorithm):
+    draft, damaged = _Draft(), {}
+    for number, crack in enumerate(cracks):
+        damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
+    mouths = {tooth: _mouths(gear, size, found) for tooth, found in damaged.items()}
+    rim, flanks, marks = _rim(gear, draft, size, teeth, mouths, patches)
+    count = max(8, math.ceil(math.pi * gear.held / min(abs(gear.r_f - gear.held), 3 * size["far"])))
+    turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
+    bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
+    body, tops, cuts = list(rim), [], []
+    for tooth, found in sorted(damaged.items()):
+        line, cut = _cut(gear, draft, size, tooth, found, mouths[tooth], marks)
+        ends = {draft.lines[i - 1][0]: k for k, i in enumerate(rim)}
+        first, last = ends[marks[tooth, "unloaded"]], ends[marks[tooth, "loaded"]]
+        above = [rim[i % len(rim)] for i in range(first, last if last > first else last + len(rim))]
+        tops.append([above + line])
+        body = [i for i in body if i not in set(above)]
+        before = rim[first - 1] if rim[first - 1] in body else body[-1]
+        at = body.index(before) + 1
+        body[at:at] = [-i for i in line[::-1]]
+        cuts.append(cut)
+    loops = [bore, body] if gear.internal else [body, bore]
+    made = quadrangulate(np.array(draft.points).T, np.array(draft.lines), [loops, *tops], algorithm)
+    return _finish(gear, draft, made, bore, flanks, cuts)
+
+
+class _Draft:
+    """Nodes and three-node lines of the outline, and the exact middles of their halves."""
+
+    def __init__(self):
+        self.points, self.lines, self.middles = [], [], {}
+
+    def add(self, points, *, closed=False, first=None, last=None):
+        """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
+        numbers, end = [], points.shape[1] - 1
+        for i in range(0, points.shape[1], 2):
+            known = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
+            if known is None:
+                known = len(self.points)
+                self.points.append(points[:, i])
+            numbers.append(known)
+        for i, pair in enumerate(zip(numbers[:-1], numbers[1:], strict=True)):
+            self.middles[tuple(sorted(pair))] = points[:, 2 * i + 1]
+        start = len(self.lines)
+        self.lines += [numbers[i : i + 3] for i in range(0, len(numbers) - 1, 2)]
+        return list(range(start + 1, len(self.lines) + 1))
+
+    def edges(self, lines):
+        """Start and end nodes ``(2, 2 n)`` of the halves of `lines`."""
+        found = np.array(self.lines)[np.array(lines) - 1]
+        return np.stack([found[:, :2], found[:, 1:]], axis=1).reshape(-1, 2).T
+
+
+def _quarters(values):
+    """Every interval cut in four."""
+    return np.interp(np.arange(4 * len(values) - 3) / 4, np.arange(len(values)), values)
+
+
+def _mouths(gear, size, found):
+    """By side of a cracked tooth: arc where the parting line starts and the edge length there [mm]."""
+    own = {crack.side: (start_arc(gear, crack), min(size["fillet"], _lengths(gear, crack)[-1] / 4)) for _, crack in found}
+    (only,) = [*own.values()][:1]
+    return {side: own.get(side, (only[0], size["fillet"])) for side in ("unloaded", "loaded")}
+
+
+def _lengths(gear, crack):
+    """Distances along a crack [mm] of its corners from its mouth."""
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(crack_path(gear, crack), axis=1)))])
+
+
+def _rim(gear, draft, size, teeth, mouths, patches):
+    """The toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, nodes of the cracks' ends."""
+    lines, flanks, marks, last = [], {}, {}, None
+    halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
+    for owner, side in halves:
+        away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
+        own = side == "loaded" and owner in teeth
+        pieces = _half(gear, size, away, own, mouths.get(owner, {}).get(side), patches)
+        sign = 1 if side == "loaded" else -1
+        for name, radius, angle, params in pieces[::sign]:
+            final = (owner, side, name) == (0, "unloaded", "tip")
+            points = cartesian(radius, 2 * math.pi * owner / gear.z + sign * angle)[:, ::sign]
+            found = draft.add(points, first=last, last=draft.lines[0][0] if final else None)
+            last = draft.lines[found[-1] - 1][2]
+            lines += found
+            if name == "flank" and own:
+                flanks[owner] = draft.edges(found)[::-1, ::-1], params[::-2]
+            if name == "fillet":
+                marks[owner, side] = last if sign > 0 else draft.lines[found[0] - 1][0]
+    return lines, flanks, marks
+
+
+def _half(gear, size, away, own, mouth, patches):
+    """Half a tooth from tip middle to root middle: pieces (name, radius, angle, parameter), four places for each line."""
+    edge = size["flank"] if own else size["near"] if away <= 1 else size["far"]
+    corner, width = min(edge, size["corner"]) if own else edge, gear.half_thickness(gear.r_a) * gear.r_a
+    tip = _quarters(spaced(0.0, width, 2 * edge, [(width, width, 2 * corner)], 1, GROWTH)) / gear.r_a
+    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    fine = [(stop, stop, 2 * corner), *([(a, b, 2 * s) for a, b, s in patches] if own else [])]
+    rolls = roll_at_arc(gear, spaced(start, stop, 2 * edge, fine, 1, GROWTH))[::-1]
+    rolls[[0, -1]] = gear.roll_a, gear.roll_f
+    rolls = _quarters(rolls)
+    below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
+    root = size["fillet"] if away == 0 else size["root"]
+    out = [("tip", np.full(tip.size, gear.r_a), tip, tip), ("flank", *flank(gear, rolls), rolls)]
+    mark, fine = (below, []) if mouth is None else (mouth[0], [(mouth[0], mouth[0], 2 * mouth[1])])
+    for name, low, high in (("root" if mouth is None else "fillet", mark, top), ("root", below, mark)):
+        if high - low > 1e-6 * gear.m_n:
+            arcs = _quarters(spaced(low, high, 2 * root, fine, 1, GROWTH)[::-1])
+            out.append((name, *root_curve(gear, arcs), arcs))
+    return out
+
+
+def _cut(gear, draft, size, tooth, found, mouths, marks):
+    """Line numbers of the line parting a cracked tooth from the body, from the loaded side on, and its `Cut`."""
+    by_side = {crack.side: (number, crack) for number, crack in found}
+    legs, ends, spots = {"loaded": [], "unloaded": []}, {}, {}
+    for side, (number, crack) in by_side.items():
+        path, places = crack_path(gear, crack), _lengths(gear, crack)
+        ends[side], spots[side] = path[:, -1], min(size["crack tip"], places[-1] / 8)
+        sizes = [mouths[side][1], *[size["crack"]] * (places.size - 2), spots[side]]
+        legs[side] = [(path[:, k : k + 2], number, places[k : k + 2], sizes[k : k + 2]) for k in range(places.size - 1)]
+    for side in {"loaded", "unloaded"} - set(by_side):
+        ends[side], spots[side] = mirrored(gear, found[0][1]), mouths[side][1]
+    middle = (np.column_stack([ends["loaded"], ends["unloaded"]]), -1, np.zeros(2), [spots["loaded"], spots["unloaded"]])
+    back = [(path[:, ::-1], number, places[::-1], sizes[::-1]) for path, number, places, sizes in legs["unloaded"][::-1]]
+    chain, lines, crack, depth, last = [*legs["loaded"], middle, *back], [], [], [], marks[tooth, "loaded"]
+    cos, sin = math.cos(2 * math.pi * tooth / gear.z), math.sin(2 * math.pi * tooth / gear.z)
+    for k, (path, number, places, sizes) in enumerate(chain):
+        length = math.dist(*path.T)
+        part = _quarters(
+            spaced(0.0, length, 2 * size["crack"], [(0, 0, 2 * sizes[0]), (length, length, 2 * sizes[1])], 1, GROWTH)
+        )
+        x, y = (np.interp(part, [0.0, length], row) for row in path)
+        final = marks[tooth, "unloaded"] if k == len(chain) - 1 else None
+        new = draft.add(np.array([cos * x + sin * y, cos * y - sin * x]), first=last, last=final)
+        last = draft.lines[new[-1] - 1][2]
+        lines += new
+        crack += [number] * (part.size // 2)
+        depth += np.interp(part[1::2], [0.0, length], places).tolist()
+    return lines, Cut(draft.edges(lines), np.array(crack), np.array(depth))
+
+
+def _finish(gear, draft, made, bore, flanks, cuts):
+    """Middles of all edges, exact on the outline, and the check that no quad folds."""
+    points, quads, part = made
+    arms = points[:, quads[2:]] - points[:, quads[:2]]
+    folded = arms[0, 0] * arms[1, 1] - arms[1, 0] * arms[0, 1] < 0
+    quads[:, folded] = quads[::-1, folded]
+    pairs = np.sort(np.array([quads, np.roll(quads, -1, axis=0)]).reshape(2, -1), axis=0)
+    unique, where = np.unique(pairs, axis=1, return_inverse=True)
+    lookup = {pair: i for i, pair in enumerate(map(tuple, unique.T.tolist()))}
+    middles = points[:, unique].mean(axis=1)
+    for pair, place in draft.middles.items():
+        middles[:, lookup[pair]] = place
+    tips = {int(tip) for cut in cuts for tip in cut.edges[1, np.flatnonzero(np.diff(cut.crack))]}
+    for tip in tips:  # displacements there go with the root of the distance
+        at = np.flatnonzero((unique == tip).any(axis=0))
+        middles[:, at] = 0.75 * points[:, [tip]] + 0.25 * points[:, unique[:, at].sum(axis=0) - tip]
+    count = points.shape[1]
+
+    def with_middle(ends):
+        between = [count + lookup[tuple(sorted(pair))] for pair in ends.T.tolist()]
+        return np.array([ends[0], between, ends[1]])
+
+    made = QuadSection(
+        gear, np.hstack([points, middles]), np.vstack([quads, count + where.reshape(4, -1)]), count, part,
+        with_middle(draft.edges(bore)), {k: with_middle(ends) for k, (ends, _) in flanks.items()},
+        {k: roll for k, (_, roll) in flanks.items()},
+        tuple(Cut(with_middle(cut.edges), cut.crack, cut.depth) for cut in cuts),
+    )  # fmt: skip
+    if jacobian(made).min() <= 0:
+        raise RuntimeError(f"z = {gear.z}: a quad of the section folds; change refine or the sizes")
+    return made
+
+
+def jacobian(section):
+    """Area factor ``(points, m)`` of the quads' maps at 3 x 3 Gauss points and near the corners, over the unit square [mm**2]."""
+    at = np.array([-0.95, -math.sqrt(0.6), 0.0, math.sqrt(0.6), 0.95])
+    x, y = (v.ravel() for v in np.meshgrid(at, at))
+    slopes = []
+    for sx, sy in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
+        slopes.append([sx * (1 + sy * y) * (2 * sx * x + sy * y) / 4, sy * (1 + sx * x) * (2 * sy * y + sx * x) / 4])
+    slopes += [[-x * (1 - y), (x * x - 1) / 2], [(1 - y * y) / 2, -y * (1 + x)]]
+    slopes += [[-x * (1 + y), (1 - x * x) / 2], [(y * y - 1) / 2, -y * (1 - x)]]
+    change = np.einsum("kdp,ckm->cdpm", np.array(slopes), section.points[:, section.quads])
+    return 4 * (change[0, 0] * change[1, 1] - change[0, 1] * change[1, 0])

@@ -1,0 +1,187 @@
+"""The transverse section of a whole gear as curved second-order triangles, with its cracks opened.
+
+gmsh only fills the inside. Every vertex of the outline is placed on the exact profile, and so is the middle of every
+boundary edge, by its own parameter (not by projection).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from skfem import MeshTri, MeshTri2
+
+from ..damage.crack import check_apart, check_through, crack_path, mirrored, start_arc
+from ..damage.seam import open_seam
+from ..tooth.gear import Gear
+from .mesher import triangulate
+from .outline import along, held_circle, outline
+
+CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of the crack
+
+
+@dataclass(frozen=True, slots=True)
+class Seam:
+    """The two faces of a crack: node numbers ``(2, n)`` (left, right) of vertices and edge middles from mouth to tip.
+
+    The last column is the tip, twice the same node; the one before is the middle of the tip's edges, at a quarter.
+    """
+
+    faces: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A meshed gear section.
+
+    `mesh` is a `skfem.MeshTri2` [mm] with boundaries ``held`` (bore, or outside of a ring) and ``rim`` (the whole toothed
+    outline). `flank[k]` holds the vertices of the loaded flank of tooth k from root to tip and `roll[k]` their roll lengths
+    [mm]; `fillet[k]` those of the fillet below it, from the flank to the root; `seams` the cracks.
+    """
+
+    gear: Gear
+    mesh: MeshTri2
+    flank: dict
+    roll: dict
+    fillet: dict
+    seams: tuple = ()
+
+
+def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
+    """Mesh the whole section of `gear`, all teeth and the true rim.
+
+    Parameters
+    ----------
+    gear : Gear
+    rolls : dict of int to ndarray
+        Roll lengths [mm] of the loaded-flank vertices of the teeth that are loaded or read, by tooth number (tooth 1 is
+        the neighbour on the loaded side); they run from the form point to the tip.
+    fillet_size : float
+        Edge length on the fillets of those teeth [mm].
+    size : float
+        Edge length on the three next teeth to either side [mm].
+    far_size : float
+        Edge length on all other teeth [mm].
+    teeth : int, optional
+        Keep only this many teeth around each loaded one and replace the others by a plain root circle: cheaper, softer
+        (0.3 % in double contact with 5 teeth). Default: all teeth.
+    cracks : sequence of Crack
+        Their `tooth` is the number used in `rolls`.
+
+    Returns
+    -------
+    Section
+    """
+    if len({tooth % gear.z for tooth in rolls}) != len(rolls):
+        raise ValueError(f"teeth {sorted(rolls)} are not distinct on a gear of z = {gear.z}")
+    rolls = {tooth % gear.z: np.asarray(roll, dtype=float) for tooth, roll in rolls.items()}
+    check_through(cracks, "a mesh of the section")
+    check_apart(gear, cracks)
+    paths, marks, tips = {}, {}, {}
+    for crack in cracks:
+        place = crack.tooth % gear.z, crack.side
+        paths[place] = corners = _turned(crack_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
+        length = np.hypot(*np.diff(corners, axis=1)).sum()
+        marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
+        tips[place] = min(CRACK_EDGE * fillet_size, length / 5)
+        if crack.turning and crack.level > 0.5:  # it runs towards its mirror image: refine there as the ligament shrinks
+            left = math.dist(corners[:, -1], _turned(mirrored(gear, crack), 2 * math.pi * crack.tooth / gear.z))
+            opposite = "unloaded" if crack.side == "loaded" else "loaded"
+            marks.setdefault((crack.tooth % gear.z, opposite), (marks[place][0], min(fillet_size, left / 4)))
+            tips[place] = min(tips[place], left / 8)
+    rim, flanks, fillets, starts = outline(
+        gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks
+    )
+    chains = []
+    for place, corners in paths.items():
+        chains.append((starts[place], along(corners, marks[place][1], tips[place], max(fillet_size, tips[place]))[:, 1:]))
+    mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
+    return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
+
+
+def _turned(points, angle):
+    """Points turned clockwise by `angle`."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([cos * points[0] + sin * points[1], cos * points[1] - sin * points[0]])
+
+
+def fill(rim, held, chains=(), *, ring=False):
+    """Curved second-order mesh between two closed loops, opened along cracks.
+
+    Parameters
+    ----------
+    rim, held : ndarray, shape (2, 2 n)
+        Loops: vertices at even places, edge middles at odd [mm]; nodes are numbered rim, held, cracks, inside. `held` may
+        be empty.
+    chains : sequence of (int, ndarray)
+        Cracks: the rim vertex each starts at, and its further vertices ``(2, n)`` up to the tip.
+    ring : bool
+        Whether `held` is the outer loop.
+
+    Returns
+    -------
+    mesh : skfem.MeshTri2
+        With boundaries ``rim`` and ``held``.
+    faces : list of ndarray, shape (2, 2 n + 1)
+        Nodes of both faces of each crack, see `Seam`.
+    """
+    loops = [loop for loop in (rim, held) if loop.size]
+    points, triangles = triangulate([loop[:, ::2] for loop in loops], chains, ring)
+    first = sum(loop.shape[1] // 2 for loop in loops)
+    lines, doubles = [], {}
+    for start, inner in chains:
+        chain = np.append(start, first + np.arange(inner.shape[1]))
+        first += inner.shape[1]
+        points, triangles, double = open_seam(points, triangles, chain)
+        lines.append((chain, double))
+        doubles[start] = int(double[0])
+    linear = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(triangles))
+    mesh = _curve(linear, loops, doubles)
+    faces = [_faces(mesh, chain, double) for chain, double in lines]
+    if not faces:
+        return mesh, faces
+    nodes = mesh.doflocs.copy()
+    for chain, face in zip((c for c, _ in lines), faces, strict=True):
+        _quarter(mesh, nodes, int(chain[-1]))
+        nodes[:, face[:, -2]] = 0.25 * nodes[:, face[:, -3]] + 0.75 * nodes[:, face[:, -1]]
+    return replace(mesh, doflocs=nodes), faces
+
+
+def _quarter(mesh, nodes, tip):
+    """Move the middles of all edges at `tip` to a quarter: displacements there go with the root of the distance."""
+    edges = np.flatnonzero((mesh.facets == tip).any(axis=0))
+    far = mesh.facets[:, edges].sum(axis=0) - tip
+    nodes[:, mesh.nvertices + edges] = 0.25 * nodes[:, far] + 0.75 * nodes[:, [tip]]
+
+
+def _faces(mesh, chain, double):
+    lookup = {(a, b): i for i, (a, b) in enumerate(mesh.facets.T.tolist())}
+    out = []
+    for side in (chain.tolist(), double.tolist()):
+        middle = [mesh.nvertices + lookup[min(a, b), max(a, b)] for a, b in zip(side[:-1], side[1:], strict=True)]
+        out.append(np.append(np.array([side[:-1], middle]).T.ravel(), side[-1]))
+    return np.array(out)
+
+
+def _curve(linear, loops, doubles):
+    """Second-order mesh with every boundary edge bent onto its curve, boundaries named."""
+    mesh = MeshTri2.from_mesh(linear)
+    nodes = mesh.doflocs.copy()
+    boundary = linear.boundary_facets()
+    facets = {tuple(pair): i for i, pair in zip(boundary, np.sort(linear.facets[:, boundary].T).tolist(), strict=True)}
+    names, first = {}, 0
+    for name, points in zip(("rim", "held"), loops, strict=False):
+        ring = (first + np.arange(points.shape[1] // 2)).tolist()
+        edges = [_boundary_edge(facets, doubles, a, b) for a, b in zip(ring, ring[1:] + ring[:1], strict=True)]
+        nodes[:, linear.nvertices + np.array(edges)] = points[:, 1::2]
+        names[name] = np.array(edges)
+        first += points.shape[1] // 2
+    return replace(mesh, doflocs=nodes).with_boundaries(names)
+
+
+def _boundary_edge(facets, doubles, a, b):
+    """Boundary facet between two loop vertices, either of which may have been doubled by a crack's mouth."""
+    for p in (a, doubles.get(a, a)):
+        for q in (b, doubles.get(b, b)):
+            if (min(p, q), max(p, q)) in facets:
+                return facets[min(p, q), max(p, q)]
+    raise RuntimeError("gmsh changed the outline: an edge of it is missing from the mesh; change the resolution")

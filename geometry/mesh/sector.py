@@ -1,0 +1,294 @@
+"""One pitch sector of a gear, tooth and rim, in a few large curved triangles for high-order methods.
+
+The outline is exact: every boundary edge carries how its curve departs from its chord, by its own parameter.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import leggauss
+
+from ..damage.crack import crack_path, start_arc
+from ..damage.seam import open_seam
+from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
+from ..tooth.profile import root_half_angle as root_half
+from .mesher import triangulate
+from .outline import spaced
+from .triangle import BULGE, ENDS, jacobians
+
+# edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
+# root arc, sides and tip, crack, crack tip
+SIZES = {
+    "flank": 0.8,
+    "back": 0.8,
+    "corner": 0.003,
+    "kink": 0.03,
+    "fillet": 0.5,
+    "root": 0.8,
+    "side": 0.8,
+    "crack": 0.5,
+    "crack tip": 0.004,
+}
+CHECKED = 6  # order at whose quadrature points the maps are checked
+GROWTH = 1.2  # of the edge length per length, away from fine places
+
+
+@dataclass(frozen=True, slots=True)
+class Sector:
+    """A sector from half a pitch before the tooth's centre-line (`left`) to half a pitch after it (`right`).
+
+    Attributes
+    ----------
+    points : ndarray, shape (2, n)
+        Vertices [mm].
+    triangles : ndarray, shape (3, m)
+        Counter-clockwise.
+    bulge : dict of (int, int) to ndarray, shape (2, k)
+        By boundary edge: (curve - chord) / (1 - s**2) [mm] at k Gauss points s in (-1, 1).
+    left, right : ndarray
+        Vertices of the sides from the held edge to the root.
+    held : ndarray
+        Vertices on the held edge.
+    flank, roll : ndarray
+        Vertices of the loaded flank from root to tip and their roll lengths [mm]; edges are linear in the roll.
+    faces : tuple of ndarray, shape (2, k)
+        Vertices of the two faces (left, right) of each crack from mouth to tip, the tip shared.
+    """
+
+    points: np.ndarray
+    triangles: np.ndarray
+    bulge: dict
+    left: np.ndarray
+    right: np.ndarray
+    held: np.ndarray
+    flank: np.ndarray
+    roll: np.ndarray
+    faces: tuple = ()
+
+    def edge_bulges(self):
+        """Bulges of the local edges of all triangles ``(3, 2, k, m)``, zero inside."""
+        shape = next(iter(self.bulge.values())).shape
+        out = np.zeros((3, *shape, self.triangles.shape[1]))
+        for local, (a, b) in enumerate(ENDS):
+            for i, (p, q) in enumerate(zip(self.triangles[a].tolist(), self.triangles[b].tolist(), strict=True)):
+                if (q, p) in self.bulge:
+                    out[local, :, :, i] = self.bulge[q, p][:, ::-1]
+                elif (p, q) in self.bulge:
+                    out[local, :, :, i] = self.bulge[p, q]
+        return out
+
+
+def sector(gear, cracks=(), *, refine=1.0, sizes=None):
+    """Sector of `gear` with the cracks of its tooth.
+
+    Parameters
+    ----------
+    gear : Gear
+    cracks : sequence of Crack
+        All of one tooth.
+    refine : float
+        Divides the edge lengths.
+    sizes : dict, optional
+        Edge lengths [m_n] in place of those of `SIZES`.
+
+    Returns
+    -------
+    Sector
+
+    Raises
+    ------
+    ValueError
+        If `refine` is not positive.
+    RuntimeError
+        If no valid triangles were found.
+    """
+    if not (math.isfinite(refine) and refine > 0):
+        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")
+    for finer in (1.0, 1.4, 2.0, 2.8):
+        made = _attempt(gear, cracks, SIZES | (sizes or {}), refine, finer)
+        if made is not None:
+            return made
+    raise RuntimeError(f"z = {gear.z}: no valid coarse triangles for this tooth; use method = 'fe'")
+
+
+def _attempt(gear, cracks, sizes, refine, finer):
+    """A sector with all edges but those of the sides, which must fit other sectors, divided by `finer`; None if it folds."""
+    size = {name: length * gear.m_n / refine / (1.0 if name == "side" else finer) for name, length in sizes.items()}
+    size["fillet"] = min(size["fillet"], fillet_length(gear) / 2 / finer)
+    pieces = _pieces(gear, size, cracks)
+    first = np.cumsum([0, *(params.size - 1 for _, params, _ in pieces)])
+    count = first[-1]
+    loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
+    chains, around = _chains(gear, size, cracks, loop)
+    if chains and not _inside(loop, np.hstack([line for _, line in chains] + [around])).all():
+        return None  # a chord of the outline cuts the crack off: gmsh would not end
+    points, triangles = triangulate([loop], chains, False, around.T)
+    if np.linalg.det(_arms(points, triangles)).sum() < 0:
+        triangles = triangles[[0, 2, 1]]
+    if np.linalg.det(_arms(points, triangles)).min() <= 0:
+        return None
+    faces, doubles, at = [], {}, count
+    for i, (start, line) in enumerate(chains):
+        if i % 2 == 0:  # every second chain only leads the mesh ahead of the tip
+            chain = np.append(start, at + np.arange(line.shape[1]))
+            points, triangles, double = open_seam(points, triangles, chain)
+            faces.append(np.array([chain, double]))
+            doubles[start] = int(double[0])
+        at += line.shape[1]
+    vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
+    rolls = next(params for name, params, _ in pieces if name == "flank")
+    made = Sector(
+        points, triangles, _bulges(pieces, first, doubles), vertices["left"], vertices["right"][::-1], vertices["held"],
+        vertices["flank"][::-1], rolls[::-1], tuple(faces),
+    )  # fmt: skip
+    jacobian = jacobians(points, triangles, made.edge_bulges(), CHECKED)
+    return made if np.linalg.det(jacobian.transpose(0, 3, 1, 2)).min() > 0 else None
+
+
+def _inside(loop, points):
+    """Whether points ``(2, n)`` lie inside a closed polygon, by the crossings of a ray."""
+    (x, y), (end_x, end_y) = loop[:, :, None], np.roll(loop, -1, axis=1)[:, :, None]
+    spans = (y > points[1]) != (end_y > points[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = x + (points[1] - y) / (end_y - y) * (end_x - x)
+    return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
+
+
+def _arms(points, triangles):
+    corners = points[:, triangles]
+    return (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1)
+
+
+def _pieces(gear, size, cracks):
+    """The outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
+    pitch, half = math.pi / gear.z, gear.half_thickness(gear.r_a)
+    marks = {crack.side: start_arc(gear, crack) for crack in cracks}
+    tips = [(crack_path(gear, crack)[:, -1], crack.side) for crack in cracks]
+    thick = abs(gear.r_f - gear.held)
+    near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
+    side = gear.r_f - gear.outward * spaced(
+        0.0, thick, max(thick / 2, size["side"]), [(0.0, 0.0, size["side"]), *near_bore], 1, 0.7
+    )
+    side[-1] = gear.held
+    inner = 2 * pitch * gear.held
+    close = [(gear.held * (pitch - math.atan2(*tip)), abs(math.hypot(*tip) - gear.held)) for tip, _ in tips]
+    close = [(place, place, 0.7 * away) for place, away in close]
+    bottom = pitch - spaced(0.0, inner, min(inner, max(1.5 * thick, 0.1 * inner)), close, 1, GROWTH) / gear.held
+    bottom[-1] = -pitch
+    out = [("left", side[::-1], lambda r: cartesian(r, -pitch))]
+    roots = {name: _roots(gear, size, marks.get(name), tips, name) for name in ("unloaded", "loaded")}
+    back = _flank(gear, size["back"], size["kink"], max(2 * half * gear.r_a, size["corner"]))
+    front = _flank(gear, size["flank"], size["kink"], size["corner"])
+    width = half * gear.r_a
+    tip = spaced(-width, width, size["root"], [(width, width, min(size["corner"], width))], 1, GROWTH) / gear.r_a
+    for name, sign in (("unloaded", -1), ("loaded", 1)):
+        arc, phi = roots[name]
+        part = [
+            ("root", arc[::-1], lambda a, sign=sign: cartesian(gear.r_f, sign * a)),
+            ("fillet", phi, lambda p, sign=sign: cartesian(*fillet(gear, p)) * np.reshape([sign, 1], (2,) + (1,) * np.ndim(p))),
+        ]
+        part = [piece for piece in part if piece[1].size > 1]
+        if sign < 0:
+            out += [*part, ("back", back, lambda r: _flank_points(gear, r, -1))]
+            out.append(("tip", tip, lambda a: cartesian(gear.r_a, a)))
+        else:
+            out.append(("flank", front[::-1], lambda r: _flank_points(gear, r, 1)))
+            out += [(kind, params[::-1], place) for kind, params, place in part[::-1]]
+    out.append(("right", side, lambda r: cartesian(r, pitch)))
+    out.append(("held", bottom, lambda a: cartesian(gear.held, a)))
+    return out
+
+
+def _flank_points(gear, roll, sign):
+    radius, angle = flank(gear, roll)
+    return cartesian(radius, sign * angle)
+
+
+def _flank(gear, size, kink, corner):
+    """Roll lengths of flank vertices from root to tip."""
+    start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    kinked = not gear.internal and form_point(gear)[0] > gear.alpha_n + 1e-6
+    fine = [(stop, stop, corner), *([(start, start, kink)] if kinked else [])]
+    rolls = roll_at_arc(gear, spaced(start, stop, min(size, (stop - start) / 3), fine, 1, GROWTH))
+    rolls[[0, -1]] = gear.roll_f, gear.roll_a
+    return rolls
+
+
+def _roots(gear, size, mark, tips, side):
+    """Angles of the root arc's vertices from fillet to sector side, and rack tip angles of the fillet's from root to flank."""
+    below, top = -gear.r_f * (math.pi / gear.z - root_half(gear)), fillet_length(gear)
+    fine, largest = [], size["fillet"]
+    arcs = np.linspace(below, top, 200)
+    sign = 1 if side == "loaded" else -1
+    for tip, _ in tips:
+        away = np.hypot(*(cartesian(*root_curve(gear, arcs)) * [[sign], [1]] - tip[:, None]))
+        near = arcs[np.argmin(away)]
+        fine.append((near, near, 0.7 * away.min()))
+    if mark is not None:
+        fine.append((mark, mark, min(size["crack"], size["fillet"] / 2)))
+    cuts = [0.0, *([mark] if mark is not None and mark > 1e-6 * top else []), top]
+    parts = [spaced(a, b, largest, fine, 1, GROWTH) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    fillet_arc = np.concatenate([parts[0], *[part[1:] for part in parts[1:]]])
+    phi = fillet_angle(gear, fillet_arc)
+    root = np.array([0.0])
+    if -below > 1e-6 * gear.m_n:
+        root = spaced(below, 0.0, size["root"], [*fine, (0.0, 0.0, largest)], 1, GROWTH)[::-1]
+    return root_half(gear) - root / gear.r_f, phi
+
+
+def _chains(gear, size, cracks, loop):
+    """For each crack the rim vertex it starts at with its further vertices, then its tip with those of a line ahead of it.
+
+    Also returns points ``(2, n)`` around tips and kinks, in rings as wide as the edges there.
+    """
+    out, around, at = [], [np.zeros((2, 0))], loop.shape[1]
+    part = np.arange(10) / 10
+    rim = (loop[..., None] + (np.roll(loop, -1, axis=1) - loop)[..., None] * part).reshape(2, -1)
+    for crack in cracks:
+        corners = crack_path(gear, crack)
+        start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
+        legs = np.hypot(*np.diff(corners, axis=1))
+        ends = np.concatenate([[0.0], np.cumsum(legs)])
+        tip_size, largest = min(size["crack tip"], ends[-1] / 20), min(size["crack"], ends[-1] / 2)
+        fine = [(ends[-1], ends[-1], tip_size)] + [(end, end, 5 * tip_size) for end in ends[1:-1]]
+        places = np.concatenate(
+            [spaced(a, b, largest, fine, 1, 1.5 * GROWTH)[1:] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        )
+        line = np.array([np.interp(places, ends, row) for row in corners])
+        reach = min(size["crack"], 0.4 * np.hypot(*(rim - corners[:, -1:])).min())
+        ahead = (corners[:, -1] - corners[:, -2]) / legs[-1]
+        further = spaced(0.0, reach, reach, [(0.0, 0.0, tip_size)], 1, 1.5 * GROWTH)[1:]
+        on_line = corners[:, -1:] + ahead[:, None] * further
+        out += [(start, line), (at + line.shape[1] - 1, on_line)]
+        at += line.shape[1] + further.size
+        taken = np.hstack([rim, line, on_line])
+        around.append(_rings(corners[:, -1], further, taken))
+        for k in range(1, corners.shape[1] - 1):
+            radii = places[places > ends[k] + 1e-9] - ends[k]
+            around.append(_rings(corners[:, k], radii[radii <= min(size["crack"], 0.4 * min(legs[k - 1 : k + 1]))], taken))
+    return out, np.hstack(around)
+
+
+def _rings(centre, radii, taken):
+    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius."""
+    angle = np.arange(6) * math.pi / 3
+    points = centre[:, None, None] + radii[:, None] * np.array([np.sin(angle), np.cos(angle)])[:, None, :]
+    away = np.hypot(*(points[..., None] - taken[:, None, None, :])).min(axis=-1)
+    return points[:, away > 0.55 * radii[:, None]]
+
+
+def _bulges(pieces, first, doubles):
+    """How the boundary edges depart from their chords; edges at a crack's mouth under both numbers of the mouth."""
+    out, gauss = {}, leggauss(BULGE)[0]
+    for k, (_, params, place) in enumerate(pieces):
+        middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
+        ends = place(params)
+        chord = (ends[:, :-1, None] * (1 - gauss) + ends[:, 1:, None] * (1 + gauss)) / 2
+        away = (place(middle[:, None] + reach[:, None] * gauss) - chord) / (1 - gauss**2)
+        for i in range(params.size - 1):
+            a, b = int(first[k] + i), int((first[k] + i + 1) % first[-1])
+            for p in {a, doubles.get(a, a)}:
+                for q in {b, doubles.get(b, b)}:
+                    out[p, q] = away[:, i]
+    return out

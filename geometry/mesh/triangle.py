@@ -1,0 +1,106 @@
+"""A curved triangle of any polynomial order: nodes, quadrature and the blended map of its edges."""
+
+from functools import lru_cache
+from types import SimpleNamespace
+
+import numpy as np
+from numpy.polynomial import legendre
+
+BULGE = 8  # points that describe how an edge departs from its chord
+ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
+
+
+@lru_cache(maxsize=8)
+def lobatto(order):
+    """Gauss-Lobatto points on [-1, 1], `order` + 1 of them."""
+    inner = legendre.legroots(legendre.legder([0] * order + [1]))
+    return np.concatenate([[-1.0], inner, [1.0]])
+
+
+@lru_cache(maxsize=64)
+def lagrange(order, points):
+    """Values ``(order + 1, n)`` of the polynomials through the Gauss-Lobatto points, at a tuple of points in [-1, 1]."""
+    nodes = legendre.legvander(lobatto(order), order)
+    return np.linalg.solve(nodes.T, legendre.legvander(np.array(points), order).T)
+
+
+@lru_cache(maxsize=8)
+def table(order):
+    """All that depends on the polynomial order alone.
+
+    Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside.
+
+    Returns
+    -------
+    namespace
+        `count` nodes, `inside` how many of them lie inside; quadrature `weight` (q,); at its points `value` (count, q), `slope`
+        (2, count, q) by the reference coordinates, the linear map's `corner` (3, q), and the blended bulges `bulge`
+        (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by the values at `bulge_points`.
+    """
+    line = (lobatto(order) + 1) / 2
+    ends = np.eye(3)
+    edges = [np.outer(ends[a], 1 - line[1:-1]) + np.outer(ends[b], line[1:-1]) for a, b in ENDS]
+    lattice = [(i, j, order - i - j) for i in range(1, order) for j in range(1, order - i)]
+    inside = np.array([line[list(corner)] / line[list(corner)].sum() for corner in lattice]).reshape(-1, 3).T
+    nodes = np.hstack([ends, *edges, inside])
+    gauss, gauss_weight = legendre.leggauss(order + 2)
+    gauss, gauss_weight = (gauss + 1) / 2, gauss_weight / 2
+    x = np.outer(1 - gauss, gauss).ravel()
+    y = np.repeat(gauss, gauss.size)
+    weight = np.outer((1 - gauss) * gauss_weight, gauss_weight).ravel()
+    change = np.linalg.inv(_modes(nodes[1], nodes[2], order)[0])
+    value, *slope = (change.T @ part.T for part in _modes(x, y, order))
+    corner = np.array([1 - x - y, x, y])
+    bulge_points = legendre.leggauss(BULGE)[0]
+    to_modes = np.linalg.inv(legendre.legvander(bulge_points, BULGE - 1))
+    bulge, bulge_slope = [], []
+    gradient = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])  # of the barycentric coordinates
+    for a, b in ENDS:
+        s = corner[b] - corner[a]
+        height = legendre.legvander(s, BULGE - 1) @ to_modes
+        derivative = legendre.legvander(s, BULGE - 2) @ legendre.legder(np.eye(BULGE)) @ to_modes
+        product = 4 * corner[a] * corner[b]
+        bulge.append(product[:, None] * height)
+        along = [
+            4 * (gradient[a, d] * corner[b] + gradient[b, d] * corner[a])[:, None] * height
+            + (product * (gradient[b, d] - gradient[a, d]))[:, None] * derivative
+            for d in range(2)
+        ]
+        bulge_slope.append(along)
+    return SimpleNamespace(
+        count=nodes.shape[1],
+        inside=inside.shape[1],
+        weight=weight,
+        value=value,
+        slope=np.array(slope),
+        corner=corner,
+        corner_slope=gradient,
+        bulge=np.array(bulge),
+        bulge_slope=np.array(bulge_slope).transpose(1, 0, 2, 3),
+    )
+
+
+def _modes(x, y, order):
+    """Products of Legendre polynomials up to total degree `order` at points ``(n,)``, and their derivatives by x and y."""
+    px, py = legendre.legvander(2 * x - 1, order), legendre.legvander(2 * y - 1, order)
+    lower = 2 * legendre.legder(np.eye(order + 1)) if order else np.zeros((1, 1))
+    dx, dy = (legendre.legvander(2 * v - 1, order - 1) @ lower for v in (x, y))
+    pairs = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
+    i, j = np.array(pairs).T
+    return px[:, i] * py[:, j], dx[:, i] * py[:, j], px[:, i] * dy[:, j]
+
+
+def jacobians(points, triangles, bulges, order):
+    """Derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
+
+    Parameters
+    ----------
+    points : ndarray, shape (2, n)
+    triangles : ndarray, shape (3, m)
+    bulges : ndarray, shape (3, 2, BULGE, m)
+        Of the local edges `ENDS`, see `geometry.mesh.sector.Sector`.
+    order : int
+    """
+    basis = table(order)
+    linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]
+    return linear + np.einsum("kjqg,jdge->edkq", basis.bulge_slope, bulges, optimize=True)

@@ -1,0 +1,316 @@
+"""`GearPair`: where two gears touch, and how far apart their flanks are where they do not."""
+
+import math
+import warnings
+from dataclasses import dataclass, field, replace
+from numbers import Real
+
+import numpy as np
+
+from ..tooth.gear import Gear
+from ..tooth.involute import inv, inverse_inv
+from ..tooth.profile import cartesian, flank
+from .interference import overlap, radial_assembly
+
+OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """The tooth pairs that touch, or nearly do, at some phases (arrays of shape (phases, pairs)).
+
+    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points, `gap` the unloaded distance along the line of
+    action [mm] (inf: the flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters at phase 0 and pair k
+    is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm]. Pair k is formed by the
+    pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th on the other.
+    """
+
+    order: np.ndarray
+    nominal: np.ndarray
+    roll_1: np.ndarray
+    roll_2: np.ndarray
+    gap: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class GearPair:
+    """Two meshing gears; gear 1 (the pinion, external) drives gear 2, an external gear or a ring.
+
+    The line of action is measured from its tangent point on the pinion's base circle, so that the abscissa of a contact
+    is the pinion's roll length. Phase 0 is a tooth pair entering at the start of the path of contact (lower end of the
+    pinion's active flank); phase 1 is one transverse base pitch later.
+
+    A ring whose tip would reach below the pinion's form point is trimmed to it, with a warning; `notes` says how the contact
+    ratio changed.
+
+    Parameters
+    ----------
+    gear_1, gear_2 : Gear
+        Pinion and wheel or ring, of the same basic rack and helix angle.
+    a : float, optional
+        Centre distance [mm]; default: the one without backlash.
+
+    Raises
+    ------
+    ValueError
+        If the gears do not match, interfere, or cannot mesh continuously (contact ratio < 1) at this centre distance.
+
+    Examples
+    --------
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
+    >>> pair = GearPair(Gear(z=21, r_bore=7.4, **rack), Gear(z=31, r_bore=11.4, **rack))
+    >>> round(pair.a, 9), round(pair.eps_alpha, 4)
+    (52.0, 1.6149)
+    """
+
+    gear_1: Gear
+    gear_2: Gear
+    a: float | None = None
+    notes: tuple = field(default=(), init=False)
+
+    def __post_init__(self):
+        """Refuse gears that cannot mesh; trim a ring's tip."""
+        one, two = self.gear_1, self.gear_2
+        if not isinstance(one, Gear) or not isinstance(two, Gear):
+            raise ValueError("gear_1 and gear_2 must be Gear objects")
+        if one.internal:
+            raise ValueError("gear_1 is a ring; give the external gear first and the ring as gear_2")
+        for name, unit in (("m_n", "mm"), ("alpha_n", "rad")):
+            first, second = getattr(one, name), getattr(two, name)
+            if not math.isclose(first, second, rel_tol=1e-9):
+                raise ValueError(f"{name} = {first} and {second} {unit}: gears in mesh need the same one")
+        if not math.isclose(abs(one.beta), abs(two.beta), rel_tol=1e-9, abs_tol=1e-12):
+            raise ValueError(f"beta = {one.beta} and {two.beta} rad: gears in mesh need the same helix angle")
+        if two.internal and two.z <= one.z:
+            raise ValueError(f"z = {one.z} does not fit into a ring of z = {two.z}: the ring needs more teeth")
+        if self.a is None:
+            object.__setattr__(self, "a", free_centre_distance(one, two))
+        elif not isinstance(self.a, Real) or not math.isfinite(self.a):
+            raise ValueError(f"a = {self.a!r}, but a centre distance is a finite length [mm]")
+        object.__setattr__(self, "a", float(self.a))
+        self._check_distance()
+        if two.internal:
+            self._trim_ring()
+        self._check_mesh()
+
+    def _check_distance(self):
+        one, two = self.gear_1, self.gear_2
+        least = self.outward * one.r_b + two.r_b
+        wrong = "large" if two.internal else "small"
+        if self.a <= least:
+            raise ValueError(f"a = {self.a} mm is too small: the line of action needs more than {least:.6g} mm")
+        for tip, root in ((one, two), (two, one)):
+            clearance = self._clearance(tip, root)
+            if clearance <= 0:
+                raise ValueError(
+                    f"a = {self.a:.6g} mm is too {wrong}: the tip circle of z = {tip.z} reaches the root circle of z = {root.z} "
+                    f"({-clearance:.4g} mm deep); change a or lower the addendum"
+                )
+        if self.backlash < -1e-4 * one.m_n:
+            raise ValueError(
+                f"a = {self.a:.6g} mm is too {wrong}: the teeth overlap by {-self.backlash:.4g} mm along the line "
+                "of action; give a=None for the centre distance without backlash"
+            )
+
+    def _clearance(self, tip, root):
+        """Radial distance [mm] between a tip circle and the mate's root circle."""
+        if not self.gear_2.internal:
+            return self.a - tip.r_a - root.r_f
+        return root.r_f - self.a - tip.r_a if root.internal else tip.r_a - self.a - root.r_f
+
+    def _trim_ring(self):
+        one, two = self.gear_1, self.gear_2
+        lowest = one.roll_f + self.length
+        if two.roll_a >= lowest:
+            return
+        before = self.eps_alpha_of(one.roll_a, two.roll_a)
+        cut = math.hypot(two.r_b, lowest) - two.r_a
+        object.__setattr__(self, "gear_2", replace(two, addendum=two.addendum - cut / two.m_n))
+        note = (
+            f"the ring's tip (z = {two.z}) was trimmed by {cut:.4g} mm, its addendum from {two.addendum:g} to "
+            f"{self.gear_2.addendum:.4g} m_n: it would reach into the fillet of z = {one.z}; contact ratio {before:.4g} -> "
+            f"{self.eps_alpha:.4g}"
+        )
+        object.__setattr__(self, "notes", (*self.notes, note))
+        warnings.warn(note, stacklevel=4)
+
+    def _check_mesh(self):
+        if not self.eps_alpha >= 1:
+            raise ValueError(
+                f"contact ratio {self.eps_alpha:.4g} < 1 at a = {self.a:.6g} mm: the teeth lose contact; "
+                "change a, addendum or profile shift"
+            )
+        start, _ = self.path
+        depth = overlap(self, [start + k * self.p_bt / 8 for k in range(8)])
+        if depth > OVERLAP * self.gear_1.m_n:
+            raise ValueError(
+                f"interference: the outlines of z = {self.gear_1.z} and {self.gear_2.z} cut {depth:.4g} mm into each other "
+                "outside the path of contact; reduce an addendum, change a, or (rings) the difference of the tooth numbers"
+            )
+
+    @property
+    def outward(self):
+        """+1 for two external gears, -1 with a ring."""
+        return self.gear_2.outward
+
+    @property
+    def centre_2(self):
+        """Height of gear 2's centre over gear 1's [mm]: the pitch point is above gear 1."""
+        return self.outward * self.a
+
+    @property
+    def radial_assembly(self):
+        """Whether the pinion can be put into its ring radially; always true without a ring."""
+        return not self.gear_2.internal or radial_assembly(self)
+
+    @property
+    def alpha_w(self):
+        """Working transverse pressure angle [rad]."""
+        return math.acos((self.gear_1.r_b * self.outward + self.gear_2.r_b) / self.a)
+
+    @property
+    def length(self):
+        """Distance between the tangent points of the line of action on the two base circles [mm]."""
+        return self.a * math.sin(self.alpha_w)
+
+    def mate_roll(self, roll_1):
+        """Roll length on gear 2 [mm] where the pinion touches at `roll_1`, on the line of action."""
+        return self.length - self.outward * np.asarray(roll_1)
+
+    def relative_radius(self, roll_1, roll_2):
+        """Relative radius of curvature [mm]."""
+        return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
+
+    @property
+    def backlash(self):
+        """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
+        one, two = self.gear_1, self.gear_2
+        tooth_1 = 2 * (one.base_half_angle - inv(self.alpha_w))
+        tooth_2 = 2 * (two.base_half_angle - two.outward * inv(self.alpha_w))
+        return one.r_b * (2 * math.pi / one.z - tooth_1) - two.r_b * tooth_2
+
+    @property
+    def p_bt(self):
+        """Transverse base pitch [mm]."""
+        return self.gear_1.p_bt
+
+    @property
+    def path(self):
+        """Start and end of the path of contact as roll lengths of the pinion [mm]."""
+        start, end = self._overlap(self.gear_1.roll_a, self.gear_2.roll_a)
+        return max(start, self.gear_1.roll_f), end
+
+    def _overlap(self, tip_1, tip_2):
+        """Where flanks ending at these roll lengths [mm] meet, as roll lengths of the pinion, its fillet disregarded."""
+        first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
+        return first, min(last, tip_1)
+
+    def eps_alpha_of(self, tip_1, tip_2):
+        """Contact ratio if the flanks ended at these roll lengths [mm] and the pinion's fillet were no obstacle."""
+        start, end = self._overlap(tip_1, tip_2)
+        return (end - start) / self.p_bt
+
+    @property
+    def eps_alpha(self):
+        """Transverse contact ratio, of the flanks that exist (tip circles, undercut)."""
+        start, end = self.path
+        return (end - start) / self.p_bt
+
+    @property
+    def pitch_phase(self):
+        """Phase at which the contact is at the pitch point."""
+        return (self.gear_1.r_b * math.tan(self.alpha_w) - self.path[0]) / self.p_bt
+
+    @property
+    def pitch_radius_1(self):
+        """Working pitch radius of the pinion [mm]: where its flank touches at the pitch point."""
+        return self.gear_1.r_b / math.cos(self.alpha_w)
+
+    @property
+    def pitch_radius_2(self):
+        """Working pitch radius of the wheel [mm]."""
+        return self.gear_2.r_b / math.cos(self.alpha_w)
+
+    def curvature_radii(self, phase):
+        """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
+        roll = self.path[0] + np.asarray(phase) * self.p_bt
+        return roll, self.mate_roll(roll)
+
+    def turn(self, nominal):
+        """Clockwise angles [rad] of tooth 0 of both gears for a contact at `nominal` [mm] on the line of action.
+
+        Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own
+        frame (`geometry.tooth.profile`) is mirrored in place.
+        """
+        along = np.asarray(nominal) - self.gear_1.r_b * math.tan(self.alpha_w)
+        x, y = along * math.cos(self.alpha_w), self.pitch_radius_1 + along * math.sin(self.alpha_w)
+        turn_1 = np.arctan2(x, y) - flank(self.gear_1, nominal)[1]
+        turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
+        return turn_1, turn_2
+
+    def contacts(self, phase, *, extended=True):
+        """Contacts of all tooth pairs at `phase` (array), see `Contacts`.
+
+        On the path of contact the gap is zero. Beyond it one tip corner slides on the other flank, and the gap is exact
+        kinematics: the rotation that closes it, times the base radius. With ``extended=False`` such pairs never touch.
+        Phases may be any numbers: at phase 1.3 pair 0 is 1.3 base pitches into its engagement.
+        """
+        phase = np.atleast_1d(np.asarray(phase, dtype=float))
+        start, end = self.path
+        first, last = -1 - math.floor(phase.max()), math.ceil((end - start) / self.p_bt) - math.floor(phase.min())
+        order = np.arange(first, last + 1)
+        nominal = start + (phase[:, None] + order) * self.p_bt
+        slack = 1e-9 * self.p_bt
+        inside = (nominal >= start - slack) & (nominal < end + slack)
+        roll_1, roll_2 = nominal.copy(), self.mate_roll(nominal)
+        gap = np.where(inside, 0.0, np.inf)
+        if extended:
+            self._corner(nominal, nominal > end + slack, roll_1, roll_2, gap, driver=True)
+            self._corner(nominal, nominal < start - slack, roll_2, roll_1, gap, driver=False)
+        return Contacts(order, nominal, roll_1, roll_2, gap)
+
+    def _corner(self, nominal, where, roll_tip, roll_flank, gap, *, driver):
+        """Fill in the pairs `where` a tip corner touches: the pinion's after the end, the wheel's before the start."""
+        tip, other = (self.gear_1, self.gear_2) if driver else (self.gear_2, self.gear_1)
+        distance, roll = self.opposite(np.full(nominal.shape, tip.roll_a), nominal, driver=driver)
+        low, high = sorted((other.roll_f, other.roll_a))
+        meets = where & (roll >= low) & (roll <= high)
+        roll_tip[meets] = tip.roll_a
+        roll_flank[meets] = roll[meets]
+        gap[meets] = np.maximum(distance[meets], 0.0)
+
+    def opposite(self, roll, nominal, *, driver=True):
+        """What a flank point faces when its pair is at `nominal` on the line of action.
+
+        Parameters
+        ----------
+        roll : ndarray
+            Roll length of a point on the pinion's flank (``driver=True``) or the wheel's [mm].
+        nominal : ndarray
+            Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
+
+        Returns
+        -------
+        gap, roll : ndarray
+            Distance to the other flank along the line of action, i.e. the rotation that closes it times the base radius
+            [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
+        """
+        gears, centres, mirror = (self.gear_1, self.gear_2), (0.0, self.centre_2), (1, self.outward)
+        own, other = (0, 1) if driver else (1, 0)
+        turns = self.turn(nominal)
+        radius, angle = flank(gears[own], roll)
+        x, y = cartesian(radius, turns[own] + mirror[own] * angle)
+        y = y + centres[own] - centres[other]
+        away, seen = np.hypot(x, y), np.arctan2(x, y)
+        mate = gears[other]
+        met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
+        behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
+        return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met
+
+
+def free_centre_distance(one, two):
+    """Centre distance without backlash [mm] (ISO 21771:2007, 7.3)."""
+    teeth = one.z + two.outward * two.z
+    shift = one.x + two.outward * two.x
+    alpha_w = inverse_inv(inv(one.alpha_t) + 2 * shift * math.tan(one.alpha_n) / teeth)
+    return abs(one.r_b + two.outward * two.r_b) / math.cos(alpha_w)

@@ -1,0 +1,77 @@
+"""`PlanetarySet`: a sun, its planets and a ring, and whether they go together."""
+
+import math
+from dataclasses import dataclass
+from numbers import Integral
+
+from ..tooth.gear import Gear
+from ..tooth.involute import inv
+from .gear_pair import GearPair, free_centre_distance
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetarySet:
+    """Sun, planets and ring on a common centre distance.
+
+    Parameters
+    ----------
+    sun, planet, ring : Gear
+    n_planets : int
+    a : float, optional
+        Centre distance [mm]; default: that of sun and planet without backlash.
+
+    Raises
+    ------
+    ValueError
+        If the two meshes need different centre distances (the message gives the ring shift that closes the set), or equally
+        spaced planets cannot be assembled (``(z_s + z_r) / n_planets`` must be whole), or neighbouring planets touch.
+    """
+
+    sun: Gear
+    planet: Gear
+    ring: Gear
+    n_planets: int
+    a: float | None = None
+
+    def __post_init__(self):
+        """Check closure, spacing and neighbours."""
+        if not self.ring.internal or self.sun.internal or self.planet.internal:
+            raise ValueError("sun and planet are external gears (r_bore), the ring is given by r_rim")
+        if isinstance(self.n_planets, bool) or not isinstance(self.n_planets, Integral) or self.n_planets < 1:
+            raise ValueError(f"n_planets = {self.n_planets!r}, but a set has a whole number of planets, at least 1")
+        if self.a is None:
+            object.__setattr__(self, "a", free_centre_distance(self.sun, self.planet))
+        if not (math.isfinite(self.a) and self.a > max(self.ring.r_b - self.planet.r_b, self.sun.r_b + self.planet.r_b)):
+            raise ValueError(f"a = {self.a} mm: the base circles do not allow a mesh at this centre distance; increase a")
+        GearPair(self.sun, self.planet, self.a)
+        closing = self.closing_shift()
+        if abs(closing - self.ring.x) > 2e-3:
+            raise ValueError(
+                f"z = {self.sun.z}/{self.planet.z}/{self.ring.z} with x_ring = {self.ring.x:g} does not close at "
+                f"a = {self.a:.6g} mm: planet and ring mesh there without backlash for x_ring = {closing:.4f} "
+                f"(without shifts z_r = z_s + 2 z_p = {self.sun.z + 2 * self.planet.z})"
+            )
+        if (self.sun.z + self.ring.z) % self.n_planets:
+            raise ValueError(
+                f"{self.n_planets} planets cannot be spaced equally: (z_s + z_r) / N = ({self.sun.z} + {self.ring.z}) / "
+                f"{self.n_planets} is not whole; change N or a tooth number"
+            )
+        room = 2 * self.a * math.sin(math.pi / self.n_planets) - 2 * self.planet.r_a
+        if self.n_planets > 1 and room <= 0:
+            raise ValueError(f"{self.n_planets} planets touch each other: their tips overlap by {-room:.4g} mm; use fewer")
+
+    def closing_shift(self):
+        """Profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
+        one, two = self.planet, self.ring
+        alpha_w = math.acos((two.r_b - one.r_b) / self.a)
+        return one.x + (inv(alpha_w) - inv(one.alpha_t)) * (two.z - one.z) / (2 * math.tan(one.alpha_n))
+
+    @property
+    def sun_planet(self):
+        """The outer mesh."""
+        return GearPair(self.sun, self.planet, self.a)
+
+    @property
+    def planet_ring(self):
+        """The inner mesh."""
+        return GearPair(self.planet, self.ring, self.a)

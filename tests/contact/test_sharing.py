@@ -1,0 +1,65 @@
+import itertools
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from gearfe.contact.sharing import line_contact, share
+
+
+def brute_force(flexibility, gap, load):
+    """Try every set of touching contacts; the one that satisfies all conditions is the solution."""
+    n = gap.size
+    for size in range(1, n + 1):
+        for touch in itertools.combinations(range(n), size):
+            touch = list(touch)
+            system = np.block([[flexibility[np.ix_(touch, touch)], -np.ones((size, 1))], [np.ones((1, size)), np.zeros((1, 1))]])
+            *force, approach = np.linalg.solve(system, [*-gap[touch], load])
+            full = np.zeros(n)
+            full[touch] = force
+            if (full >= -1e-12 * load).all() and (flexibility @ full + gap >= approach - 1e-12).all():
+                return full, approach
+    raise AssertionError("no solution")
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_share_equals_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 6))
+    root = rng.normal(size=(n, n))
+    flexibility = root @ root.T + 0.05 * np.eye(n)
+    gap = rng.exponential(size=n) * 10 ** rng.uniform(-3, 1)
+    load = 10 ** rng.uniform(-2, 2)
+    force, approach = share(flexibility, gap, load)
+    want, want_approach = brute_force(flexibility, gap, load)
+    assert_allclose(force, want, atol=1e-9 * load)
+    assert_allclose(approach, want_approach, rtol=1e-9)
+
+
+@pytest.mark.parametrize("load", [0.0, -1.0, float("nan")])
+def test_load_must_push(load):
+    with pytest.raises(ValueError, match="give load > 0"):
+        share(np.eye(2), np.zeros(2), load)
+
+
+def test_indefinite_flexibility_is_an_error():
+    with pytest.raises(RuntimeError, match="positive definite"):
+        share(np.array([[1.0, 2.0], [2.0, 1.0]]), np.zeros(2), 1.0)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_line_contact_satisfies_its_equations(seed):
+    rng = np.random.default_rng(seed)
+    n, load = 3, 10 ** rng.uniform(-2, 3.5)
+    smooth = 4e-5 * (np.eye(n) + 0.2) * rng.uniform(0.5, 2)
+    gap = np.array([0.0, *rng.exponential(size=2) * 0.01])
+    radius, c, modulus = rng.uniform(1, 8, size=n), 5.6e-6, 1.13e5
+    force, approach, tangent = line_contact(smooth, gap, load, c, radius, modulus)
+    width = np.sqrt(4 * np.maximum(force, 1e-300) * radius / (np.pi * modulus))
+    closing = smooth @ force + gap + np.where(force > 0, c * (np.log(2 / width) + 0.5) * force, 0)
+    assert_allclose(force.sum(), load, rtol=1e-12)
+    touch = force > 1e-6 * load
+    assert_allclose(closing[touch], approach, rtol=1e-7)
+    assert (closing[~touch] >= approach * (1 - 1e-6)).all()
+    more = line_contact(smooth, gap, load * 1.0001, c, radius, modulus)[1]
+    assert_allclose(tangent, 0.0001 * load / (more - approach), rtol=5e-3)

@@ -1,0 +1,113 @@
+"""CalculiX on the same mesh and loads: a second solver's displacements."""
+
+import math
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.elements.elasticity import Body
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+STEEL = gf.Material(E=207e3, nu=0.3)
+CASES = {
+    "healthy": (gf.Gear(z=21, r_bore=7.4, **RACK), 21.5, ()),
+    "cracked": (gf.Gear(z=21, r_bore=7.4, **RACK), 21.5, (gf.Crack(level=0.4),)),
+    "ring": (gf.Gear(z=72, r_rim=90.0, tip_radius=0.2, **RACK), 72.0, ()),
+}
+
+
+def run(folder, name):
+    """Run CalculiX on one thread."""
+    quiet = {"cwd": folder, "capture_output": True, "text": True, "timeout": 300, "check": False}
+    return subprocess.run(["ccx", "-i", name], **quiet)
+
+
+def displacements(folder, name, count):
+    done = run(folder, name)
+    data = (folder / f"{name}.dat").read_text().splitlines() if (folder / f"{name}.dat").exists() else []
+    rows = [line.split() for line in data]
+    rows = [r for r in rows if len(r) == 4 and r[0].isdigit()]
+    assert len(rows) == count, done.stdout[-500:]
+    out = np.zeros((count, 2))
+    for node, x, y, _ in rows:
+        out[int(node) - 1] = float(x), float(y)
+    return out
+
+
+needs_ccx = pytest.mark.skipif(
+    shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx"
+)
+
+
+@needs_ccx
+@pytest.mark.parametrize("name", CASES)
+def test_calculix_gives_the_same_displacements(name, tmp_path):
+    gear, radius, cracks = CASES[name]
+    body, load = gf.write_inp(tmp_path / f"{name}.inp", gear, radius, 100.0, STEEL, cracks=cracks, refine=0.6)
+    # CalculiX integrates a triangle at three points; so does this body
+    same = Body(body.mesh, STEEL, order=2)
+    ours = same.solve(load)[:, 0].reshape(-1, 2)
+    theirs = displacements(tmp_path, name, ours.shape[0])
+    assert np.abs(ours - theirs).max() < 1e-6 * np.abs(ours).max()
+
+
+def test_deck_is_complete(tmp_path):
+    gear, radius, cracks = CASES["cracked"]
+    path = tmp_path / "gear.inp"
+    body, _ = gf.write_inp(path, gear, radius, 100.0, STEEL, cracks=cracks, refine=0.6)
+    text = path.read_text()
+    assert text.count("\n") > body.mesh.doflocs.shape[1] + body.nodes.shape[1]
+    pushed = [line.split(", ") for line in text.split("*CLOAD\n")[1].split("*NODE PRINT")[0].splitlines()]
+    total = np.array([sum(float(v) for _, d, v in pushed if d == k) for k in ("1", "2")])
+    assert abs(np.hypot(*total) - 100) < 0.1
+    with pytest.raises(ValueError, match=r"ends in \.inp"):
+        gf.write_inp(tmp_path / "gear.txt", gear, radius, 100.0, STEEL)
+
+
+def contact_difference(folder, phase, line_load, *, ring=False):
+    """Relative difference of k, gearfe's over CalculiX's nonlinear contact at the same approach."""
+    wheel = gf.Gear(z=84, r_rim=95.0, tip_radius=0.2, **RACK) if ring else gf.Gear(z=31, r_bore=13.0, **RACK)
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), wheel)
+    curve = gf.mesh_stiffness(pair, 20 * line_load, STEEL, phases=[phase])
+    deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, line_load, (STEEL, STEEL))
+    done = run(folder, "pair")
+    assert (folder / "pair.dat").exists(), done.stdout[-500:]
+    return line_load / deck.force(folder / "pair.dat") - 1
+
+
+@needs_ccx
+def test_nonlinear_contact_at_a_tip_corner(tmp_path):
+    assert abs(contact_difference(tmp_path, 0.63, 100.0)) < 0.01
+
+
+@needs_ccx
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("phase", "line_load", "tolerance"),
+    [
+        (0.3, 100.0, 0.005),
+        (0.8, 100.0, 0.005),
+        (0.8, 300.0, 0.005),
+        (0.65, 100.0, 0.01),
+        (0.63, 300.0, 0.01),
+        (0.98, 100.0, 0.01),
+        (0.98, 300.0, 0.01),
+    ],
+)
+def test_nonlinear_contact(tmp_path, phase, line_load, tolerance):
+    difference = contact_difference(tmp_path, phase, line_load)
+    print(f"phase {phase}, {line_load} N/mm: {100 * difference:+.2f} %")
+    assert abs(difference) < tolerance
+
+
+@needs_ccx
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
+@pytest.mark.parametrize("phase", [0.3, 0.85])
+def test_nonlinear_contact_of_a_ring(tmp_path, phase):
+    difference = contact_difference(tmp_path, phase, 100.0, ring=True)
+    print(f"ring, phase {phase}: {100 * difference:+.2f} %")
+    assert abs(difference) < 0.01

@@ -1,0 +1,209 @@
+"""The energy model in three dimensions: identities, rigid motions, and the plane as its limit."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.polynomial.legendre import leggauss
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements import fe3d
+from gearfe.energy.ritz import elimination, panel3d
+from gearfe.energy.ritz import plane as ritz
+from gearfe.energy.ritz import solid as ritz3d
+from gearfe.energy.ritz.axial import axial
+from gearfe.flexibility import halfspace
+from gearfe.flexibility import solid as flexibility3d
+from gearfe.flexibility.hertz import half_plane, hat_logarithm
+from geometry.mesh.sector import sector
+from geometry.mesh.triangle import ENDS
+from geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
+BETA = math.radians(16)
+GEAR = gf.Gear(z=18, r_bore=9.0, b=12.0, beta=BETA, **RACK)
+RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, tip_radius=0.3, addendum=0.85, **RACK)
+
+
+def surface(gear, roll, z):
+    """Points ``(3, n)`` of the loaded flank in space: the section turned clockwise."""
+    radius, angle = flank(gear, roll)
+    return np.vstack([cartesian(radius, angle + math.tan(gear.beta) / gear.r * z), np.broadcast_to(z, np.shape(radius))])
+
+
+@pytest.mark.parametrize("gear", [GEAR, replace(GEAR, beta=-BETA), RING], ids=["right", "left", "ring"])
+def test_loads_act_at_right_angles_to_the_helicoid(gear):
+    order = 3
+    made = sector(gear, sizes=ritz3d.SIZES)
+    _, count, chain = panel3d._numbering(made, order)
+    force = panel3d._hats(gear, made, chain, count, flexibility3d.hats(gear), order, gear.beta_b).sum(axis=0)
+    points, weight = halfspace.hat_points(flexibility3d.hats(gear), 12)
+    for i, (arc, share_of) in enumerate(zip(points, weight, strict=True)):
+        roll, h = roll_at_arc(gear, arc), 1e-5
+        along = (surface(gear, roll + h, 0.0) - surface(gear, roll - h, 0.0)) / (2 * h)
+        trace = (surface(gear, roll, h) - surface(gear, roll, -h)) / (2 * h)
+        normal = np.cross(along, trace, axis=0)
+        normal *= np.sign((normal[:2] * flank_normal(gear, roll)).sum(axis=0)) / np.linalg.norm(normal, axis=0)
+        assert_allclose(force[:, i], -(normal @ share_of), atol=1e-6)
+
+
+def test_rigid_motions_store_no_energy():
+    width, degree, order = 12.0, 8, 2
+    coarse = {"flank": 0.8, "corner": 0.8, "kink": 0.8, "fillet": 0.8, "root": 2.0, "side": 2.0}
+    made = sector(GEAR, sizes=coarse)
+    made = replace(made, bulge={edge: 0 * curve for edge, curve in made.bulge.items()})  # nodes at the middles
+    numbers, count, _ = panel3d._numbering(made, order)
+    body = elimination.body_of(numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int), [])
+    body.section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
+    body.axial = axial(width, degree)
+    body.kind = np.zeros(body.size.size, dtype=int)
+    body.size = body.size * (degree + 1)
+    stiffness = elimination.leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
+    straight = np.zeros((2, count))
+    straight[:, numbers[:3]] = made.points[:, made.triangles]
+    for k, (a, b) in enumerate(ENDS):
+        straight[:, numbers[3 + k]] = made.points[:, made.triangles[[a, b]]].mean(axis=1)
+    gauss, weight = leggauss(degree + 1)
+    z = width * (1 + gauss) / 2
+    to_modes = (halfspace.modes(z, width, degree) * (weight * width / 2)[:, None]).T
+    angle = math.tan(BETA) / GEAR.r * z
+    (x, y), one = straight[:, :, None], np.ones(z.size)
+    cos, sin, flat = np.cos(angle), np.sin(angle), np.zeros((count, z.size))
+    place_x, place_y = x * cos + y * sin, y * cos - x * sin  # clockwise
+    motions = {
+        "x": (flat + one, flat, flat), "y": (flat, flat + one, flat), "z": (flat, flat, flat + one),
+        "about z": (place_y, -place_x, flat), "about x": (flat, -z + flat, place_y), "about y": (z + flat, flat, -place_x),
+    }  # fmt: skip
+    rng = np.random.default_rng(0)
+    scale = np.abs(np.diag(stiffness)).mean()
+    for name, (u, v, w) in motions.items():
+        turned = np.stack([u * cos - v * sin, v * cos + u * sin, w], axis=1)  # into the turning frame
+        field = (turned @ to_modes.T).ravel()
+        energy = field @ stiffness @ field / (field @ field)
+        noise = rng.standard_normal(field.size)
+        assert abs(energy) < 1e-10 * scale, name
+        assert noise @ stiffness @ noise / (noise @ noise) > 0.1 * scale
+
+
+def test_plane_strain_is_the_constant_along_the_width():
+    """One axial mode on spur gears: patch to patch what `ritz` gives in the plane, logarithm and all, healthy and cracked."""
+    gear = replace(GEAR, beta=0.0)
+    points, weight = halfspace.hat_points(flexibility3d.hats(gear), 8)
+    carry = ritz._carry(ritz._variable(gear, points.ravel())).reshape(*points.shape, -1)
+    mean = np.einsum("hg,hgk->hk", weight, carry)
+    knots = flexibility3d.hats(gear)
+    local = half_plane(STEEL) * hat_logarithm(knots, knots)
+    for cracks in ((), (gf.Crack(level=0.5),)):
+        plane = [ritz._panel(gear, STEEL, own, "plane strain", 6, 1.0) for own in (cracks, ())]
+        solid = [ritz3d._panel(gear, STEEL, own, 10.0, 3, 0, 1.0) for own in (cracks, ())]
+        want, _ = ritz._join(gear, dict(enumerate(plane)), plane[1])
+        got, _ = ritz._join(gear, dict(enumerate(solid)), solid[1])
+        own = mean @ want[0, 0] @ mean.T + local
+        assert_allclose(got[0, 0][1:, 1:], own[1:, 1:], rtol=4e-3, atol=2e-3 * own.max(), err_msg=str(cracks))
+        across = mean @ want[0, 1] @ mean.T
+        assert_allclose(got[0, 1], across, rtol=5e-3)
+
+
+def test_even_load_on_a_wide_gear_is_the_plane_law():
+    """Bulk of one mode and half-space along the line together, at an even load: S(s, s) + c (ln(2 / a) + 1/2)."""
+    width, a = 400.0, 0.06
+    gear = replace(GEAR, beta=0.0, b=width)
+    body = ritz3d.flexibility3d(gear, STEEL, axial=0)
+    edge = np.linspace(0, width, 801)
+    z = (edge[1:] + edge[:-1]) / 2
+    kernel = body.kernel * halfspace.line_kernel(edge[:-1], edge[1:], halfspace.strip(np.full(z.size, a)))
+    plane = ritz.flexibility(gear, STEEL, order=6)
+    for arc in np.linspace(*plane.limits, 9)[2:-1]:
+        roll = roll_at_arc(gear, np.full(z.size, arc))
+        moved = (body.matrix(np.zeros(z.size, dtype=int), roll, z) + kernel) @ np.diff(edge)
+        want = plane.near[0](arc) + half_plane(STEEL) * (math.log(2 / a) + 0.5)
+        assert_allclose(moved.mean(), want, rtol=3e-3)
+
+
+def test_mirrored_helix_has_mirrored_flexibility():
+    right = ritz3d.flexibility3d(replace(GEAR, beta=-BETA), STEEL, order=2, axial=6)
+    left = ritz3d.flexibility3d(GEAR, STEEL, order=2, axial=6)
+    sign = np.tile((-1.0) ** np.arange(left.degree + 1), flexibility3d.PLACES)
+    for one, two in ((left.near[0], right.near[0]), (left.far[0, 1], right.far[0, 1])):
+        assert_allclose(two, sign[:, None] * one * sign, atol=1e-9 * np.abs(one).max())
+        assert np.abs(two - one).max() > 1e-3 * np.abs(one).max()
+
+
+@pytest.mark.slow
+def test_a_crack_over_parts_of_the_width():
+    """From end to end it is the crack through the width; a longer part is softer; the mirrored one is the mirror image."""
+    gear, run = replace(GEAR, beta=0.0, b=10.0), {"order": 2, "axial": 8}
+    mean = np.ix_(*[np.arange(flexibility3d.PLACES) * 7] * 2)
+    healthy, through = (ritz3d.flexibility3d(gear, STEEL, own, **run).near[0][mean] for own in ((), (gf.Crack(level=0.5),)))
+    added = []
+    for width in ((0.0, 2.5), (0.0, 5.0), (0.0, 7.5), (0.0, 10.0)):
+        made = ritz3d.flexibility3d(gear, STEEL, (gf.Crack(level=0.5, width=width),), **run)
+        added.append(np.diag(made.near[0][mean] - healthy))
+        softer = np.linalg.eigvalsh(made.near[0] - ritz3d.flexibility3d(gear, STEEL, **run).near[0])
+        assert softer.min() > -0.01 * softer.max()
+    assert (np.diff(added, axis=0) > 0).all()
+    plane = ritz3d._missing(gear, STEEL, (gf.Crack(level=0.5),), 2, 1.0) - ritz3d._missing(gear, STEEL, (), 2, 1.0)
+    assert_allclose(added[-1], np.diag(through - healthy - plane), rtol=2e-3)
+    left, right = (
+        ritz3d.flexibility3d(gear, STEEL, (gf.Crack(level=0.5, width=width),), **run) for width in ((0.0, 4.0), (6.0, 10.0))
+    )
+    sign = np.tile((-1.0) ** np.arange(left.degree + 1), flexibility3d.PLACES)
+    assert_allclose(right.near[0], sign[:, None] * left.near[0] * sign, atol=1e-7 * np.abs(left.near[0]).max())
+
+
+@pytest.mark.slow
+def test_a_short_crack_in_the_middle():
+    """Both its ends lie inside the gear, closer than the functions about them would reach."""
+    gear, run = replace(GEAR, b=6.0), {"order": 2, "axial": 5}
+    cases = (), (gf.Crack(level=0.5, width=(2.4, 3.6)),), (gf.Crack(level=0.5),)
+    healthy, short, through = (ritz3d.flexibility3d(gear, STEEL, own, **run).near[0] for own in cases)
+    even = np.arange(flexibility3d.PLACES) * 4
+    assert (np.diag(short)[even] > np.diag(healthy)[even]).all()
+    assert (np.diag(short - healthy)[even] < 0.3 * np.diag(through - healthy)[even]).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("beta", [0.0, BETA])
+def test_what_half_a_crack_adds_is_that_of_hexahedra(beta):
+    """Under even and linear loads on two hats next to the tip; the hexahedra are short where the crack ends inside the gear."""
+    gear, crack = replace(GEAR, beta=beta, b=8.0), gf.Crack(level=0.5, width=(0.0, 4.0))
+    knots, modes = flexibility3d.hats(gear), 2
+    full = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))[-2:]
+    patches = fe3d.Patches((0,), knots[:, full], modes)
+    one = ritz3d._panel(gear, STEEL, (), 8.0, 3, 9, 1.0)
+    found = []
+    for own in ((), (crack,)):
+        panels = {0: ritz3d._panel(gear, STEEL, own, 8.0, 3, 9, 1.0), 1: one}
+        made = ritz._join(gear, panels, one)[0][0, 0].reshape(flexibility3d.PLACES, 10, flexibility3d.PLACES, 10)
+        scale = 1 / np.sqrt((2 * np.arange(modes) + 1) * gear.b)  # from orthonormal polynomials to those of unit resultant
+        model = np.einsum("iaia->ia", made)[full][:, :modes] * scale**2
+        mesh = fe3d.mesh_patches(gear, patches, cracks=own, refine=0.7, fine=[(4.0, 4.0, 0.2)])
+        found.append((model, np.einsum("iaia->ia", fe3d.influence(mesh, STEEL, patches).matrix[0, :, :, 0])))
+    added = np.array(found[1]) - np.array(found[0])
+    print(np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds;", np.round(100 * added[1] / found[0][1], 1))
+    assert (added[1] > 0.1 * found[0][1]).all()
+    assert_allclose(added[0], added[1], rtol=0.03)
+
+
+@pytest.mark.parametrize(
+    ("cracks", "message"),
+    [
+        ((gf.Crack(level=0.5, ends=(1.0, 0.5)),), "cracks of one depth"),
+        ((gf.Crack(level=0.5, width=(0, 3)), gf.Crack(level=0.3, width=(6, 9))), "cracks of different shape"),
+    ],
+)
+def test_cracks_the_energy_model_has_not(cracks, message):
+    with pytest.raises(ValueError, match=message):
+        ritz3d.flexibility3d(GEAR, STEEL, cracks)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [({"width": 0.0}, "positive face width"), ({"order": 1}, "polynomial order"), ({"axial": 2}, "degree along the width")],
+)
+def test_impossible_options(options, message):
+    with pytest.raises(ValueError, match=message):
+        ritz3d.flexibility3d(GEAR, STEEL, **options)

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import dblquad
+from scipy.special import xlogy
+
+import gearfe as gf
+from gearfe.flexibility import hertz
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.7, 3.0])
+def test_hat_logarithm_equals_its_integral(apart):
+    """By brute force: the density of the distance of two hats, sampled finely, against the log integrated exactly."""
+    one, two = np.array([0.0, 0.4, 1.0]), np.array([0.0, 0.3, 0.8]) + apart
+    edges = np.linspace(0, 1, 4001)
+
+    def density(knots):
+        x = knots[0] + (knots[2] - knots[0]) * (edges[1:] + edges[:-1]) / 2
+        return x, np.interp(x, knots, [0, 1, 0]) / np.interp(x, knots, [0, 1, 0]).sum()
+
+    (x, p), (y, q) = density(one), density(two)
+    width = (two[2] - two[0]) / 4000
+    want = 0.0
+    for start in range(0, 4000, 500):
+        d = x[start : start + 500, None] - y[None, :]
+        low, high = d - width / 2, d + width / 2
+        mean_log = (xlogy(high, np.abs(high)) - high - xlogy(low, np.abs(low)) + low) / width  # over each cell of y
+        want -= p[start : start + 500] @ mean_log @ q
+    assert_allclose(hertz.hat_logarithm(one[:, None], two[:, None])[0, 0], want, rtol=1e-6, atol=1e-7)
+
+
+def test_far_apart_hats_see_a_point_log():
+    one = np.array([[-0.1], [0.0], [0.1]])
+    assert_allclose(hertz.hat_logarithm(one, one + 50)[0, 0], -np.log(50), rtol=1e-5)
+
+
+def test_line_contact_constant_is_the_mean_log_under_an_ellipse():
+    """ln(2/a) + 1/2 is the half-plane displacement at the middle of Hertz's pressure."""
+    a = 0.08
+    mean = dblquad(lambda s, _: 2 / np.pi * np.sin(s) ** 2 * -np.log(abs(a * np.cos(s)) + 1e-300), 0, 1, 0, np.pi)[0]
+    assert_allclose(np.log(2 / a) + 0.5, mean, rtol=1e-6)
+
+
+def test_hertz_pressure_carries_the_load():
+    modulus = hertz.contact_modulus((gf.Material(), gf.Material()))
+    a, p = hertz.half_width(100.0, 5.0, modulus), hertz.peak_pressure(100.0, 5.0, modulus)
+    assert_allclose(np.pi / 2 * a * p, 100.0, rtol=1e-12)
+
+
+def test_linear_hertz_of_equal_materials():
+    steel = gf.Material(E=206e3, nu=0.3)
+    assert_allclose(1 / hertz.linear_hertz((steel, steel)), np.pi * 206e3 / (4 * (1 - 0.09)), rtol=1e-12)

@@ -1,0 +1,309 @@
+"""Root cracks: published reductions, limits, closure, and the cache."""
+
+import math
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements import fe
+from gearfe.energy.ritz import plane as ritz
+from gearfe.stiffness import cache
+from geometry.damage.crack import check_apart, crack_in_band, crack_path, open_part, start_arc
+from geometry.mesh.outline import stations
+from geometry.mesh.section_mesh import section
+from geometry.tooth.profile import cartesian, root_curve
+from validation import reference
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
+PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
+STEEL = gf.Material(E=207e3, nu=0.3)
+stiffness = partial(gf.mesh_stiffness, face="spur")  # transverse sections
+TABLE = reference.load()["crack"]
+
+
+def reduction(crack, side="pinion", **options):
+    """Relative loss of k over the whole engagement of the cracked tooth."""
+    run = {"span": "tooth", "phases": 32} | options
+    healthy = stiffness(PAIR, 127.0, STEEL, **run)
+    cracked = stiffness(PAIR, 127.0, STEEL, damage={side: [crack]}, **run)
+    return 1 - cracked.k / healthy.k, cracked
+
+
+@pytest.mark.parametrize("method", ["fe", "ritz"])
+@pytest.mark.parametrize("row", TABLE["rows"], ids=lambda r: f"{r['z']} {r['level']}")
+def test_reductions_of_an_earlier_study(row, method):
+    assert_allclose(100 * reference.crack_reduction(row, method), row["value"], atol=TABLE["tolerance"], err_msg=TABLE["source"])
+
+
+@pytest.mark.parametrize("turning", [False, True])
+def test_level_is_spelled_out(turning):
+    gear = PAIR.gear_1
+    half = crack_path(gear, gf.Crack(level=0.5, turning=turning))
+    assert_allclose(half[0, -1], 0, atol=1e-12, err_msg="50 % reaches the centre-line")
+    quarter = crack_path(gear, gf.Crack(level=0.25, turning=turning))
+    assert_allclose(np.linalg.norm(np.diff(quarter)) * 2, np.linalg.norm(np.diff(half)), rtol=1e-12)
+    assert_allclose(np.degrees(np.arctan2(*-np.diff(half)[:, 0])), 45, rtol=1e-12)
+    start = cartesian(*root_curve(gear, start_arc(gear, gf.Crack(level=0.3))))
+    assert_allclose(half[:, 0], start)
+
+
+def test_turning_crack_heads_for_the_opposite_fillet():
+    path = crack_path(PAIR.gear_1, gf.Crack(level=0.8, turning=True))
+    assert path.shape == (2, 3)
+    assert_allclose((path[:, 2] - path[:, 1]) / 0.6 + path[:, 1], path[:, 0] * [-1, 1], rtol=1e-12)
+
+
+def test_unloaded_side_is_the_mirror_image():
+    one, two = (crack_path(PAIR.gear_1, gf.Crack(level=0.4, side=s)) for s in ("loaded", "unloaded"))
+    assert_allclose(one * [[-1], [1]], two)
+
+
+def test_seam_has_two_faces_and_one_tip():
+    gear = PAIR.gear_1
+    sizes = {"fillet_size": 0.2, "size": 0.8, "far_size": 1.8}
+    mesh = section(gear, {0: stations(gear, 0.2)}, **sizes, cracks=[gf.Crack(level=0.3)])
+    left, right = mesh.seams[0].faces
+    points = mesh.mesh.doflocs
+    assert_allclose(points[:, left], points[:, right], atol=1e-12)
+    assert left[-1] == right[-1]
+    assert not set(left[:-1]) & set(right[:-1])
+    tip, quarter, end = points[:, left[-1]], points[:, left[-2]], points[:, left[-3]]
+    assert_allclose(quarter, 0.75 * tip + 0.25 * end, rtol=1e-12)
+    used = np.unique(mesh.mesh.t)
+    assert used.size == mesh.mesh.nvertices, "no vertex is left without a triangle"
+
+
+def test_a_crack_never_stiffens_and_deeper_is_never_stiffer():
+    losses = [reduction(gf.Crack(level=level))[0] for level in (0.02, 0.1, 0.3, 0.6, 0.8)]
+    assert (losses[0] > -2e-4).all()
+    for shallow, deep in zip(losses[:-1], losses[1:], strict=True):
+        assert (deep > shallow - 2e-4).all()
+    assert losses[0].max() < 0.01, "a tiny crack is nearly healthy"
+
+
+def test_faces_do_not_pass_through_each_other():
+    """On the unloaded side the load presses the faces together: kept apart, the tooth is nearly healthy."""
+    loss, curve = reduction(gf.Crack(level=0.4, side="unloaded"))
+    assert curve.meta["crack_closed_phases"]
+    assert 0 < loss.max() < 0.1
+    opened, curve = reduction(gf.Crack(level=0.4))
+    assert opened.max() > 0.2
+    closed = np.array(curve.meta["crack_closed_phases"])
+    assert ((closed < 0.05) | (closed > PAIR.eps_alpha - 0.05)).all(), "only a neighbour's load closes it"
+
+
+def test_wheel_crack_equals_pinion_crack_of_the_swapped_pair():
+    loss, _ = reduction(gf.Crack(level=0.4), side="wheel", extended=False)
+    swapped = gf.GearPair(PAIR.gear_2, PAIR.gear_1)
+    phase = np.arange(-8, 57) / 32
+    mirror = {"phases": PAIR.eps_alpha - phase, "extended": False}
+    healthy = stiffness(swapped, 127.0, STEEL, **mirror)
+    cracked = stiffness(swapped, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.4)]}, **mirror)
+    wheel = {"phases": phase, "extended": False}
+    direct = stiffness(PAIR, 127.0, STEEL, damage={"wheel": [gf.Crack(level=0.4)]}, **wheel)
+    assert_allclose(direct.k, cracked.k, rtol=1e-9)
+    assert loss.max() > 0.1
+    assert (healthy.k >= cracked.k * (1 - 1e-4)).all()
+
+
+def test_any_tooth_and_several():
+    base, _ = reduction(gf.Crack(level=0.4))
+    phase = np.arange(-8, 57) / 32
+    shifted = stiffness(PAIR, 127.0, STEEL, phases=phase - 1, damage={"pinion": [gf.Crack(level=0.4, tooth=1)]})
+    first = stiffness(PAIR, 127.0, STEEL, phases=phase, damage={"pinion": [gf.Crack(level=0.4)]})
+    assert_allclose(shifted.k, first.k, rtol=5e-4)  # the same mesh turned by a tooth is another triangulation
+    both = [gf.Crack(level=0.4), gf.Crack(level=0.4, tooth=1)]
+    two = stiffness(PAIR, 127.0, STEEL, phases=phase, damage={"pinion": both})
+    assert (two.k < first.k * 1.0002).all()
+    assert (two.k < shifted.k[8] * 0.999).any()
+    assert base.max() > 0.2
+
+
+@pytest.mark.parametrize(("side", "z"), [("pinion", 18), ("wheel", 27)])
+def test_a_cracked_tooth_comes_round_again(side, z):
+    damage = {side: [gf.Crack(level=0.4)]}
+    phase = np.array([0.1, 0.5, 0.9])
+    first = stiffness(PAIR, 127.0, STEEL, phases=phase, damage=damage)
+    later = stiffness(PAIR, 127.0, STEEL, phases=phase + z, damage=damage)
+    assert_allclose(later.k, first.k, rtol=1e-9)
+    renamed = stiffness(PAIR, 127.0, STEEL, phases=phase, damage={side: [gf.Crack(level=0.4, tooth=z)]})
+    assert_allclose(renamed.k, first.k, rtol=1e-9)
+    assert renamed.meta["damage"][side][0]["tooth"] == z
+
+
+def test_cracks_on_both_sides_of_the_numbering_seam():
+    damage = {"pinion": [gf.Crack(level=0.4), gf.Crack(level=0.4, tooth=17)]}
+    same = {"pinion": [gf.Crack(level=0.4), gf.Crack(level=0.4, tooth=-1)]}
+    one, two = (stiffness(PAIR, 127.0, STEEL, phases=[0.3, 0.7], damage=d) for d in (damage, same))
+    assert_allclose(one.k, two.k, rtol=1e-9)
+
+
+def test_a_bare_crack_is_a_list_of_one():
+    listed = stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4)]})
+    bare = stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": gf.Crack(level=0.4)})
+    assert bare.k == listed.k
+
+
+def test_a_crack_out_of_sight_is_pointed_out():
+    with pytest.warns(UserWarning, match="no cracked tooth is in contact"):
+        stiffness(PAIR, 127.0, STEEL, phases=[0.3], damage={"pinion": [gf.Crack(level=0.4, tooth=5)]})
+
+
+@pytest.mark.parametrize("method", ["fe", "ritz"])
+def test_flexibility_of_a_cracked_gear_is_symmetric_positive_definite(method):
+    gear, crack = PAIR.gear_1, (gf.Crack(level=0.6),)
+    if method == "fe":
+        healthy = fe.flexibility(gear, STEEL, neighbours=2)
+        cracked = fe.cracked_flexibility(gear, STEEL, crack, healthy, neighbours=2)
+    else:
+        healthy, cracked = ritz.flexibility(gear, STEEL, neighbours=2), ritz.flexibility(gear, STEEL, crack, neighbours=2)
+    rolls = np.array([2.5, 2.5 + gear.p_bt])
+    opening = cracked.seam.at([r**2 / (2 * gear.r_b) for r in rolls], [0, 1])
+    matrix = cracked.matrix(rolls, [0, 1]) + opening @ cracked.seam.stiffness @ opening.T
+    assert_allclose(matrix, matrix.T, rtol=1e-12)
+    assert np.linalg.eigvalsh(matrix).min() > 0
+    assert (np.diag(matrix) > np.diag(healthy.matrix(rolls, [0, 1]))).all()
+
+
+@pytest.fixture
+def counted(monkeypatch, tmp_path):
+    """An empty cache folder, and a list that grows with every healthy and cracked solve."""
+    monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
+    cache.clear()
+    calls = []
+    for name in ("flexibility", "cracked_flexibility"):
+        real = getattr(fe, name)
+        monkeypatch.setattr(fe, name, lambda *a, _real=real, _name=name, **k: (calls.append(_name), _real(*a, **k))[1])
+    yield calls
+    cache.clear()
+
+
+def test_only_what_changed_is_solved_again(counted):
+    run = {"phases": [0.3], "method": "fe"}
+    stiffness(PAIR, 127.0, STEEL, **run)
+    assert counted == ["flexibility"] * 2
+    one = stiffness(PAIR, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.3)]}, **run)
+    assert counted[2:] == ["cracked_flexibility"]
+    cache.clear()  # a new process: from disk
+    again = stiffness(PAIR, 127.0, STEEL, damage={"pinion": [gf.Crack(level=0.3)]}, **run)
+    assert counted[3:] == []
+    assert again.k == one.k
+
+
+def test_a_wrong_hit_is_impossible(counted, tmp_path):
+    import pickle
+
+    run = {"phases": [0.3], "method": "fe"}
+    stiffness(PAIR, 127.0, STEEL, **run)
+    other = gf.GearPair(replace(PAIR.gear_1, r_bore=9.0000001), PAIR.gear_2)
+    stiffness(other, 127.0, STEEL, **run)
+    stiffness(PAIR, 127.0, gf.Material(E=207e3, nu=0.3000001), **run)
+    assert counted == ["flexibility"] * 5
+    # a file whose name matches but whose contents belong to another gear, or are damaged, is not used
+    files = sorted(tmp_path.glob("*.pickle"))
+    first, second = (f.read_bytes() for f in files[:2])
+    files[0].write_bytes(pickle.dumps(("another key", pickle.loads(second)[1])))
+    files[1].write_bytes(first[:100])
+    cache.clear()
+    for pair, material in ((PAIR, STEEL), (other, STEEL), (PAIR, gf.Material(E=207e3, nu=0.3000001))):
+        stiffness(pair, 127.0, material, **run)
+    assert counted[5:] == ["flexibility"] * 2
+
+
+def test_cache_can_be_switched_off(counted, monkeypatch, tmp_path):
+    monkeypatch.setenv("GEARFE_CACHE", "")
+    stiffness(PAIR, 127.0, STEEL, method="fe", phases=[0.3], cache=False)
+    stiffness(PAIR, 127.0, STEEL, method="fe", phases=[0.3], cache=False)
+    assert len(counted) == 4
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("damage", "message"),
+    [
+        ({"sun": [gf.Crack(level=0.3)]}, "'pinion' and 'wheel'"),
+        ({"pinion": [0.3]}, "neither a Crack"),
+        ({"pinion": [gf.Crack(length=30.0)]}, "sector|held edge"),
+        ({"pinion": [gf.Crack(level=0.3), gf.Crack(level=0.1)]}, "two cracks on the loaded side"),
+        ({"pinion": [gf.Crack(level=0.5), gf.Crack(level=0.5, side="unloaded")]}, "two cracks of tooth 0 meet"),
+    ],
+)
+def test_bad_damage(damage, message):
+    with pytest.raises(ValueError, match=message):
+        stiffness(PAIR, 127.0, STEEL, damage=damage, phases=[0.3])
+
+
+@pytest.mark.parametrize(
+    ("damage", "options", "message"),
+    [
+        ([gf.Crack(level=0.3)], {"method": "coupled"}, "which has none"),
+        ([gf.Pit(radius=18.0, z=0.5, axes=(0.1, 0.1), depth=0.05)], {"method": "ritz"}, "pits with method"),
+        ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
+        ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
+        ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
+        ((), {"method": "published", "variants": {"root": "base"}}, "'root' is none of method = 'published'"),
+    ],
+)
+def test_what_a_method_does_not_model_is_refused(damage, options, message):
+    with pytest.raises(ValueError, match=message):
+        stiffness(PAIR, 127.0, STEEL, damage={"pinion": damage}, **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"width": (3.0, 2.0)}, "from a height z >= 0 to a greater one"),
+        ({"width": (-1.0, 2.0)}, "from a height z >= 0 to a greater one"),
+        ({"width": (0.0, math.nan)}, "two finite numbers"),
+        ({"width": 3.0}, "two finite numbers"),
+        ({"width": (0.0, 1.0, 2.0)}, "two finite numbers"),
+        ({"ends": (0.0, 0.0)}, "not both 0"),
+        ({"ends": (0.5, 1.2)}, "from 0 to 1"),
+        ({"ends": (-0.1, 1.0)}, "from 0 to 1"),
+    ],
+)
+def test_impossible_widths_are_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        gf.Crack(level=0.3, **options)
+
+
+@pytest.mark.parametrize("method", ["ritz", "fe", "textbook", "published"])
+@pytest.mark.parametrize("options", [{"width": (0.0, 0.5)}, {"ends": (1.0, 0.0)}])
+def test_sections_refuse_cracks_of_part_of_the_width(method, options):
+    damage = {"pinion": [gf.Crack(level=0.3, **options)]}
+    with pytest.raises(ValueError, match=f"method = '{method}' has only cracks through the whole width"):
+        stiffness(PAIR, 127.0, STEEL, method=method, damage=damage)
+
+
+def test_cracks_beyond_the_face_are_refused():
+    with pytest.raises(ValueError, match=r"open from z = 0\.5 to 1.5 mm, but the face ends at 1 mm"):
+        stiffness(PAIR, 127.0, STEEL, damage={"wheel": [gf.Crack(level=0.3, width=(0.5, 1.5))]})
+    with pytest.raises(ValueError, match="only cracks through the whole width"):
+        gf.stress_intensity(PAIR.gear_1, gf.Crack(level=0.3, width=(0.0, 0.5)), 18.5, 100.0, STEEL)
+
+
+def test_two_cracks_of_one_side_lie_beside_each_other():
+    gear = replace(PAIR.gear_1, b=10.0)
+    check_apart(gear, [gf.Crack(level=level, width=width) for level, width in ((0.3, (0, 4)), (0.6, (4, 10)))])
+    with pytest.raises(ValueError, match="one is enough"):
+        check_apart(gear, [gf.Crack(level=level, width=width) for level, width in ((0.3, (0, 4)), (0.6, (3, 10)))])
+
+
+def test_bands_see_their_part_of_a_crack_from_their_own_end():
+    """Halves of 30 mm with a groove of 6 mm; the second one is seen from z = 30."""
+    sloping = gf.Crack(level=0.6, width=(6.0, 24.0), ends=(1.0, 0.4))
+    for first, last, sense in ((0.0, 12.0, 1), (30.0, 18.0, -1)):
+        seen = crack_in_band(sloping, 30.0, first, last)
+        assert seen.width == (6.0, 12.0)
+        z = np.linspace(0, 12, 49)
+        assert_allclose(open_part(seen, 12.0, z), open_part(sloping, 30.0, first + sense * z), atol=1e-12)
+    half = gf.Crack(level=0.6, width=(0.0, 12.0))
+    assert crack_in_band(half, 30.0, 0.0, 12.0) == gf.Crack(level=0.6), "open over all of the band"
+    assert crack_in_band(half, 30.0, 30.0, 18.0) is None
+    assert crack_in_band(gf.Crack(level=0.6), 30.0, 30.0, 18.0) == gf.Crack(level=0.6)
+    out = crack_in_band(gf.Crack(level=0.6, ends=(1.0, 0.0)), 30.0, 30.0, 18.0)
+    assert (out.width, out.ends) == (None, (0.0, 0.4))

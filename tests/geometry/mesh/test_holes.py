@@ -1,0 +1,323 @@
+"""Pits as real holes: their volume, cuts that fail, tets, loads, stress, and what the missing material does."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+from skfem import Basis as FemBasis
+from skfem import BilinearForm, ElementTetP2, ElementVector, MeshTet, asm
+from skfem.helpers import ddot, eye, sym_grad, trace
+
+import gearfe as gf
+from gearfe.elements.hexahedron import assemble
+from gearfe.elements.tetrahedron import nodal_stress, second_order, tet_stiffness
+from gearfe.stress.fields import write_vtu
+from gearfe.stress.holed import pressed_tooth, tooth_field
+from geometry.damage.pit import centre_arc, pit_row
+from geometry.damage.pit_volume import pit_frame, removed_volume
+from geometry.mesh import holes
+from geometry.mesh.holes import holed_sector
+from geometry.tooth.profile import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
+GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
+HELICAL = replace(GEAR, beta=math.radians(25))
+RING = gf.Gear(z=40, r_rim=52.0, addendum=0.8, tip_radius=0.2, **RACK)
+PIT = {"z": 3.0, "axes": (0.5, 0.8), "depth": 0.2}
+COARSE = {"far": 3.0, "tooth": 1.0, "flank": 0.8, "fillet": 0.6, "tip": 0.3}
+
+
+def pit(gear, **numbers):
+    return gf.Pit(**{"radius": gear.r, **PIT} | numbers)
+
+
+@pytest.mark.parametrize("gear", [GEAR, RING], ids=["gear", "ring"])
+@pytest.mark.parametrize("axes", [(0.5, 0.8), (0.9, 0.3)])
+def test_volume_by_columns_over_the_tangent_plane(gear, axes):
+    """Of a spur gear: width of the ellipse times depth and height of the involute over the tangent plane."""
+    one = pit(gear, axes=axes)
+    roll = math.sqrt(one.radius**2 - gear.r_b**2)
+    middle, normal = cartesian(*flank(gear, roll)), flank_normal(gear, roll)
+    tangent = np.array([-normal[1], normal[0]])
+
+    def place(s):
+        away = cartesian(*flank(gear, float(roll_at_arc(gear, s)))) - middle
+        return away @ tangent, away @ normal
+
+    def column(s):
+        (a, h), step = place(s), 1e-5
+        width = 2 * axes[1] * math.sqrt(max(1 - (a / axes[0]) ** 2, 0.0))
+        return width * (one.depth + h) * abs(place(s + step)[0] - place(s - step)[0]) / (2 * step)
+
+    at = centre_arc(gear, one)
+    want = quad(column, at - 1.2 * axes[0], at + 1.2 * axes[0], limit=400, points=[at - axes[0], at, at + axes[0]])[0]
+    assert_allclose(removed_volume(gear, [one]), want, rtol=2e-4)
+
+
+@pytest.mark.parametrize("side", ["loaded", "unloaded"])
+@pytest.mark.parametrize("beta", [0.0, 0.3, -0.5])
+def test_pits_are_cut_along_the_normal_of_the_helicoid(beta, side):
+    gear = replace(GEAR, beta=beta)
+    one = pit(gear, side=side)
+    sign = 1 if side == "loaded" else -1
+
+    def surface(roll, z):
+        xy = cartesian(*flank(gear, roll)) * [sign, 1]
+        return holes._twisted(np.array([*xy, z]), holes.twist_rate(gear))
+
+    roll, step = math.sqrt(one.radius**2 - gear.r_b**2), 1e-5
+    along = [surface(roll + a, one.z + b) - surface(roll - a, one.z - b) for a, b in ((step, 0), (0, step))]
+    normal = np.cross(*along)
+    normal *= np.sign(normal[0] * sign * math.cos(holes.twist_rate(gear) * one.z)) / np.linalg.norm(normal)
+    centre, _, push, _ = pit_frame(gear, one)
+    ends = [holes._twisted(centre + step * k * push, holes.twist_rate(gear)) for k in (-1, 1)]
+    assert_allclose((ends[1] - ends[0]) / (2 * step), -one.depth * normal, atol=1e-8)
+
+
+@pytest.mark.parametrize("side", ["loaded", "unloaded"])
+@pytest.mark.parametrize("beta", [0.0, 0.3, -0.5])
+def test_small_pits_take_their_area_times_their_depth(beta, side):
+    gear = replace(GEAR, beta=beta)
+    one = pit(gear, axes=(0.05, 0.08), depth=0.1, angle=0.4, side=side)
+    area = math.pi * 0.05 * 0.08 / math.cos(gear.beta_b)  # of the flank: dA = ds dz / cos(beta_b)
+    assert_allclose(removed_volume(gear, [one]), area * 0.1, rtol=5e-3)
+
+
+def test_volume_of_pits_at_edges_and_of_pits_on_each_other():
+    whole = removed_volume(GEAR, [pit(GEAR)])
+    assert_allclose(removed_volume(GEAR, [pit(GEAR, z=0.0)]), whole / 2, rtol=1e-3)
+    assert_allclose(removed_volume(GEAR, [pit(GEAR, side="unloaded")]), whole, rtol=1e-12)
+    assert_allclose(removed_volume(GEAR, [pit(GEAR), pit(GEAR)]), whole, rtol=1e-12)
+    apart = [pit(GEAR, z=1.5), pit(GEAR, z=4.5)]
+    assert_allclose(removed_volume(GEAR, apart), 2 * whole, rtol=1e-9)
+    near = removed_volume(GEAR, [pit(GEAR, z=2.6), pit(GEAR, z=3.4)])
+    assert 1.2 * whole < near < 1.9 * whole
+    assert_allclose(near, removed_volume(GEAR, [pit(GEAR, z=3.4), pit(GEAR, z=2.6)]), rtol=1e-4)
+
+
+LAYOUTS = {
+    "one": [{}],
+    "turned": [{"angle": 0.6}],
+    "tip edge": [{"radius": GEAR.r_a}],
+    "end face": [{"z": 0.0}, {"z": 6.0}],
+    "corner": [{"radius": GEAR.r_a - 0.1, "z": 5.8}],
+    "overlapping": [{"z": 2.6}, {"z": 3.2, "radius": GEAR.r + 0.4}, {"z": 3.4, "angle": 1.0}],
+    "nested": [{}, {"axes": (0.2, 0.3)}],
+    "unloaded": [{"side": "unloaded"}],
+    "both sides": [{}, {"side": "unloaded", "z": 2.5}],
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "beta"), [*((name, 0.4) for name in LAYOUTS), ("one", 0.0), ("corner", -0.2), ("both sides", -0.2)]
+)
+def test_what_is_cut_is_what_the_pits_take(name, beta):
+    gear = replace(GEAR, beta=beta)
+    scale = gear.r / GEAR.r
+    found = [pit(gear, **one | ({"radius": one["radius"] * scale} if "radius" in one else {})) for one in LAYOUTS[name]]
+    found = [replace(one, radius=min(one.radius, gear.r_a)) for one in found]
+    made = holed_sector(gear, found, teeth=1, sizes=COARSE)
+    wanted, cut, meshed = made.removed
+    assert_allclose(cut, wanted, rtol=2e-3)
+    a, b, c, d = made.points[:, made.cells].transpose(1, 0, 2)
+    size = np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a) / 6
+    assert size.min() > 0
+    assert_allclose(size[made.plug >= 0].sum(), meshed, rtol=5e-3)  # the turn by the helix keeps volumes
+    assert 0.88 < meshed / wanted < 1.12
+    assert made.faces["pits"].size
+
+
+def test_the_helix_turns_no_tet_inside_out():
+    """This coarse mesh has flat tets that the turn would invert; it is made anew."""
+    pair = gf.load_scene("helical_pitting").pair()
+    sizes = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "rim": 0.3}
+    made = holed_sector(pair.pair.gear_1, pair.damage["minor"]["pinion"], refine=0.5, sizes=sizes)
+    a, b, c, d = made.points[:, made.cells].transpose(1, 0, 2)
+    assert np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a).min() > 0
+
+
+def test_holes_in_a_ring():
+    made = holed_sector(RING, [pit(RING)], teeth=1, sizes=COARSE)
+    assert_allclose(made.removed[1], made.removed[0], rtol=2e-3)
+
+
+@pytest.mark.parametrize("fault", ["no cut", "shallow", "moved"])
+def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
+    """Tools that miss the tooth, are too short or are beside their place: no error of gmsh, but the volume is wrong."""
+    tool = holes._tool
+
+    def wrong(gear, one):
+        centre, axes, push = tool(gear, one)
+        if fault == "no cut":
+            return centre - 2 * push, axes, push
+        return (centre, axes, 0.9 * push) if fault == "shallow" else (centre + np.array([0.0, 0.02, 0.0]), axes, push)
+
+    found = [pit(GEAR), pit(GEAR, z=1.0)]
+    assert holed_sector(GEAR, found, teeth=1, sizes=COARSE).removed[1] > 0
+    monkeypatch.setattr(holes, "_tool", wrong)
+    with pytest.raises(RuntimeError, match=r"should take .* mm\*\*3 from the tooth"):
+        holed_sector(GEAR, found, teeth=1, sizes=COARSE)
+
+
+@pytest.mark.parametrize(
+    ("pits", "options", "message"),
+    [
+        ([{"radius": GEAR.r_form + 0.1}], {}, "below the form circle"),
+        ([{}, {"tooth": 1, "z": 1.0}], {}, "one tooth at a time"),
+        ([{"depth": 3.0}], {}, "shallower"),
+        ([{"z": 7.0}], {}, "0 <= z <= b"),
+        ([{}], {"teeth": 2}, "odd number"),
+        ([{}], {"refine": 0.0}, "refine > 0"),
+        ([{}], {"crack": 0.3}, "give a Crack"),
+    ],
+)
+def test_what_cannot_be_cut_is_refused(pits, options, message):
+    with pytest.raises(ValueError, match=message):
+        holed_sector(GEAR, [pit(GEAR, **one) for one in pits], **options)
+
+
+@pytest.mark.parametrize("crack", [gf.Crack(level=0.3), gf.Crack(level=0.7, turning=True), gf.Crack(level=0.4, side="unloaded")])
+def test_cracks_are_seams(crack):
+    """Two faces that lie on each other, open at the mouth and shut at the tip; no volume is lost."""
+    gear = replace(GEAR, beta=0.3)
+    made, whole = (holed_sector(gear, (), one, teeth=1, sizes=COARSE) for one in (crack, None))
+    body, tooth = made.faces["crack body"], made.faces["crack tooth"]
+    assert_allclose(made.points[:, body], made.points[:, tooth], atol=1e-12)
+    assert (body != tooth).any(axis=0).all()
+    assert (body == tooth).any(), "the front is one line of nodes"
+
+    def volume(mesh):
+        a, b, c, d = mesh.points[:, mesh.cells].transpose(1, 0, 2)
+        return np.einsum("im,im->", np.cross(b - a, c - a, axis=0), d - a) / 6
+
+    assert_allclose(volume(made), volume(whole), rtol=5e-3)
+
+
+def test_tets_are_those_of_scikit_fem(steel):
+    mesh = MeshTet().refined(1)
+    mesh = mesh.translated((0.1, 0.2, 0.3)).scaled((1.0, 1.3, 0.8))
+    sides = mesh.p[:, mesh.t[1:]] - mesh.p[:, mesh.t[:1]]
+    left = np.linalg.det(sides.transpose(2, 0, 1)) < 0  # ours are right-handed
+    nodes, cells, _ = second_order(mesh.p, np.where(left, mesh.t[[1, 0, 2, 3]], mesh.t))
+    free = np.arange(nodes.shape[1])
+    lower = assemble(nodes, cells, steel, free, tet_stiffness)
+    lam, mu = steel.lame("plane strain")
+
+    @BilinearForm
+    def form(u, v, _):
+        strain = sym_grad(u)
+        return ddot(lam * eye(trace(strain), 3) + 2 * mu * strain, sym_grad(v))
+
+    basis = FemBasis(mesh, ElementVector(ElementTetP2()), intorder=4)
+    theirs = asm(form, basis)
+    field = np.random.default_rng(1).normal(size=(3, 10))
+
+    def at(x):
+        x, y, z = x
+        return np.tensordot(field, [1 + 0 * x, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z], axes=1)
+
+    mine = at(nodes).T.ravel()
+    other = basis.project(at)
+    ours = 2 * mine @ (lower @ mine) - (lower.diagonal() * mine**2).sum()
+    assert_allclose(ours, other @ theirs @ other, rtol=1e-9)
+
+
+def test_stress_of_a_linear_field_is_exact(steel):
+    made = holed_sector(HELICAL, [pit(HELICAL)], teeth=1, sizes=COARSE)
+    nodes, cells, _ = second_order(made.points, made.cells[:, made.plug < 0])
+    slope = np.random.default_rng(0).normal(size=(3, 3))
+    lam, mu = steel.lame("plane strain")
+    strain = (slope + slope.T) / 2
+    want = lam * np.trace(strain) * np.eye(3) + 2 * mu * strain
+    found = nodal_stress(nodes, cells, slope @ nodes, steel)[:, np.unique(cells)]
+    assert_allclose(found, np.tile(want[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]][:, None], found.shape[1]), rtol=1e-6, atol=1e-3)
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    pair = gf.GearPair(HELICAL, replace(HELICAL, z=27))
+    damage = {"pinion": [pit(HELICAL), pit(HELICAL, z=1.2), gf.Crack(level=0.3)]}
+    run = {"phases": [0.5, 0.9], "removal": True, "sizes": COARSE}
+    return pair, pressed_tooth(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage, **run)
+
+
+def test_the_load_is_that_of_the_contact(pressed):
+    """Its axial part and moment are those of a force at right angles to the flank; the reactions balance it."""
+    pair, made = pressed
+    from gearfe.stress import holed
+
+    nodes, _, number = second_order(made.sector.points, made.sector.cells)
+    lines = holed._lines(pair, made.contact.cells[0], 0, 0, 0)
+    force = holed._pressure(made.sector, nodes, number, lines).reshape(-1, 3).T
+    total = sum(part[3].sum() for found in lines.values() for part in found)
+    assert_allclose(total * math.cos(HELICAL.beta_b), 1500.0, rtol=1e-6)
+    assert_allclose(force[2].sum(), total * math.sin(HELICAL.beta_b), rtol=1e-9)
+    moment = (nodes[1] * force[0] - nodes[0] * force[1]).sum()
+    assert_allclose(moment, -total * HELICAL.r_b * math.cos(HELICAL.beta_b), rtol=2e-3)
+    assert made.load[0] == pytest.approx(sum(part[3].sum() for part in lines[0]))
+
+
+def test_holes_and_cracks_weaken(pressed):
+    _, made = pressed
+    assert (made.extra > 0).all()
+    assert (made.extra < 0.02).all()
+    field = tooth_field(made)
+    assert field.opening > 0
+    assert np.isfinite(field.mises).all()
+    assert field.root > 0
+
+
+def test_vtu_reads_back(pressed, tmp_path):
+    import meshio
+
+    field = tooth_field(pressed[1], 1)
+    write_vtu(tmp_path / "tooth.vtu", [field])
+    found = meshio.read(tmp_path / "tooth.vtu")
+    assert_allclose(found.points, field.points.T)
+    assert np.array_equal(found.cells_dict["tetra10"], field.cells.T)
+    assert_allclose(found.point_data["displacement [mm]"], field.moved.T)
+    assert_allclose(found.point_data["stress [MPa]"], field.stress.T)
+    assert_allclose(found.point_data["von Mises stress [MPa]"], field.mises)
+
+
+def test_damage_of_two_gears_is_refused():
+    pair = gf.GearPair(GEAR, replace(GEAR, z=27))
+    with pytest.raises(ValueError, match="one tooth of one gear"):
+        pressed_tooth(pair, 1000.0, gf.Material(), {"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]})
+
+
+@pytest.mark.slow
+def test_halves_are_mirror_images(steel):
+    """Pits in the second half of a herringbone pair, turned the other way, do what they do in the first."""
+    wide = [replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))]
+    pair = gf.GearPair(*wide)
+    run = {"phases": [0.6], "face": "herringbone", "removal": True, "sizes": COARSE, "teeth": 1}
+    found = [
+        pressed_tooth(pair, 2000.0, steel, {"pinion": [pit(HELICAL, z=z, angle=a)]}, **run) for z, a in ((2.0, 0.5), (10.0, -0.5))
+    ]
+    assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
+    assert_allclose(found[0].load, found[1].load, rtol=1e-6)
+    assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
+    with pytest.raises(ValueError, match="both halves"):
+        pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 10.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
+
+
+@pytest.mark.slow
+def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel):
+    """The mean over the middle third of the width, in ten pieces of the fillet: the nodal peaks of so coarse tets scatter."""
+    pair = gf.GearPair(replace(GEAR, b=16.0), replace(GEAR, b=16.0, z=27))
+    made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes={"fillet": 0.2, "flank": 0.4})
+    assert made.load[0] == pytest.approx(2000.0), "one pair carries"
+    field = tooth_field(made)
+    arcs = np.linspace(0.0, fillet_length(pair.gear_1), 400)
+    curve = cartesian(*root_curve(pair.gear_1, arcs))
+    away = np.hypot(*(field.points[:2, :, None] - curve[:, None, :]))
+    on = (away.min(axis=1) < 0.02) & (np.abs(field.points[2] - 8.0) < 2.5)
+    tensor = field.stress[:, on][[[0, 3, 5], [3, 1, 4], [5, 4, 2]]].transpose(2, 0, 1)
+    piece = away[on].argmin(axis=1) // 40
+    means = [np.linalg.eigvalsh(tensor)[piece == k, 2].mean() for k in range(10)]
+    radius = math.hypot(pair.gear_1.r_b, float(made.contact.cells[0].roll_1.mean()))
+    assert_allclose(max(means), gf.root_stress(pair.gear_1, radius, 125.0, steel), rtol=0.04)

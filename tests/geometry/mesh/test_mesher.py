@@ -1,0 +1,76 @@
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from skfem import Basis, ElementTriP2
+
+import gearfe as gf
+from gearfe.elements.fe import mesh_gear
+from geometry.mesh import mesher, outline, section_mesh
+from geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
+
+GEAR = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+
+
+@pytest.fixture(scope="module")
+def section():
+    return mesh_gear(gf.Gear(z=21, r_bore=7.4, **GEAR), read=range(1, 3))
+
+
+def test_boundary_lies_on_the_profile(section):
+    gear, points = section.gear, section.mesh.doflocs
+    assert_allclose(points[:, section.flank[0]], cartesian(*flank(gear, section.roll[0])), atol=1e-12)
+    radius, angle = flank(gear, section.roll[1])
+    assert_allclose(points[:, section.flank[1]], cartesian(radius, angle + 2 * math.pi / 21), atol=1e-12)
+    bore = section.mesh.boundaries["held"]
+    assert_allclose(np.hypot(*points[:, section.mesh.nvertices + bore]), gear.r_bore, rtol=1e-12)
+
+
+def test_area_converges_to_that_of_the_exact_outline(section):
+    gear = section.gear
+    half = [flank(gear, np.linspace(gear.roll_a, gear.roll_f, 4001))]
+    half += [root_curve(gear, np.linspace(fillet_length(gear), 0, 4001))]
+    radius, angle = np.concatenate(half, axis=1)
+    # twice the area between the centre-line and the half outline: tip arc, flank, fillet, root arc
+    twice = gear.r_a**2 * gear.half_thickness(gear.r_a) + gear.r_f**2 * (math.pi / gear.z - root_half_angle(gear))
+    twice += ((radius[1:] ** 2 + radius[:-1] ** 2) / 2 * np.diff(angle)).sum()
+    exact = gear.z * twice - math.pi * gear.r_bore**2
+    errors = []
+    for refine in (1, 2):
+        basis = Basis(mesh_gear(gear, read=range(1, 3), refine=refine).mesh, ElementTriP2(), intorder=6)
+        assert basis.dx.min() > 0, "no inverted triangle"
+        errors.append(abs(basis.dx.sum() / exact - 1))
+    print("area errors", errors)
+    assert errors[0] < 3e-4
+    assert errors[1] < errors[0] / 4, "third order or better"
+
+
+@pytest.mark.parametrize(("z", "bore"), [(5, 0.3), (12, 0.95), (17, 0.5), (60, 0.9), (200, 0.5)])
+def test_hard_gears_mesh(z, bore):
+    r_f = gf.Gear(z=z, r_bore=0.1, **GEAR).r_f
+    mesh = mesh_gear(gf.Gear(z=z, r_bore=bore * r_f, **GEAR), read=range(1, 2))
+    assert Basis(mesh.mesh, ElementTriP2(), intorder=4).dx.min() > 0
+
+
+def test_session_is_closed_after_an_error():
+    import gmsh
+
+    with pytest.raises(KeyError), mesher.gmsh_session():
+        raise KeyError
+    assert not gmsh.isInitialized()
+
+
+def test_missing_gmsh_names_the_packages(monkeypatch):
+    import sys
+
+    monkeypatch.setitem(sys.modules, "gmsh", None)
+    with pytest.raises(RuntimeError, match="libglu1-mesa"), mesher.gmsh_session():
+        pass
+
+
+def test_same_tooth_twice_is_refused():
+    gear = gf.Gear(z=5, r_bore=1.0, **GEAR)
+    roll = outline.stations(gear, 0.5)
+    with pytest.raises(ValueError, match="not distinct"):
+        section_mesh.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)

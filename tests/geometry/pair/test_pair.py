@@ -1,0 +1,109 @@
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from geometry.tooth.profile import cartesian, flank
+from validation import reference
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+
+
+def gear(z, **numbers):
+    return gf.Gear(z=z, **(RACK | {"r_bore": 0.5 * z} | numbers))
+
+
+@pytest.mark.parametrize("row", reference.load()["root_stress"]["rows"])
+def test_contact_ratio_of_independent_cases(row):
+    rack = {"m_n": 1.0, "alpha_n": math.radians(20), "b": 1.0, "r_bore": 1.0}
+    one = gf.Gear(z=row["z"], x=row["x"], tip_radius=row["tip_radius"], **rack)
+    assert_allclose(gf.GearPair(one, gf.Gear(z=43, **rack)).eps_alpha, row["eps_alpha"], rtol=1e-11)
+
+
+def test_contact_ratios_of_the_articles():
+    helical = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 30.0}
+    s4 = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **helical), gf.Gear(z=27, r_bore=12.0, **helical))
+    assert_allclose([s4.a, s4.eps_alpha], [46.8135, 1.5018], rtol=1e-4, err_msg="S4 sun-planet")
+    helical = {"m_n": 2.1, "alpha_n": math.radians(17.5), "beta": math.radians(29), "b": 16.9}
+    s3 = gf.GearPair(gf.Gear(z=17, r_bore=9.0, **helical), gf.Gear(z=60, r_bore=30.0, **helical))
+    assert_allclose([s3.a, s3.eps_alpha], [92.440, 1.4741], rtol=1e-4, err_msg="S3")
+
+
+def test_standard_and_shifted_gears_share_a_base_pitch():
+    assert gear(21).p_bt == gear(21, x=0.4).p_bt == pytest.approx(math.pi * 2 * math.cos(math.radians(20)))
+
+
+@pytest.mark.parametrize(("x_1", "x_2", "more"), [(0.0, 0.0, 0.0), (0.3, 0.2, 0.0), (0.4, -0.4, 0.0), (0.0, 0.0, 0.3)])
+def test_flanks_touch_on_the_line_of_action_with_the_computed_backlash(x_1, x_2, more):
+    """Independent of the kinematics in `pair`: both outlines in mesh, measured at the contact point."""
+    one, two = gear(21, x=x_1), gear(31, x=x_2)
+    pair = gf.GearPair(one, two, gf.GearPair(one, two).a + more)
+    place = sum(pair.path) / 2
+    turn_1, turn_2 = pair.turn(place)
+    roll_1, roll_2 = pair.curvature_radii((place - pair.path[0]) / pair.p_bt)
+    r_1, a_1 = flank(one, roll_1)
+    r_2, a_2 = flank(two, roll_2)
+    touch_1, touch_2 = cartesian(r_1, turn_1 + a_1), cartesian(r_2, turn_2 + a_2) + np.array([0, pair.a])
+    assert_allclose(touch_1, touch_2, atol=1e-10)
+    # play: turn the wheel the other way until its other flank touches the pinion's next tooth
+    at = pair.alpha_w
+    gap_1 = 2 * math.pi / one.z - 2 * flank(one, one.r_b * math.tan(at))[1]
+    tooth_2 = 2 * flank(two, two.r_b * math.tan(at))[1]
+    assert_allclose(pair.backlash, (pair.pitch_radius_1 * gap_1 - pair.pitch_radius_2 * tooth_2) * math.cos(at), atol=1e-10)
+    assert (pair.backlash > 0.1) == (more > 0)
+
+
+def test_gap_beyond_the_path_grows_from_zero_and_matches_the_outlines(pair):
+    start, end = pair.path
+    phase = (end - start) / pair.p_bt - 1 + np.array([1e-4, 0.02, 0.05, 0.1])
+    found = pair.contacts(phase)
+    leaving = list(found.order).index(1)
+    gap = found.gap[:, leaving]
+    assert (np.diff(gap) > 0).all()
+    assert gap[0] < 1e-6
+    # outlines: turn the wheel by gap / r_b and its flank passes through the pinion's tip corner
+    for i in range(4):
+        turn_1, turn_2 = pair.turn(found.nominal[i, leaving])
+        corner = cartesian(pair.gear_1.r_a, turn_1 + flank(pair.gear_1, pair.gear_1.roll_a)[1])
+        radius, angle = flank(pair.gear_2, found.roll_2[i, leaving])
+        met = cartesian(radius, turn_2 + gap[i] / pair.gear_2.r_b + angle) + np.array([0, pair.a])
+        assert_allclose(corner, met, atol=1e-9)
+
+
+def test_nothing_touches_outside_when_not_extended(pair):
+    found = pair.contacts(np.linspace(0, 0.99, 50), extended=False)
+    counts = np.isfinite(found.gap).sum(axis=1)
+    assert set(counts) == {1, 2}
+    assert_allclose(counts.mean(), pair.eps_alpha, atol=0.03)
+
+
+def test_pitch_point(pair):
+    assert pair.pitch_radius_1 == pytest.approx(21.0)
+    radii = pair.curvature_radii(pair.pitch_phase)
+    assert_allclose(radii, [21 * math.sin(math.radians(20)), 31 * math.sin(math.radians(20))], rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("two", "a", "message"),
+    [
+        ({"m_n": 2.5}, None, "m_n = 2.0 and 2.5"),
+        ({"alpha_n": math.radians(18)}, None, "alpha_n"),
+        ({"beta": 0.1}, None, "helix angle"),
+        ({}, 51.9, "overlap by"),
+        ({}, 48.0, "too small"),
+        ({}, 54.2, "contact ratio"),
+        ({}, math.nan, "finite length"),
+        ({"x": -4.0}, None, "undercut|base circle|cannot touch|bore"),
+    ],
+)
+def test_impossible_pairs_are_refused(two, a, message):
+    with pytest.raises(ValueError, match=message):
+        gf.GearPair(gear(21), gear(31, **two), a)
+
+
+def test_long_addendum_interferes_with_the_mates_fillet():
+    long = {"addendum": 1.35, "dedendum": 1.4, "tip_radius": 0.45}
+    with pytest.warns(UserWarning, match="capped"), pytest.raises(ValueError, match=r"interference|reaches the root circle"):
+        gf.GearPair(gear(30), gear(150, **long))

@@ -1,0 +1,61 @@
+"""Contact laws and tables over the mesh phase."""
+
+import numpy as np
+from machines import WAVE
+from numpy.testing import assert_allclose
+
+from gearfe.machine.contact_law import force, friction_coefficient, slopes, step
+from gearfe.machine.gear_mesh import Mesh, Samples, ToothDamage, cycle_table
+
+
+def test_step_and_friction_at_their_corners():
+    assert_allclose(step([-1, 0, 0.25, 0.5, 1, 2], 0, 1.0, 1, 3.0), [1, 1, 1.3125, 2, 3, 3])
+    slip = np.array([-1.0, -1e-4, -5e-5, 0.0, 5e-5, 1e-4, 5.05e-3, 1e-2, 1.0])
+    got = friction_coefficient(slip, static=0.08, dynamic=0.05, v_static=1e-4, v_dynamic=1e-2)
+    assert_allclose(got, [-0.05, -0.08, -0.055, 0, 0.055, 0.08, 0.065, 0.05, 0.05], atol=1e-12)
+
+
+def test_slopes_are_derivatives_of_the_force():
+    law = {
+        "power": np.array([1.0, 1.0, 1.5, 1.5]),
+        "damping": np.array([50.0, 30.0, 80.0, 80.0]),
+        "beta": np.array([0.0, 1e-6, 0.0, 0.0]),
+        "per_depth": np.array([0.0, 0.0, 1e4, 1e4]),
+        "backlash": np.array([0.0, 2e-5, np.inf, 3e-5]),
+        "film": np.array([1.0, 0.3, 1.0, 0.0]),
+        "push": np.array([False, False, True, True]),
+    }
+    rng = np.random.default_rng(3)
+    k, h = np.array([1e8, 2e8, 3e9, 3e9]), 1e-9
+    for _ in range(200):
+        x, v = rng.uniform(-1e-4, 1e-4, 4), rng.uniform(-0.2, 0.2, 4)
+        near = np.minimum(np.abs(x), np.abs(x + law["backlash"])) < 1e-6
+        by_x, by_v = slopes(x, v, k, law)
+        numeric = (force(x + h, v, k, law) - force(x - h, v, k, law)) / (2 * h)
+        ok = ~near & (np.sign(force(x - h, v, k, law)) == np.sign(force(x + h, v, k, law)))
+        assert_allclose(by_x[ok], numeric[ok], rtol=1e-3, atol=1e-2)
+        numeric = (force(x, v + 1e-6, k, law) - force(x, v - 1e-6, k, law)) / 2e-6
+        assert_allclose(by_v[ok], numeric[ok], rtol=1e-5, atol=1e-4)
+
+
+def test_table_passes_through_its_samples_without_overshoot():
+    rng = np.random.default_rng(1)
+    values = rng.uniform(0, 1, 40)
+    table = cycle_table(values)
+    assert_allclose(table(np.arange(40) / 40), values, rtol=1e-12)
+    fine = table(np.linspace(0, 1, 4001)[:-1])
+    assert values.min() - 1e-12 <= fine.min()
+    assert fine.max() <= values.max() + 1e-12
+    assert_allclose(table.mean, fine.mean(), rtol=1e-6)
+
+
+def test_damaged_tooth_replaces_the_healthy_curve_once_in_z_cycles():
+    phase = np.arange(-16, 116) / 64
+    hurt = Samples(phase, 0.7 * cycle_table(WAVE)(phase % 1.0))
+    mesh = Mesh("m", np.ones(1), WAVE, 100.0, phase=-3.0, teeth=(5, 7), damage=(ToothDamage(0, 2, hurt),))
+    inside = np.linspace(-0.2, 1.75, 300)
+    for cycle in (2, 7, 12, -3):
+        assert_allclose(mesh.at_phase(cycle + inside), 0.7 * mesh.cycle(inside % 1.0), rtol=2e-4)
+    assert_allclose(mesh.at_phase(4.2 + np.linspace(0, 2.4, 50)), mesh.cycle((4.2 + np.linspace(0, 2.4, 50)) % 1.0), rtol=1e-12)
+    assert_allclose(mesh.entries(0.2), [[0, 0.05, 0.1, 0.15, 0.2]], atol=1e-12)
+    assert_allclose(mesh.k(0.05 + 0.007), mesh.at_phase(2.7))

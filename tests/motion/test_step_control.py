@@ -1,0 +1,108 @@
+"""The step that `simulate` chooses: its error against the reference, and that it says what it knows."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from machines import RUNS, SHAPE, WAVE, herringbone, tooth, two_masses
+from numpy.testing import assert_allclose
+from scipy.linalg import expm
+
+from gearfe.machine.gear_mesh import ToothDamage
+from gearfe.machine.stages import pitted_planetary
+from gearfe.motion import simulate as dynamics
+from gearfe.motion.propagator import _phi
+from gearfe.motion.simulate import simulate
+from gearfe.motion.step_control import default_step, difference, stretch
+
+
+def spur(stage, damaged):
+    curves = {"sun_planet": 3e8 * SHAPE, "planet_ring": 4e8 * SHAPE}
+    damage = {"sun": (0, {"sun_planet": tooth(curves["sun_planet"], 0.3, 1.6)})} if damaged else None
+    return pitted_planetary(stage, curves, damage=damage)
+
+
+def stiffer(machine):
+    return replace(machine, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in machine.springs))
+
+
+@pytest.mark.parametrize("numba", RUNS)
+@pytest.mark.parametrize("case", ["healthy", "damaged", "supports 100 times stiffer"])
+def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage, case, numba):
+    machine = spur(spur_stage, case == "damaged")
+    machine = stiffer(machine) if case.startswith("supports") else machine
+    got = simulate(machine, 0.005, numba=numba)
+    want = simulate(machine, 0.005, dt=got.time[1], method="DOP853", rtol=1e-9)
+    true = max(difference(got, want))
+    assert true < 1e-3
+    assert true < 1.5 * got.stats["error"]
+    assert got.stats["error"] < 1e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("damaged", [False, True])
+def test_herringbone_within_a_thousandth_of_the_reference(herringbone_stage, damaged):
+    damage = {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})} if damaged else None
+    machine = herringbone(herringbone_stage, damage)
+    got = simulate(machine, 0.005)
+    assert max(difference(got, simulate(machine, 0.005, dt=got.time[1], method="DOP853", rtol=1e-9))) < 1e-3
+
+
+@pytest.mark.parametrize("numba", RUNS)
+def test_contact_loss_within_a_hundredth_of_the_reference(numba):
+    machine = two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5)
+    got = simulate(machine, 0.01, numba=numba)
+    want = simulate(machine, 0.01, dt=got.time[1], method="DOP853", rtol=1e-9)
+    assert got.stats["losses"] >= 5
+    assert_allclose(got.stats["error_seconds"], 0.01)
+    assert max(difference(got, want)) < 1e-2
+    assert max(difference(got, want)) < 1.5 * got.stats["error"]
+
+
+def test_it_says_when_the_reference_took_over(monkeypatch):
+    monkeypatch.setattr(dynamics, "ALLOWED", 1e-9)
+    got = simulate(two_masses(error=((80e-6, 500.0, 0.3),), backlash=4e-5), 0.004, numba=False)
+    assert got.stats["method"] == "DOP853"
+    assert "contact is lost" in got.stats["switched"]
+    assert 0 < got.stats["error"] < 1e-2
+
+
+def test_difference_of_known_responses():
+    one = simulate(two_masses(), 0.01, dt=1e-4, numba=False)
+    away = np.zeros_like(one.states)
+    away[30, 0] = 1.0
+    two = replace(one, states=one.states + 1e-3 * np.ptp(one.q, axis=0).max() * away @ np.linalg.inv(one.basis).T)
+    moved, pushed = difference(two, one)
+    assert_allclose(moved, 1e-3, rtol=1e-6)
+    k = one["stiffness m"][30]
+    assert_allclose(pushed, k * 1e-3 * np.ptp(one.q, axis=0).max() / np.ptp(one["force m"]), rtol=1e-6)
+    assert difference(one, one) == (0.0, 0.0)
+
+
+def test_stretch_holds_the_damaged_tooth():
+    machine = two_masses(teeth=(50, 70), damage=(ToothDamage(0, 20, tooth(WAVE, 0.3, 1.5)),))
+    start, length = stretch(machine, 1.0)
+    assert start < 20 / 500 < 21.5 / 500 < start + length
+    assert stretch(machine, 0.02) == (0.0, 3.5 / 500)
+
+
+def test_outputs_do_not_depend_on_the_step():
+    """Healthy and damaged responses have the same times, so that their indicators can be compared."""
+    hurt = two_masses(teeth=(5, 7), damage=(ToothDamage(0, 0, tooth(WAVE, 0.9, 1.5)),))
+    times = [simulate(machine, 0.02, numba=False).time for machine in (two_masses(), hurt)]
+    assert_allclose(times[0], times[1], rtol=0)
+    assert_allclose(times[0][1], default_step(hurt), rtol=0.01)
+
+
+def test_phi_functions_against_an_augmented_exponential():
+    rng = np.random.default_rng(0)
+    for scale in (1e-3, 1.0, 300.0):
+        Z = rng.standard_normal((5, 2, 2))
+        Z = scale * (Z - np.transpose(Z, (0, 2, 1)) - 0.1 * np.eye(2))  # rotations that decay
+        found = _phi(Z)
+        for i, z in enumerate(Z):
+            big = np.zeros((8, 8))
+            big[:2, :2], big[:2, 2:4], big[2:4, 4:6], big[4:6, 6:] = z, np.eye(2), np.eye(2), np.eye(2)
+            full = expm(big)
+            for j, one in enumerate(found):
+                assert_allclose(one[i], full[:2, 2 * j : 2 * j + 2], atol=1e-11)

@@ -1,0 +1,54 @@
+"""Kurtogram and squared envelope together, and measured signals on the command line."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.cli import main
+from gearfe.signal.demodulation import with_noise
+
+RATE, FAULT = 20480.0, 18.2
+
+
+def impulses(seconds=2.0):
+    """Ringings at 3 kHz, `FAULT` of them a second, under a mesh line a hundred times their power."""
+    t = np.arange(round(RATE * seconds)) / RATE
+    since = t % (1 / FAULT)
+    ringing = np.exp(-600 * since) * np.sin(2 * np.pi * 3000 * since)
+    return gf.Signal(ringing + 3 * np.sin(2 * np.pi * 182 * t), RATE, "m/s^2", "housing")
+
+
+def test_fault_is_found_under_noise():
+    noisy = with_noise(impulses(), 10.0)
+    assert_allclose(np.std(noisy.values - impulses().values), np.std(impulses().values) * 10**-0.5, rtol=0.02)
+    noisy = with_noise(impulses(), 15.0)
+    found = gf.demodulate(noisy, FAULT)
+    low, high = found.kurtogram.band
+    assert low < 3000 < high
+    for k, (frequency, amplitude) in enumerate(found.lines.values(), 1):
+        assert abs(frequency - k * FAULT) <= found.spectrum.resolution
+        assert amplitude > 5 * found.background
+    away = gf.demodulate(noisy, 23.3)
+    assert max(amplitude for _, amplitude in away.lines.values()) < 5 * away.background
+    with pytest.raises(ValueError, match="fewer harmonics"):
+        gf.demodulate(noisy, 4000.0)
+
+
+def test_measured_signal_on_the_command_line(tmp_path, capsys):
+    path, picture, spectra = tmp_path / "a.csv", tmp_path / "k.png", tmp_path / "s.png"
+    noisy = with_noise(impulses(), 10.0)
+    path.write_text("housing [m/s^2]\n" + "\n".join(f"{value:.7g}" for value in noisy.values) + "\n")
+    command = ["signal", str(path), "--rate", str(RATE), "--mesh", "182", "--fault", "18.2"]
+    assert main([*command, "--kurtogram", str(picture), "--plot", str(spectra)]) == 0
+    text = capsys.readouterr().out
+    row = next(line for line in text.splitlines() if line.startswith("| f_m | 182.00"))
+    assert_allclose(float(row.split("|")[3]), 3.0, rtol=0.02)
+    assert "| kurtosis |" in text
+    assert "2 f_fault 36.5" in text
+    assert picture.stat().st_size > 5000
+    assert spectra.stat().st_size > 5000
+    assert main(["signal", str(path), "--rate", str(RATE)]) == 0
+    assert "f_m" not in capsys.readouterr().out
+    assert main(["signal", str(path)]) == 1
+    assert "rate" in capsys.readouterr().err

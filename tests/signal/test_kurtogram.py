@@ -1,0 +1,139 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import gearfe as gf
+from gearfe.signal.kurtogram import Kurtogram
+
+RATE = 5120.0
+
+
+def sine(amplitude, frequency, n, rate=RATE, phase=0.3):
+    return amplitude * np.cos(2 * np.pi * frequency * np.arange(n) / rate + phase)
+
+
+def noise(n, seed=0):
+    return np.random.default_rng(seed).standard_normal(n)
+
+
+def impulses(n, *, every, ringing, decay, rate=RATE):
+    """Ringings of one natural frequency [Hz], `every` samples apart, on a grid that repeats exactly."""
+    k = np.arange(n) % every
+    return np.exp(-decay * k / rate) * np.sin(2 * np.pi * ringing * k / rate)
+
+
+def test_kurtogram_tree_tiles_the_spectrum_at_every_level():
+    found = gf.fast_kurtogram(gf.Signal(noise(128 * 32), RATE, "N"))
+    levels, counts = np.unique(found.level.round(2), return_counts=True)
+    assert_allclose(levels, [0, 1, 1.58, 2, 2.58, 3, 3.58, 4, 4.58, 5])
+    assert_array_equal(counts, [1, 2, 3, 4, 6, 8, 12, 16, 24, 32])
+    assert_allclose(found.bandwidth, RATE / 2 ** (found.level + 1))
+    for level in np.unique(found.level):
+        rows = found.level == level
+        edges = found.centre[rows] - found.bandwidth[rows] / 2
+        assert_allclose(edges, np.arange(rows.sum()) * found.bandwidth[rows][0], atol=1e-9)
+
+
+@pytest.mark.parametrize("frequency", [50.0, 370.0, 680.0, 980.0, 1220.0, 1560.0, 1770.0, 2120.0, 2510.0])
+def test_every_band_holds_its_own_frequencies(frequency):
+    """A burst of one frequency must be loudest in the band whose edges enclose it, at every level."""
+    n = 2**14
+    x = sine(1.0, frequency, n) * np.exp(-(((np.arange(n) - n / 2) / 700.0) ** 2))
+    from gearfe.signal.kurtogram import _positive, _split
+
+    bands = [_positive(x)]
+    for level in range(3):
+        for parts in (2, 3):
+            pieces = [piece for band in bands for piece in _split(band, parts)]
+            loudest = int(np.argmax([np.abs(piece).max() for piece in pieces]))
+            assert loudest == int(frequency / (RATE / 2 / len(pieces))), (level, parts)
+            assert_allclose(np.abs(pieces[loudest]).max(), 1.0, atol=0.05)
+        bands = [piece for band in bands for piece in _split(band, 2)]
+
+
+@pytest.mark.parametrize("parts", [2, 3])
+def test_bands_keep_amplitudes_in_their_middle_and_stop_far_away(parts):
+    from gearfe.signal.kurtogram import _split
+
+    for i in range(parts):
+        for off, gain in ((0.5, 1.0), (1e-3, 0.96)):  # middle and lower edge of band i
+            x = np.exp(2j * np.pi * (i + off) / (2 * parts) * np.arange(600))
+            loud = np.array([np.abs(piece).mean() for piece in _split(x, parts)])
+            assert_allclose(loud[i], gain, atol=6e-3)
+            assert np.delete(loud, [i] if off == 0.5 else [i, i - 1] if i else [0]).max(initial=0) < 0.01
+
+
+def test_kurtogram_of_noise_is_flat_also_beside_zero():
+    found = gf.fast_kurtogram(gf.Signal(3.0 + noise(2**17), RATE, "N"), 5)
+    assert np.abs(found.kurtosis).max() < 0.25
+    lowest = found.centre < found.bandwidth
+    assert np.abs(found.kurtosis[lowest]).max() < 0.2, "real bands would have 1"
+
+
+def test_kurtogram_finds_the_ringing_and_its_squared_envelope_the_repetition():
+    n, every = 2**16, 320  # 16 Hz, about the fault of S2's first sun
+    x = impulses(n, every=every, ringing=850.0, decay=300.0) + 0.1 * noise(n) + sine(2.0, 168.0, n) + sine(1.0, 336.0, n)
+    signal = gf.Signal(x, RATE, "m/s^2")
+    assert np.mean((x - x.mean()) ** 4) / x.var() ** 2 < 3, "the meshes hide it from plain kurtosis"
+    found = gf.fast_kurtogram(signal)
+    low, high = found.band
+    assert low < 850.0 < high
+    assert found.kurtosis[found.best] > 1.5
+    squared = gf.squared_envelope_spectrum(signal, found.band)
+    top = squared.frequency[1 + np.argmax(squared.values[1:])]
+    assert_allclose(top, 16.0, atol=squared.resolution)
+
+
+@pytest.mark.parametrize("frequency", [50.7, 411.3, 1290.1, 2500.9])
+def test_a_sine_that_does_not_close_makes_no_impulse_in_any_band(frequency):
+    """Through a Fourier transform the click at the ends has a kurtosis of 100 in bands that hold nothing else."""
+    found = gf.fast_kurtogram(gf.Signal(7 + sine(1.0, frequency, 2**14), RATE, "N"))
+    assert found.kurtosis.max() < 0.5
+
+
+def test_kurtogram_of_a_constant_envelope_is_minus_one():
+    found = gf.fast_kurtogram(gf.Signal(sine(1.0, 800.0, 2**13), RATE, "N"), 3)
+    rows = np.abs(found.centre - 800.0) < found.bandwidth / 2
+    assert_allclose(found.kurtosis[rows & (found.level > 0)], -1.0, atol=1e-3)
+    assert_allclose(found.kurtosis[0], -1.5, atol=1e-3, err_msg="real sine: 1.5 - 3")
+
+
+def test_centres_printed_by_s2_are_edges_of_the_tree():
+    """S2 prints level 5.5 at 800 Hz and 6.5 at 80 Hz (5120 Hz, 5 s): both lie between two bands of 5.58 and 6.58."""
+    found = gf.fast_kurtogram(gf.Signal(noise(25600), RATE, "m/s^2"))
+    assert found.level.max() == 7
+    for level, centre in ((5.5, 800.0), (6.5, 80.0)):
+        rows = np.floor(10 * found.level) / 10 == level
+        edges = np.append(found.centre[rows] - found.bandwidth[rows] / 2, RATE / 2)
+        assert_allclose(np.abs(edges - centre).min(), 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("levels", [0, 4])
+def test_kurtogram_refuses_levels_the_record_is_too_short_for(levels):
+    with pytest.raises(ValueError, match=f"levels = {levels}, but signal with 1024 samples allows 1 to 3"):
+        gf.fast_kurtogram(gf.Signal(noise(1024), RATE, "N"), levels)
+
+
+def test_a_constant_has_no_kurtogram():
+    for make in (gf.fast_kurtogram, lambda signal: gf.spectral_kurtosis(signal, 64)):
+        with pytest.raises(ValueError, match="is constant"):
+            make(gf.Signal(np.full(1024, 9.81), RATE, "N"))
+
+
+def test_best_band_is_the_row_of_the_largest_kurtosis():
+    table = Kurtogram(np.array([0.0, 1, 1]), np.array([50.0, 25, 75]), np.array([100.0, 50, 50]), np.array([0.1, 0.2, 4.0]))
+    assert (table.best, table.band) == (2, (50.0, 100.0))
+
+
+def test_spectral_kurtosis_of_noise_sine_and_impulses():
+    n = 2**16
+    plain = gf.spectral_kurtosis(gf.Signal(noise(n), RATE, "N"), 64)
+    assert plain.unit == "1"
+    assert np.abs(plain.values).max() < 0.3, "2 / sqrt(1024) = 0.06 for separate frames; real bins included"
+    with_sine = gf.spectral_kurtosis(gf.Signal(noise(n) + sine(20.0, 800.0, n), RATE, "N"), 64)
+    assert_allclose(with_sine.values[10], -1.0, atol=0.05)
+    x = impulses(n, every=512, ringing=1600.0, decay=400.0) + 0.02 * noise(n)
+    found = gf.spectral_kurtosis(gf.Signal(x, RATE, "N"), 64)
+    assert abs(found.frequency[np.argmax(found.values)] - 1600.0) <= 3 * found.resolution
+    with pytest.raises(ValueError, match="size = 300 samples, but signal has 1000: give 8 to 250"):
+        gf.spectral_kurtosis(gf.Signal(noise(1000), RATE, "N"), 300)

@@ -1,0 +1,200 @@
+"""`mesh_stiffness` of gears of finite width: the curve's identities, damage, choice of method, refusals."""
+
+import math
+from dataclasses import replace
+from functools import partial
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.flexibility.hertz import contact_modulus, peak_pressure
+from gearfe.stiffness import solid as wide
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
+FORCE = 1500.0
+COARSE = {"refine": 0.6, "method": "ritz3d"}
+BETA = math.radians(16)
+PIT = gf.Pit(radius=18.7, z=4.0, axes=(0.8, 1.5), depth=0.1)
+
+
+def pair_of(width=8.0, beta=BETA):
+    rack = RACK | {"b": width}
+    return gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=beta, **rack), gf.Gear(z=27, r_bore=12.0, beta=-beta, **rack))
+
+
+def curve_of(steel, damage=None, pair=None, force=FORCE, **options):
+    return gf.mesh_stiffness(pair or pair_of(), force, steel, damage=damage, **(COARSE | {"phases": 5} | options))
+
+
+@pytest.fixture(scope="module")
+def healthy(steel):
+    return curve_of(steel, error=True)
+
+
+def test_identities_of_the_curve(healthy):
+    assert_allclose(healthy.k * healthy.lte, FORCE, rtol=1e-12)
+    assert_allclose(healthy.force.sum(axis=1), FORCE, rtol=1e-9)
+    assert_allclose(healthy.share * FORCE, healthy.force, rtol=1e-9, atol=1e-6)
+    assert (healthy.share >= 0).all()
+    assert (healthy.share.max(axis=0) > 0).all(), "no column of a pair that never touches"
+    assert_allclose(healthy.phase, np.arange(5) / 5, atol=1e-15)
+    assert ((healthy.error > 0) & (healthy.error < 0.1 * healthy.k)).all()
+
+
+def test_meta_says_what_was_done(healthy):
+    meta = healthy.meta
+    assert (meta["method"], meta["why"]) == ("ritz3d", "asked for")
+    assert (meta["face"], meta["groove"], meta["refine"]) == ("helical", 0.0, 0.6)
+    assert (meta["force_N"], meta["width_mm"], meta["extended"]) == (FORCE, 8.0, True)
+
+
+def test_no_pair_is_pressed_less_than_by_an_even_load(healthy, steel):
+    """The largest pressure of a pair lies above Hertz's of its mean load on a line of full length with the largest radius."""
+    pair = pair_of()
+    beta_b = pair.gear_1.beta_b
+    radius = max(float(pair.relative_radius(*pair.curvature_radii(p))) for p in np.linspace(0, pair.eps_alpha, 20))
+    line = healthy.force / math.cos(beta_b) / (8.0 / math.cos(beta_b))
+    least = peak_pressure(line, radius / math.cos(beta_b), contact_modulus((steel, steel)))
+    flat = np.isfinite(healthy.pressure)  # nan: nothing but a tip corner touches
+    assert flat.mean() > 0.8
+    assert (healthy.pressure[flat] >= 1e6 * least[flat]).all()
+    assert (healthy.pressure[flat] < 5e9).all()
+    assert ((healthy.pressure > 0) == (healthy.force > 0))[flat].all()
+
+
+def test_several_forces_give_a_list(healthy, steel):
+    curves = curve_of(steel, force=[FORCE, 1.06 * FORCE, 10 * FORCE])
+    assert [curve.meta["force_N"] for curve in curves] == [FORCE, 1.06 * FORCE, 10 * FORCE]
+    assert_allclose(curves[0].k, healthy.k, rtol=1e-12)
+    assert_allclose(0.06 * FORCE / (curves[1].lte - curves[0].lte), healthy.k_tangent, rtol=2e-3)
+    assert (curves[2].k > 1.02 * curves[0].k).all(), "the contact stiffens under load"
+    assert (healthy.k_tangent > healthy.k).all()
+    assert isinstance(curve_of(steel, force=[FORCE]), list)
+
+
+def test_auto_says_which_method_and_why(steel):
+    def chosen(pair, **options):
+        meta = curve_of(steel, pair=pair, phases=1, method="auto", **options).meta
+        return meta["method"], meta["why"]
+
+    spur = pair_of(beta=0.0)
+    assert chosen(pair_of()) == ("ritz3d", "contact lines run across helical teeth")
+    assert chosen(spur, damage={"pinion": [PIT]}) == ("ritz3d", "pits change along the width")
+    assert chosen(spur) == ("ritz", "spur gears, nothing changes along the width: plane strain")
+    with pytest.warns(UserWarning, match="no cracked tooth"):
+        assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
+
+
+def test_more_damage_is_not_stiffer(healthy, steel):
+    cracks = [curve_of(steel, {"pinion": [gf.Crack(level=level)]}).k for level in (0.2, 0.5)]
+    sizes = [{"axes": (0.4, 0.7)}, {"axes": (0.8, 1.5)}, {"axes": (1.2, 2.5)}]
+    pits = [curve_of(steel, {"pinion": [replace(PIT, **size)]}, phases=np.array([0.4, 0.6, 0.8])).k for size in sizes]
+    for curves in ([healthy.k, *cracks], [healthy.k[2:], *pits]):
+        for less, more in zip(curves[:-1], curves[1:], strict=True):
+            assert (more <= less * (1 + 1e-6)).all()
+            assert more.min() < 0.999 * less.max()
+            assert (more < 0.999 * less).any()
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_a_pit_of_tooth_k_acts_on_pair_k(steel, gear):
+    """Also one cycle earlier, because pair 1 is where pair 0 will be."""
+    pit = PIT if gear == "pinion" else replace(PIT, radius=28.1)
+    phases = np.array([-0.2, 0.0, 0.1])
+    healthy = curve_of(steel, phases=phases)
+    one = curve_of(steel, {gear: [replace(pit, tooth=1)]}, phases=phases)
+    zero = curve_of(steel, {gear: [pit]}, phases=phases + 1)
+    assert_allclose(one.k, zero.k, rtol=1e-9)
+    assert (one.k < 0.9999 * healthy.k).any()
+    own = {k: healthy.force[:, column] for column, k in enumerate(healthy.order)}
+    away = {k: one.force[:, column] - own[k] for column, k in enumerate(one.order)}
+    assert away[1].min() < -1.0, "the pitted pair gives load away"
+    assert max(change.min() for k, change in away.items() if k != 1) > -1e-6 * FORCE, "and no other"
+
+
+def test_herringbone_is_twice_a_half(healthy, steel):
+    whole = curve_of(steel, pair=pair_of(18.5), force=2 * FORCE, face="herringbone", groove=2.5)
+    assert_allclose(whole.k, 2 * healthy.k, rtol=1e-7)
+    assert_allclose(whole.force, 2 * healthy.force, rtol=1e-6, atol=1e-6)
+    assert (whole.meta["face"], whole.meta["groove"]) == ("herringbone", 2.5)
+    assert_allclose(whole.pressure, healthy.pressure, rtol=1e-6)
+    pit = replace(PIT, z=18.5 - PIT.z, tooth=1)
+    run = {"pair": pair_of(18.5), "force": 2 * FORCE, "face": "herringbone", "groove": 2.5, "phases": 1}
+    one, both = (curve_of(steel, {"pinion": pits}, **run).k for pits in ([pit], [pit, replace(pit, z=PIT.z)]))
+    half = curve_of(steel, {"pinion": [replace(PIT, tooth=1)]}, phases=1).k
+    assert_allclose(both, 2 * half, rtol=1e-7)
+    assert both < 0.9999 * one
+    assert one < 0.9999 * whole.k[0]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"radius": 30.0}, "pit at radius = 30 mm, but the flank"), ({"radius": 17.0}, "pit at radius = 17 mm, but the flank"),
+        ({"z": 8.1}, "pit at z = 8.1 mm, but the face is 8 mm"), ({"z": -0.1}, "pit at z = -0.1 mm"),
+        ({"depth": 3.0}, "pit of depth = 3 mm, but half the tooth"),
+    ],
+)  # fmt: skip
+def test_pits_that_do_not_fit_their_gear(steel, change, message):
+    with pytest.raises(ValueError, match=message):
+        curve_of(steel, {"pinion": [replace(PIT, **change)]})
+
+
+@pytest.mark.parametrize("change", [{"axes": (0.0, 1.0)}, {"axes": (1.0, -1.0)}, {"depth": 0.0}, {"depth": math.nan}])
+def test_pits_of_no_size(change):
+    with pytest.raises(ValueError, match=f"{next(iter(change))} = "):
+        replace(PIT, **change)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"face": "double"}, "face = 'double', but it must be one of spur, helical, herringbone"),
+        ({"face": "spur"}, "face = 'spur', but the gears have a helix angle"),
+        ({"groove": 2.0}, "groove = 2.0 mm, but only face = 'herringbone'"),
+        ({"face": "herringbone", "groove": 8.0}, "groove = 8.0 mm, but it must lie between"),
+        ({"face": "herringbone", "groove": -1.0}, "groove = -1.0 mm, but it must lie between"),
+        ({"face": "herringbone", "groove": math.nan}, "groove = nan mm, but it must lie between"),
+        ({"method": "ritz", "face": "helical"}, "face = 'helical' with method = 'ritz'"),
+        ({"method": "ritz", "groove": 2.0}, "groove = 2.0 mm with method = 'ritz'"),
+        ({"method": "ritz", "damage": {"pinion": [PIT]}}, "pits with method = 'ritz'"),
+        ({"method": "fe", "damage": {"pinion": [PIT]}}, "pits with method = 'fe'"),
+        ({"teeth": 3}, "teeth = 3 with method = 'ritz3d'"),
+        ({"force": -1.0}, "force = -1"),
+    ],
+)
+def test_impossible_options_are_named(steel, options, message):
+    with pytest.raises(ValueError, match=message):
+        curve_of(steel, **options)
+
+
+@pytest.mark.parametrize("degrees", [60.0, 75.0, -60.0])
+def test_steep_helices_are_refused(degrees):
+    with pytest.raises(ValueError, match="60 degrees and more are not supported"):
+        pair_of(beta=math.radians(degrees))
+
+
+def test_pits_over_the_whole_contact_line_name_the_phase(steel):
+    pits = [replace(PIT, axes=(8.0, 20.0), tooth=k) for k in range(-1, 4)]
+    with pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: pits cover it all"):
+        curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))
+
+
+def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
+    """A coarse section may fold; then the next finer one is taken, and what fails for all is said."""
+
+    def contact(*case, model, least):
+        if model.keywords["refine"] < least:
+            raise RuntimeError("a quad of the section folds")
+        return SimpleNamespace(k=np.array([model.keywords["refine"]]))
+
+    for least, wanted in ((0.3, 0.35), (0.37, 0.38)):
+        monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=least))
+        ratio, k = wide._coarser((), {}, 0.5, False, None)
+        assert_allclose([0.5 * ratio, k[0]], wanted)
+    monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
+    with pytest.raises(RuntimeError, match="folds"):
+        wide._coarser((), {}, 0.5, False, None)

@@ -1,0 +1,78 @@
+"""From a scene to the vibration of its machine."""
+
+from dataclasses import replace
+
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.cli import main
+from gearfe.studies.responses import analysis, responses
+
+SCENE = gf.load_scene("compound_planetary")
+
+
+@pytest.fixture(scope="module")
+def found():
+    return responses(SCENE, "crack50", duration=1.0, phases=32)
+
+
+def test_frequencies_of_the_scenes():
+    notes = gf.build_machine(SCENE, phases=8).notes
+    assert_allclose(notes["mesh frequencies [Hz]"], (168.0, 182.0), rtol=1e-12)
+    assert_allclose(notes["fault frequencies of sun teeth [Hz]"], (16.8, 18.2), rtol=1e-12)
+    notes = gf.build_machine(gf.load_scene("planetary_pitting"), phases=8).notes
+    assert_allclose(notes["mesh frequency [Hz]"], 280.0, rtol=1e-12)
+    assert_allclose(notes["fault frequency of a sun tooth [Hz]"], 40.0, rtol=1e-12)
+
+
+def test_the_crack_shows_at_its_sidebands_only(found):
+    report = analysis(found)
+    assert report.channel == "force sun2_b1"
+    assert_allclose(report.lines["f_m"], 182.0, rtol=1e-12)
+    healthy, hurt = (report.amplitudes[case] for case in ("healthy", "crack50"))
+    for name in ("f_m - f_fault", "f_m + f_fault", "f_fault"):
+        assert hurt[name] > 20 * healthy[name], name
+    assert_allclose(hurt["2 f_m"], healthy["2 f_m"], rtol=0.1)
+    assert report.indicators["crack50"]["sideband index"][0] > report.indicators["healthy"]["sideband index"][0]
+    assert "| f_m | 182.00 |" in report.lines_text()
+
+
+def test_mesh_forces_carry_the_torque(found):
+    """Three sun-planet meshes of stage 2 balance the drive on the average."""
+    one = found["healthy"]
+    arm = 1e-3 * SCENE.pairs["sun_planet"].pair.gear_1.r_b
+    mean = sum(one[f"force sun2_b{i}"].mean() for i in (1, 2, 3)) * arm
+    drive = next(load for load in one.machine.loads if load.name == "drive")
+    assert_allclose(mean, drive.value, rtol=1e-3)
+
+
+def test_the_reference_integrator_agrees(found):
+    short = responses(SCENE, duration=0.02, phases=32)["healthy"]
+    slow = responses(SCENE, duration=0.02, phases=32, method="DOP853")["healthy"]
+    fast, truth = (one["sun2.theta"] for one in (short, slow))
+    assert_allclose(fast, truth, atol=5e-3 * abs(truth).max())
+
+
+def test_what_cannot_run_is_refused():
+    with pytest.raises(ValueError, match="has no \\[machine\\] table"):
+        gf.build_machine(replace(SCENE, machine={}))
+    with pytest.raises(ValueError, match="no case 'x'; it has crack10"):
+        gf.build_machine(SCENE, "x")
+    with pytest.raises(ValueError, match="must be one of planetary"):
+        gf.build_machine(replace(SCENE, machine=SCENE.machine | {"model": "turbine"}))
+    with pytest.raises(ValueError, match="duration = 0"):
+        responses(SCENE, duration=0)
+
+
+def test_command_line(tmp_path, capsys):
+    out, plot = tmp_path / "r.npz", tmp_path / "s.png"
+    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.5"]
+    assert main([*command, "-o", str(out), "--plot", str(plot)]) == 0
+    text = capsys.readouterr().out
+    assert "mesh frequencies [Hz]: 168, 182" in text
+    assert "| sideband index |" in text
+    assert out.stat().st_size > 1000
+    assert plot.stat().st_size > 10000
+    assert main(["dynamics", "compound_planetary", "--case", "none"]) == 1
+    assert "it has crack10" in capsys.readouterr().err
