@@ -1,6 +1,6 @@
 import math
 
-from validation import machine  # noqa: F401 first: one thread, which suits small matrices
+import validation  # noqa: F401 first: one thread, which suits small matrices
 
 import pytest  # isort: skip
 

@@ -13,7 +13,8 @@ from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
 from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as pages
-from validation import assumptions, herringbone_page, machines, speed_page, table_rows
+from validation.make import assumptions, machines
+from validation.shared import herringbone_page, places, speed_page, table_rows
 
 PAGES = list(machines.PAGES)
 
@@ -100,7 +101,7 @@ def test_every_assumption_says_what_depends_on_it(name):
 def test_every_page_can_be_asked_for():
     assert set(pages.LONG) | set(pages.TIMED) < set(pages.PAGES)
     for page in pages.PAGES:
-        assert (machines.FOLDER / f"{page}.py").is_file(), page
+        assert (places.HOME / "make" / f"{page}.py").is_file(), page
 
 
 def test_page_of_the_ten_rows_is_not_stale():

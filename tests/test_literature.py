@@ -14,7 +14,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.scene import verdicts
-from validation import machines, reference, table_rows, truth
+from validation.make import machines, truth
+from validation.shared import reference, table_rows
 
 TABLES = reference.load()
 

@@ -5,7 +5,8 @@ import re
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from validation import herringbone_page, readme
+from validation.make import readme
+from validation.shared import herringbone_page
 
 TEXT = readme.README.read_text(encoding="utf-8")
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]\d+)?")

@@ -52,12 +52,12 @@ def main():
     arguments = parser.parse_args()
     if arguments.reference:
         for name in [arguments.page] if arguments.page else LONG_RUNS:
-            importlib.import_module(f"validation.{name}").reference()
+            importlib.import_module(f"validation.make.{name}").reference()
         return
     if arguments.page is None:
         sys.exit(everything())
     started = time.perf_counter()
-    importlib.import_module(f"validation.{arguments.page}").run()
+    importlib.import_module(f"validation.make.{arguments.page}").run()
     print(f"{arguments.page}: {time.perf_counter() - started:.0f} s")
 
 

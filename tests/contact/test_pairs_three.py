@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from validation import pairs_three
-from validation.pairs_three import COARSE, MAIN
+from validation.make import pairs_three
+from validation.make.pairs_three import COARSE, MAIN
 
 KNOWN = pairs_three.stored()
 

@@ -213,7 +213,7 @@ def test_degrees_the_layers_do_not_carry_are_dropped(steel):
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="both differ by up to 0.45 %, more than both estimates: validation/pairs_three.md")
+@pytest.mark.xfail(strict=True, reason="both differ by up to 0.45 %, more than both estimates: validation/pages/pairs_three.md")
 def test_error_estimate_covers_the_difference_from_the_energy_model(steel):
     pair = pair_of(10.0)
     brute = curve_of(steel, pair=pair, force=1000.0, refine=0.8, phases=8, error=True)

@@ -11,7 +11,7 @@ from gearfe.machine.compound import KINDS, compound_pairs, compound_planetary
 from gearfe.machine.layout import around, through
 from gearfe.machine.stages import pitted_planetary, stage_phases
 from gearfe.machine.tables import natural_frequencies
-from validation.reference import lin_parker
+from validation.shared.reference import lin_parker
 
 
 def test_frequencies_of_lin_and_parker():

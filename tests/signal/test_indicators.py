@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.signal import indicators as ind
-from validation import centroid
+from validation.make import centroid
 
 RATE, N = 5120.0, 51200  # 10 s, bins 0.1 Hz apart
 F_M, F_FAULT = 280.0, 40.0  # of S0's machine

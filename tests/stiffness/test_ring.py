@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.full_contact import full_contact
 from geometry.tooth.profile import cartesian, fillet, flank, form_mismatch, form_point
-from validation import reference
+from validation.shared import reference
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -81,7 +81,7 @@ def test_no_locking(pair):
 
 
 def test_default_resolution_is_within_half_a_percent(pair, steel, curve):
-    """Against twice the resolution here; against 160k unknowns per gear in validation/speed.md."""
+    """Against twice the resolution here; against 160k unknowns per gear in validation/pages/speed.md."""
     fine = gf.mesh_stiffness(pair, FORCE, steel, refine=2)
     assert_allclose(curve.k, fine.k, rtol=2e-3)
 

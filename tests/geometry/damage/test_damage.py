@@ -16,7 +16,7 @@ from geometry.damage.crack import check_apart, crack_in_band, crack_path, open_p
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import cartesian, root_curve
-from validation import reference
+from validation.shared import reference
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "beta": math.radians(16), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from geometry.tooth.profile import cartesian, flank
-from validation import reference
+from validation.shared import reference
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 

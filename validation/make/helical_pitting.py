@@ -1,0 +1,192 @@
+"""The printed numbers of article S3 (helical pair with pitted pinion teeth), computed."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.machine.contact_law import hertz_coefficient
+from geometry.pair.lines import total_length
+
+from ..shared.simulated import amplitude, machine, periodic, record, scene, signal, spectrum
+
+NAME = "helical_pitting"
+CASES = ("minor", "severe", "multi")
+SECONDS, SETTLE = 0.48, 0.24  # 20 turns of the pinion, after 10
+RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
+FORCE = "force mesh"
+
+
+def pair():
+    """The pair."""
+    return scene(NAME).pair().pair
+
+
+def frequencies():
+    """Turning frequency of the pinion and mesh frequency [Hz]."""
+    turn = scene(NAME).machine["speed_rpm"] / 60
+    return {"f_r": turn, "f_m": turn * pair().gear_1.z}
+
+
+def theory():
+    """Of the article's table."""
+    return frequencies()
+
+
+@cache
+def _found(case):
+    """Spectrum of the simulated mesh force."""
+    return spectrum(signal(_record(case), FORCE))
+
+
+@cache
+def _record(case):
+    name = None if case == "healthy" else case
+    return record(machine(NAME, name), SECONDS, RATE, SETTLE, periodic(NAME, name))
+
+
+def simulated():
+    """Lines of the severe case: the turning frequency and the mesh frequency, as the spectrum shows them."""
+    lines = gf.find_lines(_found("severe"), frequencies())
+    return {name: lines[name][0] for name in frequencies()}
+
+
+def measured():
+    """At 2500 rpm."""
+    return frequencies()
+
+
+def errors_simulated():
+    """Errors [%] of the article's table from its own printed values."""
+    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.62), ("f_m", 708.33, 708.09))}
+
+
+def errors_measured():
+    """The same for its measurement."""
+    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.23), ("f_m", 708.33, 707.48))}
+
+
+def one_speed():
+    """Pinion speed [rpm] of the printed simulated and measured mesh frequency over that of the turning frequency."""
+    rows = {"simulated": (41.62, 708.09), "measured": (41.23, 707.48)}
+    return {name: mesh / turn / pair().gear_1.z for name, (turn, mesh) in rows.items()}
+
+
+def impact_period():
+    """One turn of the pinion [s]."""
+    return {"severe": 1 / frequencies()["f_r"]}
+
+
+def hertz():
+    """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
+    from gearfe.machine.contact_cycle import base_helix
+
+    radii = pair().curvature_radii(pair().pitch_phase) / np.cos(base_helix(pair().gear_1))
+    return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
+
+
+def contact_ratios():
+    """Transverse, overlap and total contact ratio."""
+    from gearfe.machine.contact_cycle import overlap_ratio
+
+    over = overlap_ratio(pair(), min(pair().gear_1.b, pair().gear_2.b))
+    return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
+
+
+def line_length():
+    """Of all contact lines over a cycle [mm], and the least with pits."""
+    length = total_length(pair(), np.arange(400) / 400)
+    out = {"mean": length.mean(), "least": length.min(), "most": length.max()}
+    phase = np.linspace(-0.1, sum(contact_ratios()[name] for name in ("transverse", "overlap")) + 0.1, 1200)
+    whole = total_length(pair(), phase)
+    for case in CASES:
+        pits = scene(NAME).pair().damage[case]["pinion"]
+        out[f"{case}, most lost"] = (whole - total_length(pair(), phase, pits=(pits, ()))).max()
+    return {name: float(value) for name, value in out.items()}
+
+
+def _low(case, n):
+    """Amplitude at n f_r [N]."""
+    return amplitude(_found(case), n * frequencies()["f_r"])
+
+
+def _largest(case):
+    """Which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
+    return 1 + int(np.argmax([_low(case, n) for n in (1, 2, 3)]))
+
+
+def _side(case, n, m):
+    """Mean amplitude at n f_m +- m f_r [N]."""
+    turn, mesh = frequencies().values()
+    return (amplitude(_found(case), n * mesh - m * turn) + amplitude(_found(case), n * mesh + m * turn)) / 2
+
+
+def _impacts(case):
+    """Largest force within a turn over the median of the others' largest, folded by tooth: one tooth must stand out."""
+    force = signal(_record(case), FORCE).values
+    turn = round(RATE / frequencies()["f_r"])
+    own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)
+    by_tooth = own[: turn // 17 * 17].reshape(17, -1).max(axis=1)
+    return float(by_tooth.max() / np.median(by_tooth))
+
+
+def _lines_of_lost_length(teeth):
+    """Amplitudes at f_r and 2 f_r of the contact line [mm] lost to the case `multi` with its pits on these pinion teeth."""
+    count = 64
+    pits = [replace(pit, tooth=tooth) for pit, tooth in zip(scene(NAME).pair().damage["multi"]["pinion"], teeth, strict=True)]
+    phase = np.arange(17 * count) / count
+    lost = total_length(pair(), phase) - total_length(pair(), phase, pits=(pits, ()))
+    return 2 * np.abs(np.fft.rfft(lost))[1:3] / lost.size
+
+
+def statements():
+    """What S3 says of its spectra; see the scene for the words."""
+    mesh = frequencies()["f_m"]
+    healthy = _found("healthy")
+    main = amplitude(healthy, mesh) ** 2 + amplitude(healthy, 2 * mesh) ** 2
+    power = signal(_record("healthy"), FORCE).values.var()
+    minor, severe = ([_low(case, n) for n in (1, 2, 3)] for case in ("minor", "severe"))
+    sides = {case: [_side(case, n, m) for n in (1, 2) for m in (1, 2)] for case in ("healthy", *CASES)}
+    same, opposite = _lines_of_lost_length((0, 0, 0)), _lines_of_lost_length((0, 0, 8))
+    return {
+        "healthy: f_m and 2 f_m dominate": main / 2 > 0.5 * power,
+        "healthy: no sidebands": max(sides["healthy"]) < 0.01 * min(sides["severe"]),
+        "minor and severe: f_r, 2 f_r, 3 f_r appear": min(minor + severe) > 10 * max(_low("healthy", n) for n in (1, 2, 3)),
+        "they grow from minor to severe": all(a < b for a, b in zip(minor, severe, strict=True)),
+        "sidebands grow from minor to severe": all(a < b for a, b in zip(sides["minor"], sides["severe"], strict=True)),
+        "severe: impacts once a turn stand out": _impacts("severe") > 1.5,
+        "minor: no such impacts": _impacts("minor") < 1.5,
+        "multi: 2 f_r is the largest low line": _largest("multi") == 2,
+        "severe: f_r is the largest low line": _largest("severe") == 1,
+        "multi: sidebands at 2 f_r above those at f_r": sides["multi"][1] > sides["multi"][0],
+        "severe: sidebands at f_r above those at 2 f_r": sides["severe"][0] > sides["severe"][1],
+        "multi, all pits on one tooth: lost contact line has most at 2 f_r": bool(same[1] > same[0]),
+        "multi, two pits on tooth 0 and one on tooth 8: the same": bool(opposite[1] > opposite[0]),
+    }
+
+
+PICTURES = {"helical_pitting_spectra": "Mesh force, low lines and those about the mesh frequency"}
+
+
+def draw(folder):
+    """Pictures of the page."""
+    from gearfe.pictures.vibration_plots import plot_spectra
+
+    lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)
+    spectra = {case: _found(case) for case in ("healthy", *CASES)}
+    plot_spectra(spectra, lines, folder / "helical_pitting_spectra.png", 900.0, dpi=70)
+
+
+QUICK = {
+    "theory": theory,
+    "measured": measured,
+    "errors_simulated": errors_simulated,
+    "errors_measured": errors_measured,
+    "one_speed": one_speed,
+    "impact_period": impact_period,
+    "hertz_coefficient": hertz,
+    "contact_ratios": contact_ratios,
+    "line_length": line_length,
+}
+SIMULATED = {"simulated": simulated, "statements": statements}

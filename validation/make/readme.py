@@ -1,0 +1,48 @@
+"""Remake what the README shows: the comparison table and the output of its programs."""
+
+import contextlib
+import io
+import os
+import re
+import tempfile
+from pathlib import Path
+
+import gearfe as gf
+
+from ..shared.herringbone_page import error_table
+from ..shared.places import ROOT
+
+README = ROOT / "README.md"
+PROGRAM = re.compile(r"```python\n(.*?)```", re.S)
+OUTPUT = re.compile(r"(prints\n\n```text\n)(.*?)(```)", re.S)
+TEN = re.compile(r"@@TEN@@|\| pair \| case \| FE .*?(?=\n\n)", re.S)
+TABLE = re.compile(r"\| zone \|.*?\| seconds [^\n]*\|", re.S)
+
+
+def outputs(text):
+    """What each of the README's programs prints, run in an empty folder."""
+    return [_printed(program) for program in PROGRAM.findall(text)]
+
+
+def _printed(program):
+    printed, here = io.StringIO(), Path.cwd()
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(printed):
+        os.chdir(folder)
+        try:
+            exec(compile(program, "README.md", "exec"), {})
+        finally:
+            os.chdir(here)
+    return printed.getvalue()
+
+
+def run():
+    """Write the README anew."""
+    text = README.read_text(encoding="utf-8")
+    gf.compare(gf.load_scene("planetary_pitting"))  # warm
+    table = gf.compare(gf.load_scene("planetary_pitting")).table()
+    text = TABLE.sub(lambda _: table, text)
+    text = TEN.sub(lambda _: error_table(), text)
+    printed = iter(outputs(text))
+    text = OUTPUT.sub(lambda m: m[1] + next(printed) + m[3], text)
+    README.write_text(text, encoding="utf-8")
+    print("README.md remade")

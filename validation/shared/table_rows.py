@@ -1,0 +1,29 @@
+"""Rows of the pages with verdicts, as CSV."""
+
+import csv
+
+from gearfe.scene.verdicts import COLUMNS, Row
+from gearfe.stiffness.curve_file import written
+
+from .places import TABLES
+
+
+def path_of(name):
+    """CSV file of a page."""
+    return TABLES / f"{name}.csv"
+
+
+def write(name, rows):
+    """Write the rows of a page with six digits."""
+    TABLES.mkdir(exist_ok=True)
+    with written(path_of(name)) as target, open(target, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(COLUMNS)
+        out.writerows([f"{x:.6g}" if isinstance(x, float) else x for x in row] for row in rows)
+
+
+def read(name):
+    """Rows of a committed page."""
+    with open(path_of(name), encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    return [Row(**{c: float(r[c]) if c in COLUMNS[3:7] else r[c] for c in COLUMNS}) for r in rows]
