@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import gearfe as gf
 from gearfe.studies.own_model import own_curve
-from validation import own_model as example
+from validation.make import own_model as example
 
 CHOSEN = gf.load_scene("planetary_pitting").pair()
 PAIR, WIDTH = CHOSEN.pair, 20e-3  # m

@@ -11,7 +11,7 @@ from gearfe.energy.closed import textbook
 from gearfe.flexibility.hertz import linear_hertz
 from gearfe.studies.by_zone import FORMULATIONS
 from gearfe.studies.own_model import own_curve, own_models
-from validation import own_model as example
+from validation.make import own_model as example
 
 SCENE = gf.load_scene("planetary_pitting")
 CHOSEN = SCENE.pair()
