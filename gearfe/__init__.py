@@ -7,6 +7,7 @@ _HOME = {
     "Gear": "geometry.tooth.gear",
     "GearPair": "geometry.pair.gear_pair",
     "Material": "gearfe.material",
+    "OwnFlexibility": "gearfe.stiffness.own_flexibility",
     "PairModel": "gearfe.studies.own_model",
     "Pit": "geometry.damage.pit",
     "PlanetarySet": "geometry.pair.planetary",

@@ -5,6 +5,7 @@ import os
 import sys
 import warnings
 
+from ..stiffness.methods import NAMES, described, having
 from . import verbs as run
 
 
@@ -17,12 +18,12 @@ def main(argv=None):
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", run.stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
-    verb.add_argument(
-        "--method", default="auto", help="ritz, ritz3d, fe, fe3d, coupled, textbook, published (default: ritz or ritz3d)"
-    )
+    verb.formatter_class, verb.epilog = argparse.RawDescriptionHelpFormatter, f"methods:\n{described()}"
+    methods = ", ".join(name for name in NAMES if name != "auto")
+    verb.add_argument("--method", default="auto", help=f"{methods} (see below; default: ritz or ritz3d)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
-    verb.add_argument("--error", action="store_true", help="estimate the discretisation error of every k (not of closed forms)")
+    verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")

@@ -32,16 +32,18 @@ def _print_scene(scene):
 def stiffness(arguments):
     """``gearfe stiffness``."""
     from ..scene.load import load_scene
+    from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
 
     scene = load_scene(arguments.scene)
     chosen = scene.pair(arguments.pair)
     force = chosen.force if arguments.force is None else arguments.force
     _print_scene(scene)
+    run, left_out = fitted(arguments.method, chosen.case(arguments.case))
+    for text in left_out:
+        print(f"{text}\n")
     with _working(f"stiffness by {arguments.method}") as tell:
-        run = chosen.case(arguments.case) | {"force": force, "span": "tooth" if arguments.case else "cycle"}
-        if arguments.method in ("ritz", "fe", "coupled"):
-            run["face"] = None
+        run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
             extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,

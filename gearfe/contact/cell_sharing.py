@@ -5,7 +5,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from ..flexibility.halfspace import line_kernel, pair_kernel, strip
 from ..flexibility.hertz import half_width
-from .plane import CLOSED
+from .plane import OVERLAP
 from .sharing import share
 
 MOST = 60  # steps, the second half of them with exact contact problems
@@ -97,7 +97,7 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         if attempt < MOST // 2:
             new, approach = _free(total, gap, load, active, blocks, weight)
             rests = total @ np.maximum(new, 0.0) + gap - approach * weight
-            let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, CLOSED * np.abs(rests[n:]).max(initial=0.0)))
+            let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, OVERLAP * np.abs(rests[n:]).max(initial=0.0)))
             wanted = np.where(active, new > 0, rests < -let)
         else:
             new, approach = share(total, gap, load, weight)

@@ -17,7 +17,7 @@ from .sharing import line_contact, line_contacts
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
 CORNER = 0.7
-CLOSED = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
+OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Solved:
 
 def _closing(opening):
     """Whether crack faces overlap, by the last axis."""
-    return opening.min(axis=-1) < -CLOSED * np.abs(opening).max(axis=-1)
+    return opening.min(axis=-1) < -OVERLAP * np.abs(opening).max(axis=-1)
 
 
 def _within(contacts, reach):

@@ -1,7 +1,6 @@
 """What `mesh_stiffness` is given, checked and brought into one form; errors say what was given and what to do."""
 
 import math
-import warnings
 from dataclasses import replace
 from inspect import signature
 from numbers import Real
@@ -11,15 +10,12 @@ import numpy as np
 from geometry.damage.crack import Crack, check_apart, check_through
 from geometry.damage.pit import Pit
 
-from ..energy.closed import published, textbook
 from ..energy.closed.plain_sum import plain_sum
-from ..energy.closed.slices import FACES
 from ..machine.contact_cycle import overlap_ratio
 from ..material import Material
+from .methods import FACES, METHODS, NAMES, WITHOUT_BODY, Method, having
+from .own_flexibility import OwnFlexibility
 
-CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
-WIDE = ("ritz3d", "fe3d")  # in three dimensions
-METHODS = ("auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", *CLOSED)
 NO_VARIANTS = (
     *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
 )
@@ -57,55 +53,90 @@ def phase_array(phases, span, pair, overlap=0.0):
     return phases
 
 
+def why_solid(pair, face, damage):
+    """Why a pair needs three dimensions; empty if its transverse section is the whole truth.
+
+    Parameters
+    ----------
+    pair : GearPair
+    face : str or None
+        How the teeth run; None: as their helix angle says.
+    damage : sequence of Crack and Pit
+    """
+    if not all(one.through for one in damage if isinstance(one, Crack)):
+        return "cracks change along the width"
+    if any(isinstance(one, Pit) for one in damage):
+        return "pits change along the width"
+    if (face or ("helical" if pair.gear_1.beta else "spur")) != "spur":
+        return "contact lines run across helical teeth"
+    return ""
+
+
 def choose(method, pair, cracks, pits, face, teeth):
     """The method that ``auto`` stands for, and why."""
     if method != "auto":
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
-    if not all(crack.through for own in cracks for crack in own):
-        return "ritz3d", "cracks change along the width"
-    if any(pits):
-        return "ritz3d", "pits change along the width"
-    if face in ("helical", "herringbone") or (face is None and pair.gear_1.beta):
-        return "ritz3d", "contact lines run across helical teeth"
-    return "ritz", "spur gears, nothing changes along the width: plane strain"
+    why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
+    return ("ritz3d", why) if why else ("ritz", "spur gears, nothing changes along the width: plane strain")
 
 
-def refuse(method, pair, cracks, pits, teeth, variants, face, groove):
-    """Raise ValueError for what a method does not model."""
+def row_of(method):
+    """The row of a method in the table, and the `OwnFlexibility` if it is one; the method must not be ``auto`` any more."""
+    if isinstance(method, OwnFlexibility):
+        return Method(method.name, "a model of one's own", "section", "", "", extended=method.extended), method
+    return METHODS[method], None
+
+
+def check_method(method):
+    """Raise ValueError unless it is the name of a method or an `OwnFlexibility`."""
+    if isinstance(method, OwnFlexibility) or (isinstance(method, str) and method in NAMES):
+        return
+    raise ValueError(f"method = {method!r}, but it must be one of {', '.join(NAMES)}, or an OwnFlexibility")
+
+
+def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
+    """Raise ValueError for what the method of a `row` of the table does not model."""
+    method = f"method = {row.name!r}"
     if face not in (None, *FACES):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
-    if method in ("ritz", "fe", "coupled") and face not in (None, "spur"):
-        raise ValueError(
-            f"face = {face!r} with method = {method!r}, a transverse section: use method = 'ritz3d' or a closed form"
-        )
-    if method in ("ritz", "fe", "coupled") and groove:
-        raise ValueError(f"groove = {groove} mm with method = {method!r}, a transverse section: use face = 'herringbone'")
+    if face not in (None, *row.faces):
+        raise ValueError(f"face = {face!r} with {method}, a transverse section: use method = 'ritz3d' or a closed form")
+    if groove and "herringbone" not in row.faces:
+        raise ValueError(f"groove = {groove} mm with {method}, a transverse section: use face = 'herringbone'")
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
-    if ring and method == "coupled":
-        raise ValueError("method = 'coupled' has no ring: use method = 'ritz'")
-    if ring and method in CLOSED and (variants or {}).get("foundation") not in ("none", "external"):
+    if ring and row.rings == "no":
+        raise ValueError(f"{method} has no ring: use method = 'ritz'")
+    if ring and row.rings == "without body" and (variants or {}).get("foundation") not in WITHOUT_BODY:
         raise ValueError(
-            f"method = {method!r} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
+            f"{method} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
             "out (or 'none' for both gears'), or use method = 'ritz'"
         )
-    if damaged and method == "coupled":
-        raise ValueError("damage with method = 'coupled', which has none: use 'ritz' or 'textbook'")
-    if any(pits) and method not in (*CLOSED, *WIDE):
-        raise ValueError(f"pits with method = {method!r}, a transverse section: use 'ritz3d', 'textbook' or 'published'")
-    if method not in WIDE:
-        check_through([crack for own in cracks for crack in own], f"method = {method!r}")
-    if teeth is not None and method != "fe":
-        raise ValueError(f"teeth = {teeth} with method = {method!r}: only 'fe' can leave teeth out")
-    if variants and method not in CLOSED:
-        raise ValueError(f"variants = {variants!r} with method = {method!r}: only {' and '.join(CLOSED)} have variants")
-    if variants:
-        known = [*signature(plain_sum).parameters, *signature(CLOSED[method].components).parameters]
+    if damaged and not row.cracks and not row.pits:
+        raise ValueError(f"damage with {method}, which has none: use {having('cracks')}")
+    if any(cracks) and not row.cracks:
+        raise ValueError(f"cracks with {method}, which has none: use {having('cracks')}")
+    if any(pits) and not row.pits:
+        raise ValueError(f"pits with {method}, a transverse section: use {having('pits')}")
+    found = [crack for own in cracks for crack in own]
+    if row.cracks not in ("part of the width", "sloping"):
+        check_through(found, method)
+    for crack in found:
+        if crack.ends != (1.0, 1.0) and row.cracks != "sloping":
+            raise ValueError(
+                f"crack open over parts {crack.ends} of its length, but {method} has cracks of one depth: give ends = (1, 1) and "
+                f"the level they have there, or use method = 'fe3d'"
+            )
+    if teeth is not None and not row.teeth:
+        raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
+    if variants and not row.variants:
+        raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")
+    for name in variants or ():
+        known = [*signature(plain_sum).parameters, *signature(row.load().components).parameters]
         known = sorted(set(known) - set(NO_VARIANTS))
-        for name in variants:
-            if name not in known:
-                raise ValueError(f"variants: {name!r} is none of method = {method!r}; it has {', '.join(known)}")
+        if name not in known:
+            raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
 
 
 def by_gear(pair, damage):
@@ -126,13 +157,3 @@ def by_gear(pair, damage):
         cracks.append(tuple(one for one in own if isinstance(one, Crack)))
         pits.append(tuple(one for one in own if isinstance(one, Pit)))
     return tuple(cracks), tuple(pits)
-
-
-def warn_if_unseen(pair, damage, order):
-    """Warn if no cracked tooth is in contact at any of the phases."""
-    seen = ((pair.gear_1, damage["pinion"]), (pair.gear_2, damage["wheel"]))
-    if not any(crack["tooth"] % gear.z in order % gear.z for gear, cracks in seen for crack in cracks):
-        warnings.warn(
-            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
-            stacklevel=4,
-        )

@@ -14,20 +14,23 @@ COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elemen
 LESS = 2  # axial degrees less in it
 
 
-def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cache=True, tell=None):
+def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, order, error=False, cache=True, tell=None):
     """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
 
     Parameters
     ----------
-    pair : GearPair
     force : float
         Along the transverse line of action [N].
-    materials : (Material, Material)
-    phase : ndarray
-    cracks, pits : (tuple, tuple)
-        In each gear's own frame.
+    case : tuple
+        ``pair, materials, phase, cracks, pits``: GearPair, two Material, ndarray, the damage of both in each gear's own frame.
     meta : dict
-        Holds ``method``, ``face``, ``groove``, ``refine``, ``extended`` and (energy model) ``order``.
+        Of the curve, without what is known only after the solve.
+    brute : bool
+        By finite elements of the whole gears, otherwise by the energy model.
+    face, groove, extended
+        As in `gearfe.contact.solid.pair_stiffness3d`.
+    refine, order : float, int
+        Of the gears; finite elements have no order.
     error : bool
         Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
         Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
@@ -40,21 +43,20 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
         `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
-    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "extended")}}
-    brute = meta["method"] == "fe3d"
+    pair, materials, phase, cracks, pits = case
+    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
     if brute:
-        model = partial(solved_solid, refine=meta["refine"], cache=cache, tell=tell)
-        options["model"] = model
+        options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
-        options |= {"refine": meta["refine"], "order": meta["order"]}
+        options |= {"refine": refine, "order": order}
     found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
     doubt = found.error
     if error and brute:
-        ratio, k = _coarser((pair, force, materials, phase), options, meta["refine"], cache, tell)
+        ratio, k = _coarser((pair, force, materials, phase), options, refine, cache, tell)
         away = np.abs(k - found.k)
         doubt = np.maximum(away, away.mean())
-        meta = meta | {"error_refine": ratio * meta["refine"]}
+        meta = meta | {"error_refine": ratio * refine}
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):

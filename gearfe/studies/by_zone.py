@@ -4,12 +4,13 @@ import time
 import warnings
 from dataclasses import dataclass
 
-from geometry.damage.pit import Pit
-
+from ..stiffness.inputs import why_solid
+from ..stiffness.methods import METHODS, ROWS, fitted
 from ..stiffness.solve import mesh_stiffness
 from .own_model import own_curve, own_models
 
-FORMULATIONS = ("ritz", "coupled", "textbook", "published")  # of spur gears
+REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
+FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # of spur gears
 ZONES = ("single", "double", "triple", "mean", "max")
 
 
@@ -69,8 +70,8 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
     case : str, optional
         Name of a case of damage: the phases then are those of the damaged tooth's whole engagement.
     models : sequence or dict of str to model
-        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair, or files
-        with stated units (see `gearfe.studies.own_model` and `gearfe.read_model`).
+        Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
+        ``OwnFlexibility(f)`` of one gear, or files with stated units (see `gearfe.studies.own_model` and `gearfe.read_model`).
     phases : int or array
         As in `mesh_stiffness`.
     refine : float
@@ -83,16 +84,17 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
     """
     chosen = scene.pair(pair)
     methods = _methods(chosen, case)
-    own = own_models(models, taken=("fe", *FORMULATIONS))
+    own = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     run = chosen.case(case) | {"phases": phases, "span": "tooth" if case else "cycle"}
     mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
+    for method in methods:
+        METHODS[method].load()
     curves, seconds = {}, {}
     for method in methods:
         started = time.perf_counter()
         options = {"refine": refine} if method == methods[0] else {}
-        face = None if method in ("fe", "ritz", "coupled") else chosen.face
         try:
-            curves[method] = mesh_stiffness(**(run | {"face": face}), method=method, cache=False, **options)
+            curves[method] = mesh_stiffness(**fitted(method, run)[0], method=method, cache=False, **options)
         except ValueError as error:
             if method == methods[0]:
                 raise
@@ -108,9 +110,9 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
 
 
 def _methods(chosen, case):
-    """Reference and formulations for a pair of a scene."""
+    """Reference and formulations for a pair of a scene: those that have it whole, a ring's body included."""
     damage = [one for found in chosen.case(case).get("damage", {}).values() for one in found]
-    closed = () if chosen.pair.gear_2.internal else ("textbook", "published")
-    if chosen.face in ("helical", "herringbone") or any(isinstance(one, Pit) for one in damage):
-        return ("ritz3d", *closed)
-    return ("fe", "ritz", *(("coupled",) if closed and not damage else ()), *closed)
+    rows = [row for row in ROWS if row.rings == "yes" or not chosen.pair.gear_2.internal]
+    if why_solid(chosen.pair, chosen.face, damage):
+        return (REFERENCE_SOLID, *(row.name for row in rows if row.kind == "sum"))
+    return (REFERENCE, *(row.name for row in rows if row.name in FORMULATIONS and (row.cracks or not damage)))

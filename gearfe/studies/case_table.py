@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.damage.pit import Pit
-
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
-from ..stiffness.inputs import CLOSED, overlap
+from ..stiffness.inputs import overlap, why_solid
+from ..stiffness.methods import METHODS, SUMS, fitted
 from ..stiffness.solve import mesh_stiffness
 
 PHASES = 32  # of the cycle looked at
@@ -159,17 +158,13 @@ def damage_cycle(chosen):
 
 def is_wide(chosen):
     """Whether a scene's pair needs three dimensions in any of its cases."""
-    pits = any(isinstance(one, Pit) for case in chosen.damage.values() for found in case.values() for one in found)
-    return pits or chosen.face in ("helical", "herringbone")
+    damage = [one for case in chosen.damage.values() for found in case.values() for one in found]
+    return bool(why_solid(chosen.pair, chosen.face, damage))
 
 
 def case_curve(chosen, case, method, phase, **options):
     """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `mesh_stiffness`."""
-    run = chosen.case(case) | {"phases": phase, "method": method} | options
-    if method in ("ritz", "fe"):
-        run |= {"face": None, "groove": 0.0}
-    if method in CLOSED and chosen.pair.gear_2.internal:
-        run["variants"] = {"foundation": "external"}
+    run, _ = fitted(method, chosen.case(case) | {"phases": phase, "method": method} | options)
     started = time.perf_counter()
     curve = mesh_stiffness(**run)
     seconds = time.perf_counter() - started
@@ -216,7 +211,7 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     wanted = wanted if cases is None else list(cases)
     solid = wide and (compute or all(key in stored for key in wanted))
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
-    methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), "textbook", "published")
+    methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
     curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
     for name, case in wanted:
         chosen = scene.pairs[name]
@@ -229,7 +224,7 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
             try:
                 curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
             except ValueError as error:
-                if method not in CLOSED:
+                if METHODS[method].converged:
                     raise
                 warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
                 nothing = np.full(PHASES, np.nan)

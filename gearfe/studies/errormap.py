@@ -14,6 +14,7 @@ from geometry.tooth.gear import Gear
 
 from ..material import Material
 from ..stiffness.curve_file import written
+from ..stiffness.methods import ROWS
 from ..stiffness.solve import mesh_stiffness
 from .batches import batch
 from .own_model import own_curve
@@ -32,11 +33,9 @@ RANGES = {
 }
 LOADS = (10.0, 50.0, 250.0)
 ZONES = ("single", "double", "mean", "max")
-HEALTHY = {"textbook": ("textbook", {}), "published": ("published", {}), "coupled": ("coupled", None)}
-CRACKED = {
-    **{f"textbook {model}": ("textbook", {"crack_model": model}) for model in ("constant", "straight", "parabola")},
-    "published constant": ("published", {"crack_model": "constant"}),
-}
+CLOSED_FORMS = sorted((row for row in ROWS if not row.converged), key=lambda row: row.kind != "sum")  # the sums first
+HEALTHY = tuple(row.name for row in CLOSED_FORMS)
+CRACKED = {f"{row.name} {model}": (row.name, {"crack_model": model}) for row in CLOSED_FORMS for model in row.crack_models}
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,7 +175,7 @@ def _one(sample, loads, models, phases):
     forces = [load * 1.0 for load in loads]
     truth = mesh_stiffness(pair, forces, method="ritz", **run)
     beyond = mesh_stiffness(pair, forces, method="ritz", **(run | {"extended": True}))
-    found = {name: mesh_stiffness(pair, forces, method=m, variants=v, **run) for name, (m, v) in HEALTHY.items()}
+    found = {name: mesh_stiffness(pair, forces, method=name, **run) for name in HEALTHY}
     for name, make in models.items():
         found[name] = [own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)]
     rows = [

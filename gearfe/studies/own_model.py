@@ -4,12 +4,15 @@ import math
 import os
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from ..material import Material
 from ..stiffness.curve import StiffnessCurve
+from ..stiffness.own_flexibility import OwnFlexibility
+from ..stiffness.solve import mesh_stiffness
 from .model_file import ModelFile, read_model
 
 SHARED_META = ("force_N", "width_mm", "gear_1", "gear_2", "a_mm", "eps_alpha", "materials", "versions")
@@ -43,29 +46,30 @@ def own_models(models, taken=()):
     ----------
     models : sequence or dict
         Functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the whole
-        width), `PairModel`, paths of files (see `read_model`) or `ModelFile`; with a dict the keys are the names.
+        width), `PairModel`, `OwnFlexibility`, paths of files (see `read_model`) or `ModelFile`; the keys of a dict are the names.
     taken : sequence of str
         Names that no model may have.
 
     Returns
     -------
-    dict of str to callable, PairModel or ModelFile
+    dict of str to callable, PairModel, OwnFlexibility or ModelFile
 
     Raises
     ------
     ValueError
         If something is none of these, cannot be read, or two share a name.
     """
-    if callable(models) or isinstance(models, (str, os.PathLike, PairModel, ModelFile)):
+    if callable(models) or isinstance(models, (str, os.PathLike, PairModel, OwnFlexibility, ModelFile)):
         raise ValueError(f"models = {models!r}, but give a list, models=[...], or a dict, models={{'name': ...}}")
     items = list(models.items()) if isinstance(models, dict) else [(_name(m, i), m) for i, m in enumerate(models, 1)]
     out = {}
     for name, model in items:
         if isinstance(model, (str, os.PathLike)):
             model = read_model(model)
-        elif not callable(model) and not isinstance(model, (PairModel, ModelFile)):
+        elif not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
             raise ValueError(
-                f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), or the path of a file"
+                f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
+                "or the path of a file"
             )
         if name in taken or name in out:
             what = "is a formulation of gearfe" if name in taken else "stands for two models"
@@ -75,6 +79,8 @@ def own_models(models, taken=()):
 
 
 def _name(model, number):
+    if isinstance(model, OwnFlexibility):
+        return model.name if model.name.isidentifier() else f"model {number}"
     if isinstance(model, PairModel):
         model = model.function
     if isinstance(model, ModelFile):
@@ -91,7 +97,7 @@ def own_curve(name, model, pair, reference):
     Parameters
     ----------
     name : str
-    model : callable, PairModel or ModelFile
+    model : callable, PairModel, OwnFlexibility or ModelFile
         As `own_models` gives it.
     pair : GearPair
     reference : StiffnessCurve
@@ -100,13 +106,18 @@ def own_curve(name, model, pair, reference):
     -------
     StiffnessCurve
         ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
-        their total.
+        their total. An `OwnFlexibility` gives all of it, by `mesh_stiffness`.
 
     Raises
     ------
     ValueError
         If the model fails, or k has the wrong shape or is not finite and positive; if a file does not cover what is asked.
     """
+    if isinstance(model, OwnFlexibility):
+        materials = tuple(Material(**one) for one in reference.meta["materials"])
+        curve = mesh_stiffness(pair, reference.meta["force_N"], materials, method=model, phases=reference.phase)
+        _hint(name, model, curve.k, reference)
+        return replace(curve, meta=curve.meta | {"method": name})
     touch = pair.contacts(reference.phase, extended=False)
     touching = np.isfinite(touch.gap)
     meta = {key: reference.meta[key] for key in SHARED_META} | {"method": name, "model": _kind(model)}

@@ -11,7 +11,7 @@ from gearfe.stiffness.curve_file import written
 from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
 from ..shared import machine
-from ..shared.herringbone_page import CLOSED, SCENE, TABLES, error_table, page, picture
+from ..shared.herringbone_page import SCENE, SUMS, TABLES, error_table, page, picture
 from ..shared.places import PAGES
 
 REFINE = 0.8  # of the finite elements: 0.2 to 0.7 million unknowns a gear
@@ -52,7 +52,7 @@ def sensitivity(variation, pair):
     chosen = varied(gf.load_scene(SCENE).pair(pair), **VARIATIONS[variation])
     phase = damage_cycle(chosen)[EVERY // 2 :: EVERY]
     return [
-        [variation, pair, case or "healthy", *(case_curve(chosen, case, m, phase).mean for m in ("ritz3d", *CLOSED))]
+        [variation, pair, case or "healthy", *(case_curve(chosen, case, m, phase).mean for m in ("ritz3d", *SUMS))]
         for name, case in printed_cases(gf.load_scene(SCENE))
         if name == pair
     ]
@@ -109,7 +109,7 @@ def compute():
     for found in done.results:
         if isinstance(found, Exception):
             raise found
-    header = ["variation", "pair", "case", "ritz3d [N/m]", *(f"{name} [N/m]" for name in CLOSED)]
+    header = ["variation", "pair", "case", "ritz3d [N/m]", *(f"{name} [N/m]" for name in SUMS)]
     save(f"{SCENE}_sensitivity", header, [row for found in done.results for row in found])
 
 

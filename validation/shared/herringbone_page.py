@@ -12,7 +12,7 @@ from gearfe.studies.case_table import printed_beside
 from .places import TABLES
 
 SCENE = "herringbone"
-CLOSED = ("published", "textbook")
+SUMS = ("published", "textbook")
 PAGE = """# Article S4: error table of a herringbone planetary stage with crack and pits
 
 Made by `python -m validation herringbone` from `tables/herringbone*.csv`; the finite elements, in
@@ -131,7 +131,7 @@ def picture(path):
     columns = list(dict.fromkeys((row["pair"], row["case"]) for row in rows))
     names = list(dict.fromkeys(row["variation"] for row in rows))
     errors = {}
-    for method in CLOSED:
+    for method in SUMS:
         by = {(r["variation"], r["pair"], r["case"]): float(r[f"{method} [N/m]"]) / float(r["ritz3d [N/m]"]) - 1 for r in rows}
         errors[f"`{method}` against ritz3d"] = np.array([[by[name, *column] for column in columns] for name in names])
     plot_errors(errors, names, [f"{pair.replace('_', '-')} {case}" for pair, case in columns], path)

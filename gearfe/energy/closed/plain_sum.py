@@ -46,7 +46,8 @@ def plain_sum(
     materials : (Material, Material)
     phase : ndarray
     formulas : module
-        `textbook` or `published`: its ``components`` gives the flexibility of one tooth.
+        Such as `textbook` or `published`: its ``components`` gives the flexibility of one tooth; its ``DEFAULTS``, if there are
+        any, the `contact` of its source, and the ``root`` profile that its beams stand on if it is no variant.
     cracks, pits : (sequence, sequence)
         Of pinion and wheel, teeth numbered in each gear's own frame: the wheel's tooth of pair k is its tooth -k.
     contact : {"linear", "published", "weber", "palmgren"}, optional
@@ -76,7 +77,8 @@ def plain_sum(
     ValueError
         If an option is unknown, damage does not fit its gear, or at some phase pits leave no contact at all.
     """
-    contact = contact or ("published" if formulas is published else "linear")
+    defaults = getattr(formulas, "DEFAULTS", {})
+    contact = contact or defaults.get("contact", "linear")
     if contact not in CONTACTS:
         raise ValueError(f"contact = {contact!r}, but it must be one of {', '.join(CONTACTS)}")
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
@@ -86,7 +88,7 @@ def plain_sum(
         check_apart(gear, own_cracks)
         check_pits(gear, own_pits)
     bands = faces(pair, face, groove)
-    options = {"root": "prism"} if formulas is published else {}
+    options = {name: value for name, value in defaults.items() if name == "root"}
     options |= {key: variants[key] for key in ("crack_model", "root") if key in variants}
     at = stations(pair, phase, pits, bands, lost=lost, edges=lambda order: _edges(pair, order, cracks, pits, options))
     empty = np.setdiff1d(np.arange(phase.size), at.phase)

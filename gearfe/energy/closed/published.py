@@ -11,6 +11,7 @@ from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
 from .integrals import integrals
 
 GAUSS = leggauss(32)
+DEFAULTS = {"contact": "published", "root": "prism"}  # of `gearfe.energy.closed.plain_sum`
 
 
 def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot"):

@@ -1,0 +1,172 @@
+"""The methods of `mesh_stiffness` and what each can: one row for each, read wherever somebody asks.
+
+`gearfe.stiffness.inputs` refuses by it what a method has not, `mesh_stiffness` finds the function in it, the command line's
+help, `compare`, `case_table` and `error_map` list its names. It imports nothing heavy.
+
+To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in `ROWS`:
+
+- kind "sum", if it describes one tooth and the pairs are springs side by side: the file has ``components(gear, material, roll,
+  *, cracks=(), pits=(), crack_model="constant", ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
+  its other keywords become the variants of the method. ``DEFAULTS``, if it is there, holds its contact law and root profile;
+- kind "section", if it describes what a whole gear gives to all its contacts: the file has ``flexibility(gear, material, *,
+  neighbours, state)``, which gives `gearfe.flexibility.plane.Flexibility`, as ``coupled.py``.
+"""
+
+from dataclasses import dataclass, replace
+from importlib import import_module
+
+SPUR = ("spur",)
+FACES = ("spur", "helical", "herringbone")  # how teeth run
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """One method, and what it takes.
+
+    Attributes
+    ----------
+    name : str
+    about : str
+        What it is, in one line.
+    kind : {"section", "solid", "sum"}
+        ``section``: the flexibility of the transverse section, plane; ``solid``: of gears of finite width; ``sum``: no
+        flexibility of a gear, but the stiffness of tooth pairs that ignore each other, sliced along the width.
+    home : str
+        ``module:function`` that computes it; imported on first use (`load`).
+    cost : str
+        Of one curve: milliseconds, seconds or minutes.
+    converged : bool
+        Its discretisation can be refined to the limit; otherwise a closed form.
+    cracks : {"", "through", "part of the width", "sloping"}
+        None; of one depth through the whole width; also of part of the width; also sloping.
+    pits : bool
+    rings : {"yes", "no", "without body"}
+        ``without body``: only with the variant ``foundation`` saying that the ring's body is left out.
+    faces : tuple of str
+        How the teeth may run. A section takes helical gears as spur gears of the same width.
+    variants, teeth, error, extended : bool
+        Whether it has variants, can leave out teeth, estimates its error, and lets tip corners touch off the path of contact.
+    order : int or None
+        Default order of its polynomials.
+    kept : bool
+        Its solved gears are kept by `gearfe.stiffness.cache`, to which `home` leads.
+    crack_models : tuple of str
+        Limit lines of a crack with which `gearfe.error_map` judges it.
+    """
+
+    name: str
+    about: str
+    kind: str
+    home: str
+    cost: str
+    converged: bool = False
+    cracks: str = ""
+    pits: bool = False
+    rings: str = "yes"
+    faces: tuple = SPUR
+    variants: bool = False
+    teeth: bool = False
+    error: bool = False
+    extended: bool = False
+    order: int | None = None
+    kept: bool = False
+    crack_models: tuple = ()
+
+    def load(self):
+        """The function, or for a sum the module, that computes it."""
+        module, _, function = self.home.partition(":")
+        return getattr(import_module(module), function) if function else import_module(module)
+
+
+ROWS = (
+    Method(
+        "ritz", "converged energy model of the transverse section", "section", "gearfe.energy.ritz.plane:flexibility",
+        "milliseconds", converged=True, cracks="through", error=True, extended=True, order=4,
+    ),
+    Method(
+        "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
+        "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="part of the width", pits=True, faces=FACES, error=True,
+        extended=True, order=3,
+    ),
+    Method(
+        "fe", "finite elements of the transverse section, the independent reference", "section",
+        "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", teeth=True, error=True, extended=True,
+        kept=True,
+    ),
+    Method(
+        "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
+        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="sloping", pits=True, faces=FACES, error=True,
+        extended=True, kept=True,
+    ),
+    Method(
+        "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
+        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no",
+    ),
+    Method(
+        "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",
+        "gearfe.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="without body", faces=FACES,
+        variants=True, crack_models=("constant", "straight", "parabola"),
+    ),
+    Method(
+        "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
+        "gearfe.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="without body", faces=FACES,
+        variants=True, crack_models=("constant",),
+    ),
+)  # fmt: skip
+METHODS = {row.name: row for row in ROWS}
+NAMES = ("auto", *METHODS)
+SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
+WITHOUT_BODY = ("external", "none")  # values of the variant `foundation` that leave out a ring's body
+
+
+def described():
+    """One line of text for each method: its name, what it is, what it costs."""
+    return "\n".join(f"  {row.name:10s} {row.about}; {row.cost}" for row in ROWS)
+
+
+def having(what, kind=None):
+    """Names of the methods that have `what`, an attribute of `Method`, as text: 'ritz, fe or fe3d'."""
+    found = [row.name for row in ROWS if getattr(row, what) and kind in (None, row.kind)]
+    return " or ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found)
+
+
+def fitted(method, run):
+    """The arguments of a scene's pair as far as a method knows them, and in words what it leaves out.
+
+    This is the one rule for which face, groove and variants go to which method:
+
+    - a transverse section takes a helical or herringbone pair as a spur pair of the width that carries, b less the groove;
+    - a sum that has no foundation for a ring leaves out the ring's body.
+
+    ``mesh_stiffness`` itself refuses such arguments, so that nobody gets a section who asked for a helical gear.
+
+    Parameters
+    ----------
+    method : str
+        A name of `NAMES`; ``auto`` takes everything.
+    run : dict
+        Keyword arguments of `mesh_stiffness`, as of `gearfe.scene.load.ScenePair.case`: ``pair``, ``face``, ``groove``.
+
+    Returns
+    -------
+    run : dict
+    left_out : tuple of str
+        Empty if the method takes all of it.
+    """
+    if method not in METHODS:
+        return run, ()
+    row, pair, out, left_out = METHODS[method], run["pair"], dict(run), []
+    face = run.get("face") or ("helical" if pair.gear_1.beta else "spur")
+    groove = run.get("groove", 0.0)
+    if face not in row.faces:
+        out |= {"face": None, "groove": 0.0}
+        width = min(pair.gear_1.b, pair.gear_2.b)
+        if groove:
+            width -= groove
+            out["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))
+        less = f", b less the groove of {groove:g} mm" if groove else ""
+        left_out.append(f"{method} is the transverse section: {face} teeth are taken as spur teeth {width:g} mm wide{less}")
+    if pair.gear_2.internal and row.rings == "without body" and not run.get("variants"):
+        out["variants"] = {"foundation": WITHOUT_BODY[0]}
+        left_out.append(f"{method} has no foundation for a ring: the ring's body is left out")
+    return out, tuple(left_out)

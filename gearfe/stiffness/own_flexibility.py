@@ -1,0 +1,221 @@
+"""`OwnFlexibility`: a model of the user's own of how one gear gives, in place of `ritz` or `fe`."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.tooth.gear import Gear
+
+from ..energy.closed import coupled
+from ..energy.closed.beam import Components
+from ..material import Material
+from .methods import METHODS, SUMS, having
+
+GIVEN = ("bulk", "smooth")
+SAME = 1e-8  # relative: influences of two contacts on each other that differ by less are equal
+NO_FLEXIBILITY = (
+    "a plain sum of tooth pairs that do not feel each other: it has no flexibility of a gear between its contacts; use it as "
+    "method = '{0}', or give one of {1}, a function f(gear, material, radius, tooth) -> (n, n), or a Flexibility"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class OwnFlexibility:
+    """How one gear gives between its contacts, by a model of your own: ``mesh_stiffness(..., method=OwnFlexibility(f))``.
+
+    Yours is what the gear does under unit loads, neighbours and all: the displacement of contact i, along the line of action and
+    into the gear, under a unit line load at contact j, bore (of a ring: rim) held, at the same time for all teeth in contact. The
+    diagonal is each tooth's own, the rest is how teeth move each other through their body; zeros there say that they do not.
+
+    gearfe adds the rest: which teeth touch where, the other gear, the local contact under the load that each pair really
+    carries, and who carries how much. With P the line load and ``c = 2 (1 - nu**2) / (pi E)``, the contact adds to each gear
+    ``c P (ln(2 / a) + 1/2)``, lengths in mm and a Hertz's half width (`gearfe.contact.sharing.line_contact`). What of the local
+    dent is yours therefore is a question of where you cut, and `given` says it:
+
+    - ``bulk``: your values hold beam, shear, compression and body, and no dent, as closed forms do. gearfe adds Weber's whole
+      local deflection down to the tooth's centre-line (`gearfe.energy.closed.coupled.local_remainder`).
+    - ``smooth``: your values hold everything but the half-plane's logarithm: the displacement u(r) at a distance r from a
+      unit line load, plus ``c ln r`` (r in mm), for r to 0. So do those of `ritz` and finite elements.
+
+    There is no contact at tip corners off the path of contact, as with closed forms (``extended`` of the curve's ``meta`` is
+    False), unless both gears are `Flexibility` objects with tip hats or methods that have them. Damage is yours, too: a function
+    knows the number of the tooth; ``damage`` of `mesh_stiffness` is refused.
+
+    Parameters
+    ----------
+    pinion : callable, Flexibility or str
+        ``f(gear, material, radius, tooth) -> (n, n)`` [mm per N/mm]: `radius` (n,) are the radii of the contacts [mm], ndarray,
+        between form and tip circle; `tooth` (n,) the teeth they are on, whole numbers counted from tooth 0 towards the gear's
+        loaded side (of the wheel that of pair k is tooth -k), so that teeth i and j are ``(j - i) 2 pi / z`` apart. It is called
+        once for each phase. Or an object
+        with ``matrix(roll, teeth)`` as `gearfe.flexibility.plane.Flexibility`, of just this gear and ``smooth`` by definition.
+        Or the name of a method that has a flexibility: ``"ritz"``, ``"fe"``, ``"coupled"``.
+    wheel : callable, Flexibility or str, optional
+        Default: as the pinion.
+    given : {"bulk", "smooth"}
+        What the functions' values hold.
+    name : str, optional
+        Of the method in ``meta`` and tables; default: the function's.
+
+    Raises
+    ------
+    ValueError
+        If something is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"published"``). `mesh_stiffness`
+        raises one if a function fails, or its matrix has another shape, is not finite, not symmetric, or (``bulk``) gives way
+        against a load.
+
+    Examples
+    --------
+    Teeth as bars of constant thickness on stiff bodies, beside the converged energy model, in N/(mm um):
+
+    >>> import math, numpy as np, gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> def bar(gear, material, radius, tooth):
+    ...     arm, thickness = radius - gear.r_f, 2 * gear.m_n
+    ...     bending = 4 * arm**3 / (material.E * thickness**3)
+    ...     return np.diag(bending + 1.2 * arm / (material.shear_modulus * thickness))
+    >>> run = dict(pair=pair, force=2000.0, material=gf.Material(E=207e3, nu=0.3), phases=16, extended=False)
+    >>> own, both, ritz = (
+    ...     gf.mesh_stiffness(**run, method=method).k.mean() / 20e6
+    ...     for method in (gf.OwnFlexibility(bar), gf.OwnFlexibility(bar, "ritz"), "ritz")
+    ... )
+    >>> print(f"bars {own:.1f}, a pinion of bars on a real wheel {both:.1f}, two real gears {ritz:.1f}")
+    bars 28.9, a pinion of bars on a real wheel 20.3, two real gears 15.5
+    """
+
+    pinion: Any
+    wheel: Any = None
+    given: str = "bulk"
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what has no flexibility; name the model."""
+        if self.given not in GIVEN:
+            raise ValueError(f"given = {self.given!r}, but it must be one of {', '.join(GIVEN)}")
+        if self.wheel is None:
+            object.__setattr__(self, "wheel", self.pinion)
+        for side in ("pinion", "wheel"):
+            _check(side, getattr(self, side))
+        if self.name is None:
+            object.__setattr__(self, "name", getattr(self.pinion, "__name__", "own flexibility"))
+        if self.name in METHODS:
+            raise ValueError(f"name = {self.name!r} is a method of gearfe: give another name")
+
+    @property
+    def extended(self) -> bool:
+        """Whether both gears know what to do at a tip corner."""
+        return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "tip", None)) for one in self.gears)
+
+    @property
+    def gears(self) -> tuple:
+        """Models of pinion and wheel."""
+        return self.pinion, self.wheel
+
+    def told(self) -> dict:
+        """What `meta` says of it."""
+        names = [one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__) for one in self.gears]
+        return {"flexibility": names, "given": self.given}
+
+
+def _check(side: str, one: object) -> None:
+    """Refuse what cannot say how a gear gives."""
+    sections = having("name", "section")
+    home = getattr(one, "__name__", None) if isinstance(one, ModuleType) else getattr(one, "__module__", None)
+    for name in SUMS:
+        if one == name or home == METHODS[name].home:
+            raise ValueError(f"{side} = {one!r}: {name} is " + NO_FLEXIBILITY.format(name, sections))
+    named = isinstance(one, str) and one in METHODS and METHODS[one].kind == "section"
+    if not (named or callable(one) or callable(getattr(one, "matrix", None))):
+        raise ValueError(
+            f"{side} = {one!r}, but give a function f(gear, material, radius, tooth) -> (n, n), a Flexibility, or {sections}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class OwnGear:
+    """A user's function as what `gearfe.contact.plane.Mesh` reads of a gear.
+
+    Attributes
+    ----------
+    function : callable
+        As in `OwnFlexibility`.
+    gear : Gear
+    material : Material
+    state : str
+    given : {"bulk", "smooth"}
+    """
+
+    function: Callable
+    gear: Gear
+    material: Material
+    state: str
+    given: str
+    seam = None
+    dofs = 0
+
+    def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
+        """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
+
+        The function is asked for contacts on the flank only; the others get zeros, and never touch.
+        """
+        roll, teeth = np.asarray(roll, dtype=float), np.asarray(teeth)
+        low, high = sorted((self.gear.roll_f, self.gear.roll_a))
+        slack = 1e-6 * self.gear.m_n
+        on = (roll > low - slack) & (roll < high + slack)
+        out = np.zeros((*roll.shape, teeth.size))
+        for place in np.ndindex(roll.shape[:-1]):
+            own = np.flatnonzero(on[place])
+            if own.size:
+                out[(*place, own[:, None], own)] = self._among(np.clip(roll[place][own], low, high), teeth[own])
+        return out
+
+    def _among(self, roll, teeth):
+        """Smooth flexibility between contacts of one phase, the function's values checked."""
+        radius = np.hypot(self.gear.r_b, roll)
+        name, n = getattr(self.function, "__name__", "own flexibility"), radius.size
+        where = f"{name} of z = {self.gear.z} at radius = {np.array2string(radius, precision=6)} mm, tooth = {teeth.tolist()}"
+        given = self.function(self.gear, self.material, radius, teeth)
+        if isinstance(given, Components):
+            raise ValueError(
+                f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
+                "of their `total`"
+            )
+        try:
+            values = np.asarray(given, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"{where}: it gives {given!r}, but give a matrix of numbers [mm per N/mm]") from error
+        if values.shape != (n, n):
+            raise ValueError(
+                f"{where}: it gives an array of shape {values.shape}, but give ({n}, {n}): displacement of contact i under a "
+                "unit load at contact j (numpy.diag makes one of teeth that do not move each other)"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError(f"{where}: it gives values that are not finite")
+        if np.abs(values - values.T).max() > SAME * np.abs(values).max():
+            raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
+        if self.given == "smooth":
+            return values
+        if np.linalg.eigvalsh(values).min() < -SAME * np.abs(values).max():
+            raise ValueError(f"{where}: its matrix is not positive (semi)definite, so some loads would gain work from the gear")
+        dent = coupled.local_remainder(self.gear, self.material, roll, state=self.state)
+        return values + np.diag(dent)
+
+
+def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
+    """What contact reads of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` gives that of a method."""
+    one = own.gears[side]
+    if isinstance(one, str):
+        return named(METHODS[one], gear, material)
+    if callable(getattr(one, "matrix", None)):
+        if getattr(one, "gear", gear) != gear:
+            raise ValueError(
+                f"a Flexibility of z = {one.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; give "
+                "those of pinion and wheel"
+            )
+        return one
+    return OwnGear(one, gear, material, state, own.given)

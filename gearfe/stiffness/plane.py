@@ -1,0 +1,131 @@
+"""Stiffness curves of plane contact: from the flexibilities of two sections, or from a plain sum of tooth pairs."""
+
+import math
+import time
+import warnings
+from dataclasses import asdict, replace
+
+from ..contact.plane import Mesh
+from ..energy.closed.plain_sum import plain_sum
+from ..energy.ritz import plane as ritz
+from .curve import StiffnessCurve
+from .estimate import coarser, estimate
+from .own_flexibility import flexibility_of
+
+
+def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove):
+    """`solve` of a plain sum (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it."""
+    options = {**variants, "face": face, "groove": groove}
+    solve, details = plain_sum(pair, materials, phase, row.load(), cracks=cracks, pits=pits, **options)
+    return solve, options | {"outside": [asdict(one) for one in details["outside"]]}
+
+
+def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, **numeric):
+    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
+
+    Parameters
+    ----------
+    row : Method
+    own : OwnFlexibility or None
+        Instead of the flexibility of `row`.
+    pair : GearPair
+    materials : (Material, Material)
+    phase : ndarray
+    cracks : (tuple, tuple)
+    extended : bool
+        Where the method knows of tip corners.
+    state : str
+    cache : bool
+    **numeric
+        ``refine``, ``order``, ``teeth``: each method gets those that it has.
+    """
+    started = time.perf_counter()
+    extended = extended and (own or row).extended
+    if row.name == "ritz" and not cache:
+        ritz.clear()
+
+    def named(row, gear, material, cracks=()):
+        return _flexibility(row, gear, material, cracks, math.ceil(pair.eps_alpha), state, cache, numeric)
+
+    gears = list(zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True))
+    if own is None:
+        flexible = [named(row, gear, material, found) for gear, material, found in gears]
+    else:
+        flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
+    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=state)
+    details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
+    if row.converged:
+        details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
+    return mesh.solve, details
+
+
+def _numeric(row, given):
+    """Of refine, order (None: the method's own) and teeth those that a method has."""
+    order = row.order if given["order"] is None else given["order"]
+    has = {"refine": row.converged, "order": row.order is not None, "teeth": row.teeth}
+    return {name: value for name, value in (given | {"order": order}).items() if has.get(name)}
+
+
+def _flexibility(row, gear, material, cracks, neighbours, state, cache, numeric):
+    """`Flexibility` of one gear by a method."""
+    own = (cracks,) if row.cracks else ()
+    kept = {"cache": cache} if row.kept else {}
+    return row.load()(gear, material, *own, neighbours=neighbours, state=state, **kept, **_numeric(row, numeric))
+
+
+def curve(pair, phase, force, solve, meta, damage=None):
+    """`StiffnessCurve` under a force [N] along the line of action; warns if no tooth with `damage` is in contact.
+
+    To SI, in one place: widths and millimetres become newtons and metres here.
+
+    Parameters
+    ----------
+    pair : GearPair
+    phase : ndarray
+    force : float
+    solve : callable
+        From the line load [N/mm] to `gearfe.contact.plane.Solved`.
+    meta : dict
+        Without the force.
+    damage : (sequence, sequence), optional
+        Cracks and pits of pinion and wheel, teeth numbered in each gear's own frame.
+    """
+    started = time.perf_counter()
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    solved = solve(force / width)
+    used = solved.line_load.max(axis=0) > 0
+    meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
+    if damage is not None:
+        _warn_if_unseen(pair, damage, solved.order[used])
+        meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
+    return StiffnessCurve(
+        phase=phase,
+        k=force / (solved.approach * 1e-3),
+        k_tangent=solved.tangent * width * 1e3,
+        lte=solved.approach * 1e-3,
+        order=solved.order[used],
+        force=solved.line_load[:, used] * width,
+        pressure=solved.pressure[:, used] * 1e6,
+        meta=meta,
+    )
+
+
+def with_error(row, curves, case, options):
+    """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
+    less = coarser(options["refine"], _numeric(row, options).get("order"))
+    solvers = [section_solver(row, None, *case, **(options | one))[0] for one in less]
+    out = []
+    for one in curves:
+        others = [curve(*case[:1], one.phase, one.meta["force_N"], solve, {}).k for solve in solvers]
+        out.append(replace(one, error=estimate(one.k, *others)))
+    return out
+
+
+def _warn_if_unseen(pair, damage, order):
+    """Warn if no damaged tooth is in contact at any of the phases."""
+    gears = ((pair.gear_1, 1, damage[0]), (pair.gear_2, -1, damage[1]))
+    if not any(sense * one.tooth % gear.z in order % gear.z for gear, sense, found in gears for one in found):
+        warnings.warn(
+            "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
+            stacklevel=4,
+        )

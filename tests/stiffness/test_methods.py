@@ -1,0 +1,298 @@
+"""The table of methods says what they do, and a user's own flexibility stands where `ritz` and `fe` do."""
+
+import math
+from dataclasses import replace
+from importlib import resources
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.interpolate import CubicSpline
+
+import gearfe as gf
+from gearfe.cli import main
+from gearfe.energy.closed import coupled, slices, textbook
+from gearfe.energy.ritz import plane as ritz
+from gearfe.stiffness.inputs import why_solid
+from gearfe.stiffness.methods import FACES, METHODS, NAMES, ROWS, fitted
+from geometry.tooth.profile import roll_at_arc
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 2.0}
+BETA = math.radians(16)
+SPUR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+HELICAL = gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=BETA, **RACK), gf.Gear(z=27, r_bore=12.0, beta=-BETA, **RACK))
+RING = gf.GearPair(gf.Gear(z=31, r_bore=11.4, **RACK), gf.Gear(z=84, r_rim=95.0, addendum=0.8, tip_radius=0.2, **RACK))
+PIT = gf.Pit(radius=21.0, z=1.0, axes=(0.2, 0.4), depth=0.1)
+FORCE = 200.0
+SLOW = {("ritz3d", "crack"), ("ritz3d", "crack of part of the width"), ("ritz3d", "ring")}
+# what a method may take: options, and whether its row says so
+INPUTS = {
+    "nothing": ({}, lambda row: True),
+    "crack": ({"damage": {"pinion": [gf.Crack(level=0.3)]}}, lambda row: bool(row.cracks)),
+    "crack of part of the width": (
+        {"damage": {"pinion": [gf.Crack(level=0.3, width=(0.0, 1.0))]}}, lambda row: row.cracks in ("part of the width", "sloping"),
+    ),
+    "sloping crack": ({"damage": {"wheel": [gf.Crack(level=0.3, ends=(1.0, 0.4))]}}, lambda row: row.cracks == "sloping"),
+    "pit": ({"damage": {"pinion": [PIT]}}, lambda row: row.pits),
+    "ring": ({"pair": RING}, lambda row: row.rings == "yes"),
+    "ring without its body": ({"pair": RING, "variants": {"foundation": "external"}}, lambda row: row.rings == "without body"),
+    "helical": ({"pair": HELICAL, "face": "helical"}, lambda row: "helical" in row.faces),
+    "herringbone": ({"pair": HELICAL, "face": "herringbone", "groove": 0.4}, lambda row: "herringbone" in row.faces),
+    "variants": ({"variants": {"contact": "linear"}}, lambda row: row.variants),
+    "teeth": ({"teeth": 3}, lambda row: row.teeth),
+}  # fmt: skip
+
+
+def curve_of(steel, method, **options):
+    coarse = {"fe": 0.4, "ritz3d": 0.5, "fe3d": 0.5}.get(method, 1.0)
+    run = {"pair": SPUR, "force": FORCE, "phases": [0.5], "refine": coarse} | options
+    return gf.mesh_stiffness(material=steel, method=method, **run)
+
+
+@pytest.mark.parametrize(
+    ("method", "what"),
+    [
+        pytest.param(name, what, marks=pytest.mark.slow if name == "fe3d" or (name, what) in SLOW else ())
+        for name in METHODS
+        for what in INPUTS
+    ],
+)
+def test_each_method_takes_what_its_row_says(steel, method, what):
+    """Either a curve, or a ValueError that names the method."""
+    options, says = INPUTS[what]
+    if says(METHODS[method]):
+        curve = curve_of(steel, method, **options)
+        assert np.isfinite(curve.k).all()
+        assert curve.meta["method"] == method
+    else:
+        with pytest.raises(ValueError, match=f"method = '{method}'"):
+            curve_of(steel, method, **options)
+
+
+@pytest.mark.parametrize("what", [name for name in INPUTS if name not in ("nothing", "variants")])
+def test_refusals_of_whole_gears_are_quick(steel, what):
+    """Of fe3d everything that its row has not, without the slow solves."""
+    options, says = INPUTS[what]
+    if not says(METHODS["fe3d"]):
+        with pytest.raises(ValueError, match="method = 'fe3d'"):
+            curve_of(steel, "fe3d", **options)
+
+
+@pytest.mark.parametrize("method", [name for name in METHODS if METHODS[name].kind != "solid"])
+def test_error_extension_and_resolution_are_as_the_row_says(steel, method):
+    row, phase = METHODS[method], [0.03, 0.66]  # a tip corner touches ahead of the path at the second
+    plain = curve_of(steel, method, phases=phase, error=True)
+    assert (plain.error is not None) == row.error
+    without = curve_of(steel, method, phases=phase, extended=False)
+    assert (not np.allclose(without.k, plain.k, rtol=1e-6)) == row.extended
+    finer = curve_of(steel, method, phases=phase, refine=0.7)
+    assert (not np.array_equal(finer.k, plain.k)) == row.converged
+    assert plain.meta.get("order") == row.order
+    if row.order:
+        assert not np.array_equal(curve_of(steel, method, phases=phase, order=row.order - 1).k, plain.k)
+
+
+def test_the_energy_model_of_finite_width_is_as_its_row_says(steel):
+    row = METHODS["ritz3d"]
+    plain = curve_of(steel, "ritz3d", phases=[0.66], error=row.error)
+    assert plain.error is not None
+    assert plain.meta["order"] == row.order
+    assert row.extended
+    assert plain.k[0] > 1.001 * curve_of(steel, "ritz3d", phases=[0.66], extended=False).k[0]
+
+
+def test_rows_are_complete():
+    assert NAMES == ("auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published")
+    assert FACES == slices.FACES
+    for row in ROWS:
+        assert row.about
+        assert row.cost in ("milliseconds", "seconds", "minutes")
+        loaded = row.load()
+        assert callable(loaded.components if row.kind == "sum" else loaded)
+        assert f"``{row.name}``" in gf.mesh_stiffness.__doc__
+
+
+def test_one_rule_for_what_a_method_gets():
+    run = {"pair": HELICAL, "face": "herringbone", "groove": 0.4}
+    for row in ROWS:
+        given, left_out = fitted(row.name, run)
+        if row.kind == "section":
+            assert (given["face"], given["groove"], given["pair"].gear_1.b) == (None, 0.0, 1.6)
+            assert left_out == (f"{row.name} is the transverse section: herringbone teeth are taken as spur teeth 1.6 mm wide, b "
+                                "less the groove of 0.4 mm",)  # fmt: skip
+        else:
+            assert (given, left_out) == (run, ())
+        given, left_out = fitted(row.name, {"pair": RING, "face": None, "groove": 0.0})
+        assert ("variants" in given) == (row.rings == "without body") == bool(left_out)
+    assert fitted("auto", run) == (run, ())
+    assert [bool(why_solid(pair, None, ())) for pair in (SPUR, HELICAL)] == [False, True]
+
+
+def test_a_herringbone_scene_with_a_groove_by_the_section(tmp_path, capsys):
+    text = (resources.files("gearfe.scenes") / "herringbone.toml").read_text()
+    path, out = tmp_path / "grooved.toml", tmp_path / "k.csv"
+    path.write_text(text.replace('face = "herringbone"', 'face = "herringbone"\ngroove_mm = 4.0'))
+    assert main(["stiffness", str(path), "--method", "ritz", "--phases", "4", "-o", str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert "ritz is the transverse section: herringbone teeth are taken as spur teeth 56 mm wide, b less the groove" in printed
+    assert "width 56 mm" in printed
+    chosen = gf.load_scene("herringbone").pair()
+    gears = [replace(gear, b=56.0) for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
+    narrow = gf.mesh_stiffness(gf.GearPair(*gears, chosen.pair.a), chosen.force, chosen.materials, method="ritz", phases=4)
+    assert_allclose(gf.StiffnessCurve.from_csv(out).k, narrow.k, rtol=1e-9)
+
+
+def test_help_names_every_method(capsys):
+    with pytest.raises(SystemExit):
+        main(["stiffness", "--help"])
+    text = capsys.readouterr().out
+    for row in ROWS:
+        assert f"{row.name:10s} {row.about}; {row.cost}" in text
+
+
+# one's own flexibility
+
+
+@pytest.fixture(scope="module")
+def solved(steel):
+    return [ritz.flexibility(gear, steel, neighbours=2) for gear in (SPUR.gear_1, SPUR.gear_2)]
+
+
+def sections(gear, material, radius, tooth):
+    """The closed form `coupled` spelled out: beams on one annulus."""
+    roll = np.sqrt(radius**2 - gear.r_b**2)
+    loads = coupled.body_loads(gear, roll)
+    apart = np.abs(tooth[:, None] - tooth)
+    body = coupled.body(gear, material, neighbours=int(apart.max()))
+    turned = np.where((tooth[:, None] <= tooth)[..., None, None], body[apart], np.swapaxes(body[apart], -1, -2))
+    bulk = np.einsum("ai,ijab,bj->ij", loads, turned, loads)
+    return bulk + np.diag(coupled.beam(gear, material, roll).sum(axis=0))
+
+
+@pytest.mark.parametrize("extended", [True, False])
+def test_named_and_solved_gears_give_the_curve_of_their_method(steel, solved, extended):
+    want = curve_of(steel, "ritz", phases=12, extended=extended)
+    for own in (gf.OwnFlexibility("ritz"), gf.OwnFlexibility("ritz", solved[1]), gf.OwnFlexibility(*solved)):
+        found = curve_of(steel, own, phases=12, extended=extended)
+        assert_allclose(found.k, want.k, rtol=1e-12)
+        assert found.meta["extended"] is extended
+
+
+def test_ritz_sampled_at_twenty_radii_gives_its_curve_to_interpolation_error(steel, solved):
+    """Only the numbers of a table pass through the plug."""
+    tables = {}
+    for flexible in solved:
+        gear = flexible.gear
+        roll = roll_at_arc(gear, np.linspace(*flexible.limits, 20))
+        places = np.concatenate([roll, roll, roll])
+        values = flexible.matrix(places, np.repeat([-1, 0, 1], 20))[20:40]
+        r = np.hypot(gear.r_b, roll)
+        order = np.argsort(r)
+        near = CubicSpline(r[order], np.diag(values[:, 20:40])[order])
+        far = CubicSpline(r[order], CubicSpline(r[order], values[np.ix_(order, 40 + order)], axis=1)(r[order]), axis=0)
+        tables[gear] = near, far, r[order], values[np.ix_(order, 40 + order)]
+
+    def sampled(gear, material, radius, tooth):
+        near, _, r, block = tables[gear]
+        out = np.diag(near(radius))
+        for i, j in zip(*np.nonzero(tooth[:, None] + 1 == tooth), strict=True):
+            out[i, j] = out[j, i] = CubicSpline(r, CubicSpline(r, block, axis=1)(radius[j]))(radius[i])
+        return out
+
+    want = curve_of(steel, "ritz", phases=16, extended=False)
+    found = curve_of(steel, gf.OwnFlexibility(sampled, given="smooth"), phases=16)
+    assert_allclose(found.k, want.k, rtol=1e-4)
+    assert_allclose(found.share, want.share, atol=1e-4)
+    assert found.meta["method"] == "sampled"
+    assert found.meta["extended"] is False
+
+
+def test_bulk_and_neighbours_are_the_users_and_the_dent_is_added(steel):
+    """The closed form spelled out by its user gives its curve; without neighbours the mesh is stiffer where two pairs touch."""
+    want = curve_of(steel, "coupled", phases=16)
+    own = curve_of(steel, gf.OwnFlexibility(sections), phases=16)
+    assert_allclose(own.k, want.k, rtol=1e-6)
+    alone = gf.OwnFlexibility(lambda *given: np.diag(np.diag(sections(*given))))
+    loner = curve_of(steel, alone, phases=16)
+    double = np.arange(16) / 16 < SPUR.eps_alpha - 1
+    assert_allclose(loner.k[~double], want.k[~double], rtol=1e-6)
+    assert (loner.k[double] > 1.005 * want.k[double]).all()
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_teeth_are_counted_to_the_loaded_side_of_their_gear(steel, gear):
+    """A soft tooth of the pair ahead gives its load to the other: pinion's tooth 1, wheel's tooth -1."""
+    number = 1 if gear == "pinion" else -1
+
+    def soft(gear, material, radius, tooth):
+        return sections(gear, material, radius, tooth) + np.diag(np.where(tooth == number, 3e-5, 0.0))
+
+    parts = (soft, "coupled") if gear == "pinion" else ("coupled", soft)
+    healthy, weak = (curve_of(steel, method, phases=[0.2]) for method in ("coupled", gf.OwnFlexibility(*parts)))
+    ahead = list(weak.order).index(1)
+    assert weak.share[0, ahead] < healthy.share[0, list(healthy.order).index(1)] - 0.05
+    assert weak.k[0] < healthy.k[0]
+
+
+def test_own_flexibility_in_compare():
+    scene = gf.load_scene("planetary_pitting")
+    models = {"energy": gf.OwnFlexibility("ritz"), "mine": gf.OwnFlexibility(sections)}
+    found = gf.compare(scene, models=models, phases=8, refine=0.5)
+    assert_allclose(found.curves["energy"].k, found.curves["ritz"].k, rtol=1e-12)
+    assert_allclose(found.curves["mine"].k, found.curves["coupled"].k, rtol=1e-6)
+    assert found.table().splitlines()[0].endswith("| energy [N/m] | error | mine [N/m] | error |")
+    assert found.curves["mine"].meta["method"] == "mine"
+    assert list(gf.compare(scene, models=[gf.OwnFlexibility(sections)], phases=2, refine=0.4).curves)[-1] == "sections"
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("textbook", "textbook is a plain sum of tooth pairs that do not feel each other: it has no flexibility"),
+        ("published", "use it as method = 'published', or give one of ritz, fe or coupled, a function"),
+        (textbook, "textbook is a plain sum"),
+        (textbook.components, "textbook is a plain sum"),
+        ("ritz3d", "give a function f"),
+        (3.0, "pinion = 3.0, but give a function f"),
+    ],
+)
+def test_what_is_no_flexibility(given, message):
+    with pytest.raises(ValueError, match=message):
+        gf.OwnFlexibility(given)
+    with pytest.raises(ValueError, match="wheel = "):
+        gf.OwnFlexibility("ritz", given)
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda gear, material, radius, tooth: np.ones(radius.size + 1), r"array of shape \(\d,\), but give \(\d, \d\)"),
+        (lambda gear, material, radius, tooth: np.full((radius.size,) * 2, np.nan), "not finite"),
+        (lambda gear, material, radius, tooth: np.diag(-1e-6 * radius), "not positive"),
+        (lambda gear, material, radius, tooth: np.diag(radius) + np.triu(np.full((radius.size,) * 2, 0.1), 1), "not symmetric"),
+        (lambda gear, material, radius, tooth: "stiff", "but give a matrix of numbers"),
+        (lambda gear, material, radius, tooth: textbook.components(gear, material, radius - gear.r_b), "gives Components"),
+    ],
+)
+def test_impossible_matrices_are_named(steel, function, message):
+    with pytest.raises(ValueError, match=message):
+        curve_of(steel, gf.OwnFlexibility(function, name="mine"), phases=[0.2])
+
+
+def test_own_flexibility_refuses_what_it_has_not(steel, solved):
+    own = gf.OwnFlexibility(sections, name="mine")
+    for options, message in (
+        ({"damage": {"pinion": [gf.Crack(level=0.3)]}}, "damage with method = 'mine', which has none"),
+        ({"face": "helical", "pair": HELICAL}, "face = 'helical' with method = 'mine'"),
+        ({"variants": {"contact": "linear"}}, "variants"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            curve_of(steel, own, **options)
+    with pytest.raises(ValueError, match="a Flexibility of z = 31 was given for z = 21"):
+        curve_of(steel, gf.OwnFlexibility(solved[1]))
+    with pytest.raises(ValueError, match="'ritz' is a method of gearfe"):
+        gf.OwnFlexibility(sections, name="ritz")
+    with pytest.raises(ValueError, match="given = 'all'"):
+        gf.OwnFlexibility(sections, given="all")
+    with pytest.raises(ValueError, match="or an OwnFlexibility"):
+        curve_of(steel, sections)
