@@ -39,9 +39,9 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
     cracks : (tuple, tuple)
         Of pinion and wheel.
     bands : list of (float, float)
-        See `lines3d.bands_of`.
+        See `geometry.pair.lines.bands_of`.
     face, groove
-        As in `contact3d.pair_stiffness3d`.
+        As in `gearfe.contact.solid.pair_stiffness3d`.
     flexible : callable
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
 
@@ -64,7 +64,7 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
 
 
 def between(cells, bodies):
-    """Approach ``(n, n)`` of `lines3d.Cells` per unit normal force on each, half-space left out [mm/N]."""
+    """Approach ``(n, n)`` of `Cells` per unit normal force on each, half-space left out [mm/N]."""
     out = np.zeros((cells.z.size,) * 2)
     for half in np.unique(cells.half):
         at = np.flatnonzero(cells.half == half)

@@ -10,11 +10,10 @@ import numpy as np
 
 from geometry.damage.crack import Crack, check_apart, check_through
 from geometry.damage.pit import Pit
+from geometry.pair.lines import FACES
 
 from ..energy.closed import published, textbook
 from ..energy.closed.plain_sum import plain_sum
-from ..energy.closed.slices import FACES
-from ..machine.contact_cycle import overlap_ratio
 from ..material import Material
 
 CLOSED = {"textbook": textbook, "published": published}  # plain sums of tooth pairs
@@ -38,7 +37,7 @@ def overlap(pair, face, groove):
     width = min(pair.gear_1.b, pair.gear_2.b)
     if face == "herringbone":
         width = (width - groove) / 2
-    return overlap_ratio(pair, width) if face in ("helical", "herringbone") else 0.0
+    return pair.eps_beta_of(width) if face in ("helical", "herringbone") else 0.0
 
 
 def phase_array(phases, span, pair, overlap=0.0):

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
-from geometry.mesh.solid import twist_rate
 from geometry.tooth.profile import arc_at, flank_normal
 
 from ..contact.solid import Contact3D, pair_stiffness3d
@@ -239,7 +238,7 @@ def _pressure(sector, nodes, number, lines):
     On each line the pressure is its line load times a hat of `SPREAD` along the profile, at small triangles of the flank; it is
     scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
     """
-    gear, rate = sector.gear, twist_rate(sector.gear)
+    gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))
     spread = SPREAD * gear.m_n
     bary = _thirds()

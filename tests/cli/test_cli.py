@@ -97,7 +97,7 @@ def test_scenes_and_info(capsys):
         (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
-        (["render", "planetary_pitting", "-o", "stress.jpg"], "give a .png or a .vtu"),
+        (["render", "planetary_pitting", "-o", "stress.jpg"], "use one of .png, .vtu"),
         (["render", "planetary_pitting", "--case", "x", "-o", "s.png"], "no case 'x' of this pair"),
         (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
     ],
