@@ -96,7 +96,7 @@ def check_output(path, kind):
     if not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
-    if Path(path).is_dir():
+    if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
         raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
     os.unlink(_beside(path))
 

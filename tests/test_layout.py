@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -49,8 +50,13 @@ def room_of(name):
     return found[0]
 
 
+@cache
 def asked(name):
     """Absolute names of all modules a file imports, at its top or inside its functions, with their lines."""
+    return tuple(_asked(name))
+
+
+def _asked(name):
     package = FILES[name].relative_to(ROOT).parent.parts
     for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
