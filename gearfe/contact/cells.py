@@ -1,4 +1,4 @@
-"""Contact lines of spur, helical and herringbone pairs at a phase, cut into the cells a contact solve needs.
+"""Contact lines of one phase as cells: what pits leave of them (`geometry.pair.lines`), and where tip corners may touch beyond.
 
 On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a tip
 corner of one gear on the other flank, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).

@@ -8,10 +8,10 @@ import numpy as np
 from geometry.pair.lines import bands_of
 
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
+from .bodies import between, faces_of
 from .cell_sharing import line_cells
 from .cells import Cells, beyond, cells_of, gaps, pieces_of
 from .corner import CornerLaw
-from .seen_bodies import between, faces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]

@@ -1,7 +1,7 @@
 """A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
 
-The load is that of `contact3d.pair_stiffness3d` along the true contact lines, spread over a narrow strip to either side. The
-sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
+The load is that of `gearfe.contact.solid` along the true contact lines, spread over a narrow strip to either side. The sector of
+the gear is held at the bore (or the outside of a ring) and where it was cut off.
 """
 
 import math

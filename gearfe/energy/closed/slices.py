@@ -1,4 +1,4 @@
-"""Where along the width the pairs touch: quadrature stations on the contact lines of spur, helical and herringbone gears."""
+"""Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
 
 from dataclasses import dataclass
 from itertools import pairwise
