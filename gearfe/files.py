@@ -66,10 +66,10 @@ def written(path):
 
 
 def _beside(path):
-    """Name of a new empty file in the folder of `path`."""
+    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
     path = Path(path)
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix.lower())
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         told = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot write {path}: {told}; give an existing, writable folder") from error

@@ -120,3 +120,9 @@ def test_a_figure_is_drawn_only_into_pictures(tmp_path):
         assert (tmp_path / f"x{suffix}").stat().st_size > 50
     with pytest.raises(ValueError, match=r"no format for '\.csv'"):
         save_figure(figure, tmp_path / "x.csv", 50)
+
+
+def test_a_suffix_in_capitals_is_written_by_libraries_that_know_small_ones(tmp_path):
+    with written(tmp_path / "x.PNG") as name:
+        assert name.endswith(".png")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.PNG"]
