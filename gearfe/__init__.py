@@ -1,4 +1,9 @@
-"""Gear mesh stiffness with its error: finite elements beside energy methods."""
+"""Gear mesh stiffness with its error: finite elements beside energy methods.
+
+Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
+`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
+`motion`, `stress`; `studies`; `cli`.
+"""
 
 import importlib
 
@@ -36,15 +41,15 @@ _HOME = {
     "plot_phase": "gearfe.pictures.vibration_plots",
     "plot_spectra": "gearfe.pictures.vibration_plots",
     "poincare_section": "gearfe.motion.portrait",
-    "power_spectral_density": "gearfe.signal.series",
+    "power_spectral_density": "gearfe.signal.spectra",
     "read_model": "gearfe.studies.model_file",
     "read_signal": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
     "spectral_kurtosis": "gearfe.signal.kurtogram",
-    "spectrum": "gearfe.signal.series",
-    "squared_envelope_spectrum": "gearfe.signal.series",
+    "spectrum": "gearfe.signal.spectra",
+    "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",

@@ -1,76 +1,150 @@
-"""Imports point one way, and heavy libraries stay where they belong."""
+"""The order of the rooms: imports, those inside functions too, point down only; heavy libraries stay where they belong."""
 
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 import gearfe
+from gearfe.stiffness.methods import ROWS
 
 ROOT = Path(__file__).parents[1]
-FILES = sorted([*ROOT.glob("geometry/**/*.py"), *ROOT.glob("gearfe/**/*.py")])
-ALLOWED = {
-    "gmsh": {"geometry/mesh/mesher.py"},
-    "pyvista": {"gearfe/stress/render.py"},
-    "matplotlib": {"gearfe/pictures/stiffness_plots.py", "gearfe/pictures/vibration_plots.py"},
+FLOORS = (  # from the ground: a room imports only from floors below its own
+    ("geometry/tooth",),
+    ("geometry/damage",),
+    ("geometry/pair", "geometry/mesh"),
+    ("gearfe/material.py", "gearfe/files.py"),
+    ("gearfe/flexibility", "gearfe/signal", "gearfe/scene", "gearfe/pictures"),
+    ("gearfe/elements",),
+    ("gearfe/energy",),
+    ("gearfe/contact",),
+    ("gearfe/stiffness",),
+    ("gearfe/machine",),
+    ("gearfe/motion", "gearfe/stress"),
+    ("gearfe/studies",),
+    ("gearfe/report", "gearfe/cli"),
+    ("validation",),
+)
+FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}
+FACES = ("geometry/__init__.py", "gearfe/__init__.py", "gearfe/__main__.py", "gearfe/scenes/__init__.py")  # stand in no room
+HOME = {  # where heavy libraries may be imported
+    "gmsh": "geometry/mesh/",
+    "pyvista": "gearfe/stress/",
+    "vtk": "gearfe/stress/",
+    "matplotlib": "gearfe/pictures/",
 }
+LOADERS = ("import_module", "__import__")  # only the public face, `gearfe/__init__.py`, and the table of methods load by name
+TABLE = "gearfe/stiffness/methods.py"
+PACKAGES = ("geometry", "gearfe")
+FILES = {str(path.relative_to(ROOT)): path for top in (*PACKAGES, "validation") for path in sorted(ROOT.glob(f"{top}/**/*.py"))}
+SHIPPED = [name for name in FILES if name.startswith(PACKAGES)]
 
 
-def name_of(path):
-    parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+def room_of(name):
+    """Room a file stands in: the folder, or the file itself, that `FLOORS` names; None for the faces of the packages."""
+    if name in FACES:
+        return None
+    found = [room for room in FLOOR if name == room or name.startswith(f"{room}/")]
+    assert found, f"{name} stands in no room: give it one, or name its room and floor in FLOORS"
+    return found[0]
 
 
-def imports(path, *, everywhere):
-    """Absolute names of the modules a file imports, at its top or anywhere in it."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    package = path.relative_to(ROOT).parent.parts
-    for node in ast.walk(tree) if everywhere else tree.body:
+@cache
+def asked(name):
+    """Absolute names of all modules a file imports, at its top or inside its functions, with their lines."""
+    return tuple(_asked(name))
+
+
+def _asked(name):
+    package = FILES[name].relative_to(ROOT).parent.parts
+    for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            yield from ((node.lineno, alias.name) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            base = (
-                ".".join((*package[: len(package) - node.level + 1], *filter(None, [node.module]))) if node.level else node.module
-            )
-            yield base
-            yield from (f"{base}.{alias.name}" for alias in node.names)
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            base = ".".join((*above, *filter(None, [node.module])))
+            yield node.lineno, base
+            yield from ((node.lineno, f"{base}.{alias.name}") for alias in node.names)
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in LOADERS:
+            if name == TABLE:
+                yield from ((node.lineno, row.home.partition(":")[0]) for row in ROWS)
+            seen = name in ("gearfe/__init__.py", TABLE) or name not in SHIPPED
+            assert seen, f"{name}, line {node.lineno}: write an import as such, so that it is seen here"
 
 
-@pytest.mark.parametrize("path", FILES, ids=name_of)
-def test_heavy_imports_stay_home(path):
-    for module in imports(path, everywhere=True):
-        top = module.split(".")[0]
-        assert top not in ALLOWED or str(path.relative_to(ROOT)) in ALLOWED[top], f"{name_of(path)} imports {top}"
+def imported(name):
+    """Files that a file imports, with the lines."""
+    for line, module in asked(name):
+        path = module.replace(".", "/")
+        other = f"{path}.py" if f"{path}.py" in FILES else f"{path}/__init__.py"
+        if other in FILES and other != name:
+            yield line, other
 
 
-@pytest.mark.parametrize("path", [p for p in FILES if "geometry" in p.parts], ids=name_of)
-def test_geometry_never_imports_gearfe(path):
-    assert not [m for m in imports(path, everywhere=True) if m.split(".")[0] == "gearfe"]
+@pytest.mark.parametrize("name", FILES)
+def test_imports_point_down(name):
+    own = room_of(name)
+    for line, other in imported(name):
+        room = room_of(other)
+        if own is None or room in (None, own):
+            continue
+        assert FLOOR[room] < FLOOR[own], (
+            f"{name}, line {line}, imports {other}: {own} stands on floor {FLOOR[own]} and {room} on floor {FLOOR[room]}, "
+            "but a room imports only from floors below its own; move what both need down"
+        )
 
 
-def test_no_public_name_is_that_of_a_module():
-    """Importing a module binds its name in the package, over a function of the same name."""
-    modules = {path.stem for path in FILES if path.parent.name == "gearfe"} | {path.name for path in (ROOT / "gearfe").iterdir()}
-    assert not modules & set(gearfe.__all__)
+@pytest.mark.parametrize("name", SHIPPED)
+def test_nothing_inside_imports_the_public_face(name):
+    """`import gearfe` is for users: inside it would reach every room, upwards too."""
+    if name not in FACES:
+        top = [line for line, module in asked(name) if module == "gearfe"]
+        assert not top, f"{name}, lines {top}, imports gearfe itself: import from the room"
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_heavy_libraries_stay_home(name):
+    for line, module in asked(name):
+        home = HOME.get(module.split(".")[0])
+        assert home is None or name.startswith(home), f"{name}, line {line}, imports {module}: only {home} does"
+
+
+def test_geometry_never_imports_gearfe():
+    for name in SHIPPED:
+        if name.startswith("geometry/"):
+            assert not [module for _, module in asked(name) if module.split(".")[0] == "gearfe"], name
 
 
 def test_no_import_cycle():
-    names = {name_of(p) for p in FILES}
-    graph = {name_of(p): {m for m in imports(p, everywhere=False) if m in names} - {name_of(p)} for p in FILES}
+    graph = {name: sorted({other for _, other in imported(name)}) for name in FILES}
     done = set()
 
     def visit(node, trail):
-        assert node not in trail, f"import cycle: {' -> '.join([*trail, node])}"
+        assert node not in trail, f"import cycle: {' -> '.join([*trail[trail.index(node) :], node])}"
         if node not in done:
             for other in graph[node]:
-                if not node.startswith(f"{other}."):  # a package is the start of its own modules
+                if not (other.endswith("/__init__.py") and node.startswith(other.removesuffix("__init__.py"))):
                     visit(other, [*trail, node])
             done.add(node)
 
     for node in graph:
         visit(node, [])
+
+
+def test_every_room_says_what_is_in_it():
+    rooms = [name for name in FILES if name.endswith("__init__.py")]
+    assert len(rooms) > len(PACKAGES)
+    for name in rooms:
+        assert ast.get_docstring(ast.parse(FILES[name].read_text(encoding="utf-8"))), f"{name} has no docstring"
+
+
+def test_no_public_name_is_that_of_a_module():
+    """Importing a module binds its name in the package, over a function of the same name."""
+    modules = {path.stem for path in (ROOT / "gearfe").iterdir()}
+    assert not modules & set(gearfe.__all__)
 
 
 def test_command_line_starts_without_heavy_imports():

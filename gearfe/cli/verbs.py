@@ -20,6 +20,17 @@ def _working(text):
         yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
 
 
+def _check_outputs(arguments, **kinds):
+    """Raise ValueError if a file that an option names could not be written at the end; `kinds` says by option what it holds."""
+    from ..files import check_output
+
+    given = {option: getattr(arguments, option) for option in kinds if getattr(arguments, option) is not None}
+    for option, path in given.items():
+        check_output(path, kinds[option])
+    if len(set(given.values())) < len(given):
+        raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give each its own")
+
+
 def _print_scene(scene):
     print(f"{scene.title}\n")
     for note in scene.assumptions:
@@ -35,6 +46,7 @@ def stiffness(arguments):
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
 
+    _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
     chosen = scene.pair(arguments.pair)
     force = chosen.force if arguments.force is None else arguments.force
@@ -68,6 +80,7 @@ def compare(arguments):
     from ..studies.by_zone import compare as run
     from ..studies.case_table import printed_cases
 
+    _check_outputs(arguments, plot="picture")
     scene = load_scene(arguments.scene)
     _print_scene(scene)
     printed = printed_cases(scene)
@@ -114,6 +127,7 @@ def render(arguments):
     from ..scene.load import load_scene
     from ..stress.render import render_contact, render_stress
 
+    _check_outputs(arguments, output="picture" if arguments.what == "contact" else "stress")
     scene = load_scene(arguments.scene)
     pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
     if arguments.what == "contact":
@@ -137,6 +151,7 @@ def dynamics(arguments):
     from ..scene.load import load_scene
     from ..studies.responses import analysis, responses
 
+    _check_outputs(arguments, output="response", plot="picture", kurtogram="picture")
     scene = load_scene(arguments.scene)
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
@@ -164,6 +179,7 @@ def signal(arguments):
     from ..signal.signal_file import read_signal
     from ..studies.responses import analyse
 
+    _check_outputs(arguments, plot="picture", kurtogram="picture")
     read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
     signals = {one.name: one for one in read}
     if len(signals) < len(read):

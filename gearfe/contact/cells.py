@@ -1,4 +1,4 @@
-"""Contact lines of spur, helical and herringbone pairs at a phase, cut into the cells a contact solve needs.
+"""Contact lines of one phase as cells: what pits leave of them (`geometry.pair.lines`), and where tip corners may touch beyond.
 
 On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a tip
 corner of one gear on the other flank, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
@@ -11,11 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.damage.pit import crossing, rolls
 from geometry.mesh.outline import spaced
-from geometry.pair.lines import common_width
-
-from ..energy.closed.slices import FACES
+from geometry.pair.lines import covered
 
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
@@ -66,17 +63,6 @@ class Piece(NamedTuple):
     ends: tuple
 
 
-def bands_of(pair, face, groove):
-    """Bands of the width as (end that touches first, other end) [mm]."""
-    width = common_width(pair, face, groove, FACES)
-    if face == "spur" and pair.gear_1.beta != 0:
-        raise ValueError("face = 'spur', but the gears have a helix angle: give beta = 0, or face = 'helical'")
-    if face == "herringbone":
-        half = (width - groove) / 2
-        return [(0.0, half), (width, width - half)]
-    return [(width, 0.0) if pair.gear_1.beta > 0 else (0.0, width)]
-
-
 def touching(pair, nominal):
     """Roll lengths of both gears and gap at abscissae `nominal` [mm]; gap inf where flanks cannot meet.
 
@@ -117,7 +103,7 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
     pits : (sequence of Pit, sequence of Pit)
         In each gear's own frame.
     bands : list
-        Of `bands_of`.
+        Of `geometry.pair.lines.bands_of`.
     beta_b : float
     further : (float, float)
         Of `beyond`.
@@ -132,14 +118,15 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
     limits = (end + further[1], end, start, start - further[0])
-    out = []
-    for half, band in enumerate(bands):
+    pieces = []
+    for half in range(len(bands)):
         for order in range(first, last + 1):
             roll = start + (phase + order) * pair.p_bt
             for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
                 ends = (low == 0, high == width) if any(further) else (True, True)
-                out += _left(pair, pits, band, Piece(half, order, roll, corner, low, high, ends), slope)
-    return out
+                pieces.append(Piece(half, order, roll, corner, low, high, ends))
+    taken = _taken(pair, pits, bands, pieces, slope)
+    return [part for piece, own in zip(pieces, taken, strict=True) for part in _left(piece, own, width)]
 
 
 def _parts(roll, slope, width, limits, slack):
@@ -156,12 +143,10 @@ def _parts(roll, slope, width, limits, slack):
     return [(2, 0.0, width)] if bottom < roll < start else []
 
 
-def _left(pair, pits, band, piece, slope):
-    """What the pits of both gears leave of a piece: pieces."""
-    covered = _covered(pair, pits, band, piece, slope) if any(pits) else []
-    width = abs(band[1] - band[0])
+def _left(piece, taken, width):
+    """Pieces that the intervals `taken` (first, last) leave of one."""
     out, at, fine = [], piece.first, piece.ends[0]
-    for a, b in sorted(covered):
+    for a, b in sorted(taken):
         if a > at:
             out.append((at, min(a, piece.last), (fine, True)))
         if b > at:
@@ -170,47 +155,30 @@ def _left(pair, pits, band, piece, slope):
     return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
 
 
-def _covered(pair, pits, band, piece, slope):
-    """Intervals of depth that pits take from a piece."""
-    numbers = (piece.order, -piece.order)
-    gears = (pair.gear_1, pair.gear_2)
-    middle = band[0] + math.copysign((piece.first + piece.last) / 2, band[1] - band[0])
-    own = [
-        [p for p in found if p.side == "loaded" and (p.tooth - number) % gear.z == 0]
-        for gear, found, number in zip(gears, pits, numbers, strict=True)
-    ]
-    own = [
-        [p for p in found if abs(middle + offset - p.z) < p.reach[1] + (piece.last - piece.first) / 2]
-        for found, offset in zip(own, _offsets(pair), strict=True)
-    ]
-    if not any(own):
-        return []
-    depth = np.linspace(piece.first, piece.last, 2 if piece.corner == 0 else PARTS + 1)
-    nominal = piece.roll - slope * depth
-    at = (nominal, pair.mate_roll(nominal)) if piece.corner == 0 else touching(pair, nominal)[:2]
-    z = band[0] + math.copysign(1.0, band[1] - band[0]) * depth
-    covered = []
-    for gear, found, roll, offset in zip(gears, own, at, _offsets(pair), strict=True):
-        for pit in found:
-            low, high = _rolls(gear, pit)
-            for k in range(depth.size - 1):
-                ends, heights = roll[k : k + 2], z[k : k + 2] + offset
-                apart = np.abs(heights.mean() - pit.z) > pit.reach[1] + np.ptp(heights) / 2
-                if not apart and ends.min() <= high + 1e-9 and ends.max() >= low - 1e-9:
-                    step = depth[k + 1] - depth[k]
-                    covered += [(depth[k] + a * step, depth[k] + b * step) for a, b in crossing(gear, pit, ends, heights)]
-    return covered
-
-
-def _offsets(pair):
-    """Where the common width begins on both gears [mm]."""
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    return (pair.gear_1.b - common) / 2, (pair.gear_2.b - common) / 2
-
-
-@lru_cache(maxsize=256)
-def _rolls(gear, pit):
-    return sorted(rolls(gear, pit).tolist())
+def _taken(pair, pits, bands, pieces, slope):
+    """Intervals of depth that pits take from each piece; beyond the path a line is bent, so it is looked at in `PARTS`."""
+    out, (one, two) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
+    teeth_1, teeth_2 = {pit.tooth % one for pit in pits[0]}, {pit.tooth % two for pit in pits[1]}
+    found = [k for k, piece in enumerate(pieces) if piece.order % one in teeth_1 or -piece.order % two in teeth_2]
+    if not found:
+        return out
+    depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in found]
+    which = np.concatenate([np.full(depth.size - 1, k) for k, depth in zip(found, depths, strict=True)])
+    depth = np.concatenate([np.stack([depth[:-1], depth[1:]], axis=1) for depth in depths])
+    half, order, roll, corner = (np.array(values)[which] for values in list(zip(*pieces, strict=True))[:4])
+    nominal = roll[:, None] - slope * depth
+    rolls = nominal.copy(), pair.mate_roll(nominal)
+    beyond_it = np.flatnonzero(corner)
+    if beyond_it.size:
+        for own, met in zip(rolls, touching(pair, nominal[beyond_it].ravel()), strict=False):
+            own[beyond_it] = met.reshape(-1, 2)
+    ends = np.array(bands)[half]
+    z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth
+    row, _, first, last = covered(pair, pits, order, rolls, z)
+    step = depth[row, 1] - depth[row, 0]
+    for k, a, b in zip(which[row].tolist(), depth[row, 0] + first * step, depth[row, 0] + last * step, strict=True):
+        out[k].append((float(a), float(b)))
+    return out
 
 
 def cells_of(pair, pieces, bands, slope, step):

@@ -100,6 +100,6 @@ def _table(pair, materials, line_load, corner, span):
 
 
 def _read(gear, material, roll):
-    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `ritz3d` carry it."""
+    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `gearfe.energy.ritz.solid` carry it."""
     row = carry(gear, np.array([roll]))[0]
     return float(row @ ritz3d.plane_hats(gear, material) @ row)

@@ -5,12 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from geometry.pair.lines import bands_of
+
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from ..machine.contact_cycle import overlap_ratio
+from .bodies import between, faces_of
 from .cell_sharing import line_cells
-from .cells import Cells, bands_of, beyond, cells_of, gaps, pieces_of
+from .cells import Cells, beyond, cells_of, gaps, pieces_of
 from .corner import CornerLaw
-from .seen_bodies import between, faces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
@@ -46,7 +47,7 @@ class PhaseContact:
     @property
     def neighbours(self):
         """Largest difference of the orders of pairs in contact at the same phase."""
-        ratio = overlap_ratio(self.pair, self.width / len(self.bands)) if self.beta_b else 0.0
+        ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
         return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.reach)) / self.pair.p_bt))
 
     def _further(self, reach):

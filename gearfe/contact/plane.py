@@ -4,37 +4,19 @@ A pair well inside its flanks is one contact with Hertz's logarithm. Where the c
 formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.linalg import block_diag
 
 from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
+from ..flexibility.solved import Solved
 from .sharing import line_contact, line_contacts
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
 CORNER = 0.7
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
-
-
-@dataclass(frozen=True, slots=True)
-class Solved:
-    """Contact at some phases, per unit width.
-
-    `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
-    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
-    `closed` the phases at which crack faces touch and were kept from passing through each other.
-    """
-
-    order: np.ndarray
-    approach: np.ndarray
-    tangent: np.ndarray
-    line_load: np.ndarray
-    pressure: np.ndarray
-    closed: tuple = ()
 
 
 def _closing(opening):

@@ -1,8 +1,8 @@
 """A pair of gears of finite width in contact along its true contact lines: spur, helical or herringbone, with pits and cracks.
 
 Every contact line is cut into short cells, pits taken out exactly, so that nothing jumps when a pit or the phase moves. The
-flexibility between all cells of all pairs is that of both bodies (`energy.ritz3d`) and the half-space along the line; each cell
-on itself is a strip of Hertz's pressure, as in the plane.
+flexibility between all cells of all pairs is that of both bodies (by default `gearfe.energy.ritz.solid`) and the half-space along
+the line; each cell on itself is a strip of Hertz's pressure, as in the plane.
 """
 
 import math
@@ -14,8 +14,8 @@ import numpy as np
 from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
+from .bodies import bodies_of
 from .phase_contact import REACH, PhaseContact
-from .seen_bodies import bodies_of
 
 STEP = 0.4  # longest cell along the width [mm]
 
@@ -90,7 +90,7 @@ def pair_stiffness3d(
         Of `flexibility3d`.
     extended : bool
         Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
-        has there and the plane's local law of a corner (`corner3d`).
+        has there and the plane's local law of a corner (`gearfe.contact.corner`).
     error : bool
         Of the energy model: estimate the discretisation error of every k: its difference from that of a section order less by
         1 and an axial degree less by 2, or the mean of those over the phases if that is larger.

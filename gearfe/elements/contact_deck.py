@@ -10,8 +10,8 @@ from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import arc_at
 
+from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
-from ..stiffness.curve_file import written
 from .deck import element_nodes, held_nodes
 from .elasticity import edge_nodes
 from .fe import EDGES

@@ -7,8 +7,8 @@ import numpy as np
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 
+from ..files import suffix_of, written
 from ..material import check_state
-from ..stiffness.curve_file import written
 from .elasticity import Body
 from .fe import EDGES
 from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
@@ -42,8 +42,7 @@ def write_inp(path, gear, radius, line_load, material, *, cracks=(), state="plan
     load : sparse matrix, shape (2 nodes, 1)
         Its nodal forces [N/mm].
     """
-    if Path(path).suffix != ".inp":
-        raise ValueError(f"{path}: a deck's name ends in .inp")
+    suffix_of(path, "deck")
     check_state(state)
     check_line_load(line_load)
     edge = edge_lengths(gear, EDGES, refine)

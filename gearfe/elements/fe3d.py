@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from scipy.sparse import coo_matrix
 
-from geometry.mesh.solid import solid, twist_rate
+from geometry.mesh.solid import solid
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .hexahedron import assemble, face_shapes
@@ -139,7 +139,7 @@ def patch_loads(mesh, patches, tooth):
     value = face_shapes(x[:, None], y[None, :])  # node, roll point, height point
     nodes = mesh.flank(tooth)[:, edge[:, None], layer[None, :]]
     plane = flank_normal(gear, at)
-    turn = 2 * math.pi * tooth / gear.z + twist_rate(gear) * z
+    turn = 2 * math.pi * tooth / gear.z + gear.twist_rate * z
     cos, sin = np.cos(turn), np.sin(turn)
     tilt = math.cos(gear.beta_b)
     normal = np.array([

@@ -1,4 +1,4 @@
-"""`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches that `energy.ritz3d` uses too."""
+"""`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
 
 import math
 

@@ -163,7 +163,7 @@ def own_distance(gear, width, degree):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
     knots = hats(gear)
     roll = roll_at_arc(gear, knots.mean(axis=0))
-    slope = math.tan(gear.beta) / gear.r * (roll[:, None] + roll) / 2
+    slope = gear.twist_rate * (roll[:, None] + roll) / 2
     n = PLACES * (degree + 1)
     return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
 

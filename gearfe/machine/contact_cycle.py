@@ -69,19 +69,9 @@ def contact_line(pair, phase, *, width=None):
     A line crosses the face in the phases ``0...eps_alpha + eps_beta``; it is cut at the ends of the path of contact.
     """
     width = width or min(pair.gear_1.b, pair.gear_2.b)
-    over, slope = overlap_ratio(pair, width), math.cos(base_helix(pair.gear_1))
+    over, slope = pair.eps_beta_of(width), math.cos(pair.gear_1.beta_b)
     low, high = np.maximum(np.asarray(phase, dtype=float) - over, 0.0), np.minimum(phase, pair.eps_alpha)
     return np.maximum(high - low, 0.0) / over * width / slope
-
-
-def base_helix(gear):
-    """Helix angle on the base cylinder [rad], ``sin(beta_b) = sin(beta) cos(alpha_n)``."""
-    return math.asin(math.sin(abs(gear.beta)) * math.cos(gear.alpha_n))
-
-
-def overlap_ratio(pair, width):
-    """Overlap ratio of a helical pair, ``b tan(beta_b) / p_bt``."""
-    return width * math.tan(base_helix(pair.gear_1)) / pair.p_bt
 
 
 def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
@@ -91,8 +81,8 @@ def line_cycle(pair, coefficient, *, lost=None, width=None, count=256):
     force on a pair is in proportion to the length of its line. `lost` as in `impact_cycle`, in mm.
     """
     width = width or min(pair.gear_1.b, pair.gear_2.b)
-    total = pair.eps_alpha + overlap_ratio(pair, width)
-    mean = pair.eps_alpha * width / math.cos(base_helix(pair.gear_1))
+    total = pair.eps_alpha + pair.eps_beta_of(width)
+    mean = pair.eps_alpha * width / math.cos(pair.gear_1.beta_b)
     steps = np.arange(count) if lost is None else np.arange(-count // 8, math.ceil((total + 0.125) * count))
     phase = steps / count
     around_it = phase[:, None] + np.arange(-math.ceil(total + 1 + phase.max()), math.ceil(total) + 2)
@@ -112,7 +102,7 @@ def ellipse_loss(pair, pits, *, width=None):
     """
     gear = pair.gear_1
     width = width or min(gear.b, pair.gear_2.b)
-    angle = base_helix(gear)
+    angle = abs(gear.beta_b)
 
     def lost(phase):
         out = np.zeros(np.shape(phase))

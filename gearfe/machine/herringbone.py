@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from .contact_cycle import base_helix, ellipse_loss, line_cycle, overlap_ratio
+from .contact_cycle import ellipse_loss, line_cycle
 from .contact_law import hertz_coefficient
 from .gear_mesh import Mesh, ToothDamage
 from .layout import SPACE, Body, Layout
@@ -44,7 +44,7 @@ def pitted_helical(
     """
     width = min(pair.gear_1.b, pair.gear_2.b)
     radii = pair.curvature_radii(pair.pitch_phase)
-    helix = math.cos(base_helix(pair.gear_1))  # radii of curvature across the contact line
+    helix = math.cos(pair.gear_1.beta_b)  # radii of curvature across the contact line
     coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
     bodies = []
     for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
@@ -121,7 +121,7 @@ def herringbone_planetary(
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
     for name, gear in (("sun", sun), *((f"planet{i + 1}", planet) for i in range(n))):
         springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
-    meshes, helix = [], math.tan(base_helix(sun))
+    meshes, helix = [], math.tan(abs(sun.beta_b))
     angles = dict(zip(range(1, n + 1), 2 * math.pi * np.arange(n) / n, strict=True))
     for name, fields in stage_phases((outer, inner), n, frequency=frequency).items():
         kind, i = name[:-1] if n < 10 else name.rstrip("0123456789"), int(name.rpartition(name.rstrip("0123456789"))[2])
@@ -145,7 +145,7 @@ def herringbone_planetary(
         "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
         "carrier frequency [Hz]": speed / (1 + ring.z / sun.z) / (2 * math.pi),
         "phases": {mesh.name: mesh.phase for mesh in meshes},
-        "overlap ratio of one half": overlap_ratio(outer, sun.b),
+        "overlap ratio of one half": outer.eps_beta_of(sun.b),
     }
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes)
 

@@ -9,7 +9,7 @@ from geometry.damage.pit import Pit
 from geometry.pair.lines import contact_lines, lost_length
 
 from ..scene.machine_table import IMPACT
-from .contact_cycle import impact_cycle, overlap_ratio
+from .contact_cycle import impact_cycle
 from .contact_law import hertz_coefficient
 from .herringbone import pitted_helical
 from .stages import pitted_planetary
@@ -25,7 +25,7 @@ def pits_loss(pair, pits):
     Phase 0 is where the line first touches, at whichever end of the face.
     """
     pits = [replace(pit, tooth=0) for pit in pits]
-    early = overlap_ratio(pair, min(pair.gear_1.b, pair.gear_2.b)) if pair.gear_1.beta > 0 else 0.0
+    early = pair.eps_beta if pair.gear_1.beta > 0 else 0.0
 
     def lost(phase):
         lines = contact_lines(pair, np.asarray(phase, dtype=float) - early)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .contact_cycle import base_helix, friction_weights
+from .contact_cycle import friction_weights
 from .gear_mesh import Mesh
 from .layout import Body, Layout, around, through
 from .tables import Load, Machine
@@ -68,7 +68,7 @@ def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 
     layout, (one, two) = Layout(bodies), bodies
     radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
     place = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
-    row = layout.mesh(one.name, two.name, helix=math.tan(base_helix(pair.gear_1)) if helix is None else helix, **place)
+    row = layout.mesh(one.name, two.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
     frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
     springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]
     for body, k in zip(bodies, torsion, strict=True):

@@ -1,10 +1,10 @@
 """`Response`: what a machine did, by named channels with units."""
 
-import json
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..files import Content, save_as, suffix_of
 from ..machine.contact_law import force
 from ..machine.tables import Machine
 from . import excitation
@@ -95,53 +95,28 @@ class Response:
 
     def save(self, path, names=None):
         """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
-        writers = {".csv": self.to_csv, ".npz": self.to_npz, ".mat": self.to_mat}
-        suffix = "." + str(path).rpartition(".")[2].lower()
-        if suffix not in writers:
-            raise ValueError(f"{path}: no format for {suffix!r}; use one of {', '.join(writers)}")
-        writers[suffix](path, names)
+        suffix = suffix_of(path, "response")
+        save_as(suffix, path, self._content(names))
 
     def to_csv(self, path, names=None):
         """Write a table of repr-exact numbers under comment lines with the solver's statistics (JSON)."""
-        from ..stiffness.curve_file import written
-
-        columns = self._columns(names)
-        with written(path) as name, open(name, "w", encoding="utf-8") as file:
-            file.write(f"# gearfe response, version 1\n# meta: {json.dumps(self.stats)}\n")
-            file.write(",".join(["time [s]", *(f"{key} [{self.unit(key)}]" for key in columns)]) + "\n")
-            for row in zip(self.time.tolist(), *(c.tolist() for c in columns.values()), strict=True):
-                file.write(",".join(map(repr, row)) + "\n")
+        save_as(".csv", path, self._content(names))
 
     def to_npz(self, path, names=None):
         """Write a numpy archive: ``time``, ``values`` (t, channels), ``names``, ``units``, ``meta`` (JSON)."""
-        from ..stiffness.curve_file import written
-
-        with written(path) as name, open(name, "wb") as file:
-            np.savez(file, **self._arrays(names))
+        save_as(".npz", path, self._content(names))
 
     def to_mat(self, path, names=None):
         """Write a MATLAB 5 file with the variables of `to_npz`."""
-        from scipy.io import savemat
+        save_as(".mat", path, self._content(names))
 
-        from ..stiffness.curve_file import written
-
-        data = self._arrays(names)
-        for key in ("names", "units"):
-            data[key] = data[key].astype(object)
-        with written(path) as name:
-            savemat(name, data, appendmat=False, oned_as="column")
-
-    def _arrays(self, names):
-        columns = self._columns(names)
-        units = np.array([self.unit(name) for name in columns])
-        values = np.array(list(columns.values())).T
-        return {
-            "time": self.time,
-            "values": values,
-            "names": np.array(list(columns)),
-            "units": units,
-            "meta": json.dumps(self.stats),
-        }
+    def _content(self, names):
+        found = self._columns(names)
+        units = [self.unit(name) for name in found]
+        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(found.items(), units, strict=True)}
+        values = np.array(list(found.values())).T
+        arrays = {"time": self.time, "values": values, "names": np.array(list(found)), "units": np.array(units)}
+        return Content("gearfe response, version 1", columns, arrays, self.stats)
 
     def _columns(self, names):
         names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)

@@ -5,7 +5,7 @@ import numpy as np
 from geometry.damage.pit import centre_arc
 from geometry.tooth.profile import roll_at_arc
 
-from ..stiffness.curve_file import written
+from ..files import save_figure
 
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
@@ -50,10 +50,7 @@ def plot_curves(curves, path=None):
     bottom.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
     bottom.set_ylim(0, 1.05)
     bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=120)
-    return figure
+    return save_figure(figure, path, dpi=120)
 
 
 def plot_map(found, formulations, x, y, zone, path=None, bins=8):
@@ -83,10 +80,7 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
         axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
     row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
     figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=100)
-    return figure
+    return save_figure(figure, path, dpi=100)
 
 
 def _binned(values, bins):
@@ -122,10 +116,7 @@ def plot_errors(errors, rows, columns, path=None, largest=30.0):
         axes.set_yticks(range(len(rows)), rows, fontsize=7)
         axes.set_xticks(range(len(columns)), columns, fontsize=7, rotation=30, ha="right")
         figure.colorbar(image, ax=axes, label="error [%]")
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=100)
-    return figure
+    return save_figure(figure, path, dpi=100)
 
 
 def plot_lengths(phase, lengths, others=None, path=None):
@@ -142,10 +133,7 @@ def plot_lengths(phase, lengths, others=None, path=None):
     axes.set_ylabel("contact line [mm]")
     axes.set_ylim(bottom=0)
     axes.legend(fontsize=8)
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=100)
-    return figure
+    return save_figure(figure, path, dpi=100)
 
 
 def plot_contact(pair, contact, phase=0, path=None, pits=()):
@@ -202,10 +190,7 @@ def plot_contact(pair, contact, phase=0, path=None, pits=()):
     bottom.set_ylim(bottom=0)
     bottom.set_xlabel("along the width [mm]")
     figure.legend(fontsize=8, loc="outside lower center", ncol=6)
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=110)
-    return figure
+    return save_figure(figure, path, dpi=110)
 
 
 def _lines_of(cells):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..stiffness.curve_file import written
+from ..files import save_figure
 
 
 def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
@@ -10,7 +10,7 @@ def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
 
     Parameters
     ----------
-    spectra : dict of str to gearfe.signal.series.Spectrum
+    spectra : dict of str to gearfe.signal.spectra.Spectrum
     lines : dict of str to float, optional
         See `gearfe.expected_lines`.
     path : path, optional
@@ -35,10 +35,7 @@ def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
     end = 1.2 * max(lines.values()) if lines and top is None else top
     rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
     rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=dpi)
-    return figure
+    return save_figure(figure, path, dpi=dpi)
 
 
 def plot_kurtogram(kurtogram, path=None):
@@ -63,10 +60,7 @@ def plot_kurtogram(kurtogram, path=None):
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("level")
     axes.set_title(f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz", fontsize=9)
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=120)
-    return figure
+    return save_figure(figure, path, dpi=120)
 
 
 def plot_phase(portrait, section=None, unit="m", path=None):
@@ -80,10 +74,7 @@ def plot_phase(portrait, section=None, unit="m", path=None):
         axes.plot(*np.transpose(section), "k.", markersize=4)
     axes.set_xlabel(f"displacement [{unit}]")
     axes.set_ylabel(f"velocity [{unit}/s]")
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=120)
-    return figure
+    return save_figure(figure, path, dpi=120)
 
 
 def plot_phases(portraits, unit="m", path=None):
@@ -114,7 +105,4 @@ def plot_phases(portraits, unit="m", path=None):
         place.tick_params(labelsize=7)
     figure.supxlabel(f"displacement [{unit}]", fontsize=8)
     figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
-    if path is not None:
-        with written(path) as name:
-            figure.savefig(name, dpi=80)
-    return figure
+    return save_figure(figure, path, dpi=80)

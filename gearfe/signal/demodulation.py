@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .kurtogram import Kurtogram, fast_kurtogram
-from .series import Signal, Spectrum, squared_envelope_spectrum
+from .series import Signal
+from .spectra import Spectrum, squared_envelope_spectrum
 from .spectral_lines import find_lines
 
 

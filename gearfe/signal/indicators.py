@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from .series import spectrum
+from .spectra import spectrum
 from .spectral_lines import find_lines
 
 SOURCES = {

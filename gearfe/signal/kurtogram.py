@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import ShortTimeFFT, fftconvolve, firwin, get_window, upfirdn
 
-from .series import Spectrum
+from .spectra import Spectrum
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends

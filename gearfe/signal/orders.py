@@ -6,7 +6,7 @@ import numpy as np
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
-from .series import amplitudes
+from .spectra import amplitudes
 
 SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples
 

@@ -2,11 +2,11 @@
 
 import math
 import re
-import zlib
 from pathlib import Path
 
 import numpy as np
 
+from ..files import read
 from .series import Signal
 
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
@@ -50,14 +50,8 @@ def read_signal(path, *, column=None, rate=None, unit=None, shaft_frequency=None
         Naming file and cause: no rate, two rates, times that fall or have gaps, no unit, an unknown unit, several columns, a
         cell that is no number (with its line), a sample that is not finite.
     """
-    readers = {".csv": _from_csv, ".txt": _from_csv, ".mat": _from_mat, ".npz": _from_npz}
-    suffix = Path(path).suffix.lower()
-    if suffix not in readers:
-        raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(readers)}")
-    try:
-        vectors, units, stated = readers[suffix](path)
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+    found = read(path, "signal")
+    vectors, units, stated = _from_arrays(path, found) if isinstance(found, dict) else _from_lines(path, found)
     time, angle = (_special(path, vectors, units, names, scale) for names, scale in ((TIMES, TIME), (ANGLES, TURN)))
     name = _choose(path, vectors, column)
     unit_stated = {text.strip() for text in (unit, units.get(name), stated.get("unit")) if text and text.strip()}
@@ -148,11 +142,8 @@ def _rate(path, given, stated, time, samples):
     return 1 / step if rate is None else rate
 
 
-def _from_csv(path):
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is not text in UTF-8: export the signal as CSV") from error
+def _from_lines(path, lines):
+    """Columns of a text table, their units, and what its comments state."""
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
@@ -213,33 +204,6 @@ def _bad_row(path, rows, separator, count):
             hint = "; use a decimal point" if any(re.fullmatch(r"\s*[-+\d]*,\d+(e.*)?\s*", cell) for cell in cells) else ""
             return f"{path}, line {i}: {line!r} is not a row of {count} numbers{hint}"
     return None
-
-
-def _from_npz(path):
-    from zipfile import BadZipFile
-
-    try:
-        with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
-            return _from_arrays(path, {name: archive[name] for name in archive.files})
-    except (BadZipFile, ValueError, TypeError, EOFError, zlib.error) as error:
-        if str(path) in str(error):
-            raise
-        raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
-
-
-def _from_mat(path):
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
-
-    try:
-        with open(path, "rb") as file:
-            return _from_arrays(path, {name: value for name, value in loadmat(file).items() if not name.startswith("__")})
-    except NotImplementedError as error:
-        raise ValueError(f"{path} is a MATLAB file of version 7.3 (HDF5): save it with '-v7'") from error
-    except (MatReadError, ValueError, TypeError, EOFError, zlib.error) as error:
-        if str(path) in str(error):
-            raise
-        raise ValueError(f"{path} is not a MATLAB file: {error}") from error
 
 
 def _from_arrays(path, arrays):

@@ -17,7 +17,7 @@ import geometry
 from ..elements import fe
 from ..elements.fe_gear3d import solid_flexibility
 from ..energy.ritz import plane as ritz
-from .curve_file import written
+from ..files import written
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
 MOST = 32  # gears kept in this process

@@ -4,6 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..files import save, save_as
+from ..pictures.stiffness_plots import plot_curves
+from .curve_file import content, read_fields
+
 
 @dataclass(frozen=True, slots=True)
 class StiffnessCurve:
@@ -73,15 +77,11 @@ class StiffnessCurve:
 
     def save(self, path):
         """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
-        from .curve_file import save
-
-        save(self, path)
+        save(path, "curve", content(self))
 
     def to_csv(self, path):
         """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
-        from .curve_file import write_csv
-
-        write_csv(self, path)
+        save_as(".csv", path, content(self))
 
     @classmethod
     def from_csv(cls, path):
@@ -92,12 +92,8 @@ class StiffnessCurve:
         ValueError
             If the file is not such a table, or its phases do not rise.
         """
-        from .curve_file import read_csv
-
-        return read_csv(path)
+        return cls(**read_fields(path))
 
     def plot(self, path=None):
         """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
-        from ..pictures.stiffness_plots import plot_curves
-
         return plot_curves({self.meta.get("method", "k"): self}, path)

@@ -11,7 +11,6 @@ from geometry.damage.crack import Crack, check_apart, check_through
 from geometry.damage.pit import Pit
 
 from ..energy.closed.plain_sum import plain_sum
-from ..machine.contact_cycle import overlap_ratio
 from ..material import Material
 from .methods import FACES, METHODS, NAMES, WITHOUT_BODY, Method, having
 from .own_flexibility import OwnFlexibility
@@ -34,7 +33,7 @@ def overlap(pair, face, groove):
     width = min(pair.gear_1.b, pair.gear_2.b)
     if face == "herringbone":
         width = (width - groove) / 2
-    return overlap_ratio(pair, width) if face in ("helical", "herringbone") else 0.0
+    return pair.eps_beta_of(width) if face in ("helical", "herringbone") else 0.0
 
 
 def phase_array(phases, span, pair, overlap=0.0):

@@ -66,8 +66,8 @@ def mesh_stiffness(
         after it (where the damaged tooth is); in three dimensions pair 0 enters at one end at phase 0.
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
-        the width or sloping ones: ``fe3d``; pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz`` and ``fe`` crack faces
-        that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
+        the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
+        and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).

@@ -11,8 +11,8 @@ from geometry.tooth.profile import arc_at
 
 from ..elements.elasticity import Body
 from ..elements.fe import EDGES, flank_load
+from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
-from ..stiffness.curve_file import written
 from ..stiffness.inputs import by_gear
 from ..stiffness.solve import mesh_stiffness
 

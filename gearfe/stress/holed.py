@@ -1,7 +1,7 @@
 """A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
 
-The load is that of `contact3d.pair_stiffness3d` along the true contact lines, spread over a narrow strip to either side. The
-sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
+The load is that of `gearfe.contact.solid` along the true contact lines, spread over a narrow strip to either side. The sector of
+the gear is held at the bore (or the outside of a ring) and where it was cut off.
 """
 
 import math
@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
-from geometry.mesh.solid import twist_rate
 from geometry.tooth.profile import arc_at, flank_normal
 
 from ..contact.solid import Contact3D, pair_stiffness3d
@@ -239,7 +238,7 @@ def _pressure(sector, nodes, number, lines):
     On each line the pressure is its line load times a hat of `SPREAD` along the profile, at small triangles of the flank; it is
     scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
     """
-    gear, rate = sector.gear, twist_rate(sector.gear)
+    gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))
     spread = SPREAD * gear.m_n
     bary = _thirds()

@@ -5,11 +5,11 @@ import ctypes
 import math
 import os
 import sys
-from pathlib import Path
 
 import numpy as np
 
-from ..stiffness.curve_file import written
+from ..files import suffix_of, written
+from ..pictures.stiffness_plots import plot_contact
 from ..stiffness.inputs import by_gear
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
@@ -68,9 +68,7 @@ def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050),
     RuntimeError
         If pyvista or a renderer is missing; the message names what to install.
     """
-    suffix = Path(path).suffix
-    if suffix not in (".png", ".vtu"):
-        raise ValueError(f"output {path}: give a .png or a .vtu file")
+    suffix = suffix_of(path, "stress")
     if suffix == ".png":
         _pyvista()
     damage = scene_pair.case(case).get("damage")
@@ -86,7 +84,7 @@ def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050),
 
 
 def render_contact(scene_pair, path, *, case=None, phase=None):
-    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`plots.plot_contact`).
+    """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
 
     Parameters as of `render_stress`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
 
@@ -95,8 +93,6 @@ def render_contact(scene_pair, path, *, case=None, phase=None):
     dict
         ``phase``, ``k`` [N/m], ``pressure`` (the largest) [MPa].
     """
-    from ..pictures.stiffness_plots import plot_contact
-
     cracks, pits = by_gear(scene_pair.pair, scene_pair.case(case).get("damage"))
     order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
     face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
@@ -233,7 +229,7 @@ def _draw_tooth(pair, fields, told, path, size):
 
     (field,), gear, scale = fields, told["sector"].gear, told["enlarged"]
     x, y, z = field.points
-    rate = math.tan(gear.beta) / gear.r
+    rate = gear.twist_rate
     angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
     deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
     linear = np.hstack([field.cells[list(part)] for part in EIGHT])

@@ -12,8 +12,8 @@ from geometry.damage.crack import Crack, crack_path
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
+from ..files import written
 from ..material import Material
-from ..stiffness.curve_file import written
 from ..stiffness.methods import ROWS
 from ..stiffness.solve import mesh_stiffness
 from .batches import batch

@@ -4,11 +4,12 @@ import math
 import re
 import warnings
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
-from ..stiffness.curve_file import FIRST_LINE, read_csv
+from ..files import read_text
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.curve_file import FIRST_LINE
 
 FORCE = {"N": 1.0, "kN": 1e3, "MN": 1e6, "GN": 1e9}
 LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
@@ -158,14 +159,9 @@ def read_model(path, *, phase_offset=None):
     ValueError
         Naming file and line, if a unit is missing or unknown, a number is not finite, k not positive, or the abscissa not rising.
     """
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise ValueError(f"cannot read the model {path}: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is not text in UTF-8: export the curve as CSV, with um for micrometres") from error
+    lines = read_text(path)
     if lines[:1] == [FIRST_LINE]:
-        curve = read_csv(path)
+        curve = StiffnessCurve.from_csv(path)
         return ModelFile(str(path), "phase", curve.phase, curve.k, phase_offset=_finite(path, phase_offset or 0), meta=curve.meta)
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]

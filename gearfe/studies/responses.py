@@ -12,7 +12,8 @@ from geometry.damage.pit import Pit
 from ..machine.of_scene import build_machine
 from ..motion.simulate import simulate
 from ..signal.indicators import LOBES, indicator_table, table_text
-from ..signal.series import Signal, spectrum
+from ..signal.series import Signal
+from ..signal.spectra import spectrum
 from ..signal.spectral_lines import expected_lines, find_lines
 
 SETTLE = 0.5  # of the duration, before it, left out

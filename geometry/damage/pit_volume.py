@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from ..mesh.solid import twist_rate
 from ..tooth.profile import arc_at, cartesian, flank, flank_normal, roll_at_arc
 from .pit import centre_arc, union_length
 
@@ -22,7 +21,7 @@ def pit_frame(gear, pit):
     along *= gear.outward if along @ xy > 0 else -gear.outward
     tilt = sign * gear.beta_b
     true = np.array([*(math.cos(tilt) * across), -math.sin(tilt)])
-    pulled = true - twist_rate(gear) * true[2] * np.array([xy[1], -xy[0], 0.0])
+    pulled = true - gear.twist_rate * true[2] * np.array([xy[1], -xy[0], 0.0])
     c, s = math.cos(pit.angle), math.sin(pit.angle)
     u, w = np.array([*along, 0.0]), np.array([0.0, 0.0, 1.0])
     axes = np.column_stack([pit.axes[0] * (c * u + s * w), pit.axes[1] * (c * w - s * u)])

@@ -17,7 +17,6 @@ from ..damage.pit_volume import pit_frame, removed_volume
 from ..tooth.gear import Gear
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 from .mesher import tetrahedra
-from .solid import twist_rate
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
 # of the smallest half axis
@@ -114,7 +113,7 @@ def _attempt(gear, pits, crack, teeth, size):
     nodes, cells, seam = _opened(gear, crack, made)
     flat = np.hstack([made.points, made.points[:, nodes]])
     named = _named(gear, flat, cells, made.plug, teeth) | seam
-    return Holed(gear, _twisted(flat, twist_rate(gear)), cells, made.plug, named, volumes)
+    return Holed(gear, _twisted(flat, gear.twist_rate), cells, made.plug, named, volumes)
 
 
 def _check_place(gear, pits, crack):

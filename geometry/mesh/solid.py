@@ -60,11 +60,6 @@ class Solid:
         return self.faces[name].reshape(8, -1, self.levels.size - 1)
 
 
-def twist_rate(gear):
-    """Clockwise turn of the section for each mm of height [rad/mm]."""
-    return math.tan(gear.beta) / gear.r
-
-
 def layers(b, size, *, breaks=(), fine=()):
     """Heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks` and finer at `fine`.
 
@@ -102,7 +97,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     section = quad_section(gear, loaded=loaded, cracks=cracks, patches=patches, refine=refine, sizes=sizes)
     breaks = [z for crack in cracks for z in crack.width or ()]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
-    made = extrude(section, levels, twist_rate(gear))
+    made = extrude(section, levels, gear.twist_rate)
     for number, cut in enumerate(section.cuts):
         made = _open(made, cut, number + 1, cracks)
     return made

@@ -217,6 +217,15 @@ class GearPair:
         return (end - start) / self.p_bt
 
     @property
+    def eps_beta(self):
+        """Overlap ratio of the width both gears have in common, ``b tan(beta_b) / p_bt``; 0 for spur gears."""
+        return self.eps_beta_of(min(self.gear_1.b, self.gear_2.b))
+
+    def eps_beta_of(self, width):
+        """Overlap ratio of a part of the face, for example one half of a herringbone pair, `width` [mm] wide."""
+        return width * math.tan(abs(self.gear_1.beta_b)) / self.p_bt
+
+    @property
     def pitch_phase(self):
         """Phase at which the contact is at the pitch point."""
         return (self.gear_1.r_b * math.tan(self.alpha_w) - self.path[0]) / self.p_bt

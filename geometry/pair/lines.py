@@ -13,6 +13,7 @@ centred on each other.
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +21,7 @@ import numpy as np
 from ..damage.pit import crossing, rolls, union_length
 from .gear_pair import GearPair
 
-FACES = ("helical", "herringbone")
+FACES = ("spur", "helical", "herringbone")
 
 
 class Band(NamedTuple):
@@ -92,48 +93,73 @@ class Removed:
     gear: np.ndarray
 
 
-def common_width(pair, face, groove, faces):
-    """Width [mm] in which both gears of a pair touch.
-
-    Raises
-    ------
-    ValueError
-        If `face` is none of `faces`, or if `groove` [mm] is not that of a herringbone pair or leaves no width.
-    """
-    if face not in faces:
-        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(faces)}")
-    if groove and face != "herringbone":
-        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    if not 0 <= groove < width:
-        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
-    return width
-
-
-def face_bands(pair, face="helical", groove=0.0):
-    """Bands of the face.
-
-    ``helical``: one, which for beta = 0 is a spur gear's. ``herringbone``: two mirrored halves of width ``(b - groove) / 2`` left
-    and right of a relief groove in the middle; the pinion's beta is that of the half at z = 0, and the phase is counted at both
-    outer ends: with beta > 0 the inner ends touch first, with beta < 0 the outer ones.
+def halves(pair, face, groove=0.0):
+    """Parts of the common width of both gears with one hand of helix, each from its outer end to its inner one.
 
     Parameters
     ----------
     pair : GearPair
-    face : {"helical", "herringbone"}
+    face : {"spur", "helical", "herringbone"}
+        ``spur`` and ``helical``: one part, the whole width from z = 0. ``herringbone``: two mirrored ones of width
+        ``(b - groove) / 2`` left and right of a relief groove in the middle.
     groove : float
         Its width [mm].
 
     Returns
     -------
-    tuple of Band
+    list of (float, float)
+        Heights [mm].
+
+    Raises
+    ------
+    ValueError
+        If the face is none of these, or the groove is not that of a herringbone pair or leaves no width.
     """
-    width = common_width(pair, face, groove, FACES)
-    slope = math.tan(pair.gear_1.beta_b)
-    if face == "helical":
-        return (Band(0.0, width, slope, 0.0),)
+    if face not in FACES:
+        raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
+    if groove and face != "herringbone":
+        raise ValueError(f"groove = {groove} mm, but only face = 'herringbone' has a relief groove")
+    width = min(pair.gear_1.b, pair.gear_2.b)
+    if not 0 <= groove < width:
+        raise ValueError(f"groove = {groove} mm, but it must lie between 0 and the face width of {width:g} mm")
+    if face != "herringbone":
+        return [(0.0, width)]
     half = (width - groove) / 2
-    return Band(0.0, half, slope, 0.0), Band(width - half, width, -slope, width)
+    return [(0.0, half), (width, width - half)]
+
+
+def face_bands(pair, face="helical", groove=0.0):
+    """Bands of the face, as `Band`, of the `halves` of a pair.
+
+    The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, of a herringbone pair at both outer ends:
+    with beta > 0 the inner ends touch first, with beta < 0 the outer ones. Parameters as of `halves`; a helical pair of
+    beta = 0 is a spur one.
+
+    Returns
+    -------
+    tuple of Band
+
+    Raises
+    ------
+    ValueError
+        As of `halves`, and if gears with a helix angle are called spur gears.
+    """
+    slope = math.tan(pair.gear_1.beta_b)
+    if face == "spur" and slope:
+        raise ValueError("face = 'spur', but the gears have a helix angle: give beta = 0, or face = 'helical'")
+    parts = halves(pair, face, groove)
+    return tuple(Band(*sorted(part), hand * slope, part[0]) for part, hand in zip(parts, (1, -1), strict=False))
+
+
+def bands_of(pair, face, groove):
+    """Bands of the face as (end that touches first, other end) [mm], of a herringbone pair the outer ends first.
+
+    Parameters and errors as of `face_bands`.
+    """
+    bands = face_bands(pair, face, groove)
+    if face != "herringbone" and pair.gear_1.beta > 0:
+        return [(band.high, band.low) for band in bands]
+    return halves(pair, face, groove)
 
 
 def contact_lines(pair, phase, *, face="helical", groove=0.0):
@@ -190,26 +216,59 @@ def removed(lines, pits):
     -------
     Removed
     """
-    pair, rows = lines.pair, []
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    pair = lines.pair
+    i, j, k = np.nonzero(lines.high > lines.low)
+    z = np.stack([lines.low, lines.high], axis=-1)[i, j, k]
+    roll_1 = lines.roll_0[i, j, k, None] + np.array([band.slope for band in lines.bands])[k, None] * z
+    row, gear, first, last = covered(pair, pits, lines.order[j], (roll_1, pair.mate_roll(roll_1)), z)
+    low, high = (z[row, 0] + (z[row, 1] - z[row, 0]) * part for part in (first, last))
+    return Removed(i[row], j[row], k[row], low, high, gear)
+
+
+def covered(pair, pits, order, rolls, z):
+    """Where straight pieces of contact lines run through pits of their tooth pairs.
+
+    Parameters
+    ----------
+    pair : GearPair
+    pits : (sequence of Pit, sequence of Pit)
+        As in `removed`.
+    order : ndarray, shape (n,)
+        Number of the tooth pair each piece belongs to.
+    rolls : (ndarray, ndarray), shape (n, 2)
+        Roll lengths of pinion and wheel [mm] at the two ends.
+    z : ndarray, shape (n, 2)
+        Heights [mm] there.
+
+    Returns
+    -------
+    piece, gear : ndarray, shape (m,)
+        Number of the piece; 0 for a pit of the pinion, 1 for one of the wheel.
+    first, last : ndarray, shape (m,)
+        Part of the piece that a pit takes, 0 at its first end and 1 at the other; parts may overlap.
+    """
+    rows, common = [], min(pair.gear_1.b, pair.gear_2.b)
     for which, (gear, found) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
-        offset = (gear.b - width) / 2
-        at_low, at_high = lines.rolls(lines.low)[which], lines.rolls(lines.high)[which]
-        for pit in found:
-            if pit.side != "loaded":
-                continue
-            own = (pit.tooth - (1 - 2 * which) * lines.order) % gear.z == 0
-            near, far = rolls(gear, pit)[:: gear.outward]
-            meets = (np.minimum(at_low, at_high) <= far) & (np.maximum(at_low, at_high) >= near) & own[:, None]
-            meets &= (lines.low < pit.z + pit.reach[1] - offset) & (lines.high > pit.z - pit.reach[1] - offset)
-            meets &= lines.high > lines.low
-            for i, j, k in np.argwhere(meets).tolist():
-                z = lines.low[i, j, k], lines.high[i, j, k]
-                at = at_low[i, j, k], at_high[i, j, k]
-                parts = crossing(gear, pit, at, (z[0] + offset, z[1] + offset))
-                rows += [(i, j, k, z[0] + (z[1] - z[0]) * s, z[0] + (z[1] - z[0]) * t, which) for s, t in parts]
-    table = np.array(rows).reshape(-1, 6).T
-    return Removed(*table[:3].astype(int), *table[3:5], table[5].astype(int))
+        found = tuple(pit for pit in found if pit.side == "loaded")
+        if not found or not order.size:
+            continue
+        tooth, near, far, bottom, top = _limits(gear, found)
+        height = z + (gear.b - common) / 2  # the gears lie centred on each other
+        meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
+        meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
+        meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)
+        for i, k in np.argwhere(meets).tolist():
+            rows += [(i, which, s, t) for s, t in crossing(gear, found[k], rolls[which][i], height[i])]
+    piece, gear, first, last = np.array(rows, dtype=float).reshape(-1, 4).T
+    return piece.astype(int), gear.astype(int), first, last
+
+
+@lru_cache(maxsize=64)
+def _limits(gear, pits):
+    """Teeth of pits, the roll lengths and the heights [mm] they lie between: five arrays ``(pits,)``."""
+    near, far = np.sort([rolls(gear, pit) for pit in pits], axis=1).T
+    tooth, z, reach = np.array([(pit.tooth, pit.z, pit.reach[1]) for pit in pits]).T
+    return tooth, near, far, z - reach, z + reach
 
 
 def lost_length(lines, pits):

@@ -174,8 +174,13 @@ class Gear:
 
     @property
     def beta_b(self):
-        """Base helix angle [rad]."""
+        """Base helix angle [rad], with the sign of beta: ``sin(beta_b) = sin(beta) cos(alpha_n)``."""
         return math.asin(math.sin(self.beta) * math.cos(self.alpha_n))
+
+    @property
+    def twist_rate(self):
+        """Clockwise turn of the transverse section for each mm of height [rad/mm], ``tan(beta) / r``."""
+        return math.tan(self.beta) / self.r
 
     @property
     def r(self):

@@ -97,7 +97,7 @@ def test_scenes_and_info(capsys):
         (["stiffness", "planetary_pitting", "--method", "magic"], "auto, ritz, ritz3d, fe, fe3d, coupled, textbook, published"),
         (["stiffness", "planetary_pitting", "--method", "textbook", "-o", "/no/such/folder/k.csv"], "cannot write"),
         (["stiffness", "planetary_pitting", "--force", "-5"], "force = -5.0"),
-        (["render", "planetary_pitting", "-o", "stress.jpg"], "give a .png or a .vtu"),
+        (["render", "planetary_pitting", "-o", "stress.jpg"], "use one of .png, .vtu"),
         (["render", "planetary_pitting", "--case", "x", "-o", "s.png"], "no case 'x' of this pair"),
         (["compare", "planetary_pitting", "--pair", "x"], "it has sun_planet, planet_ring"),
     ],
@@ -107,6 +107,49 @@ def test_errors_go_to_stderr(arguments, message, capsys):
     captured = capsys.readouterr()
     assert message in captured.err
     assert "Traceback" not in captured.err
+
+
+@pytest.mark.parametrize(
+    ("verb", "option", "good"),
+    [
+        (["stiffness", "planetary_pitting", "--method", "fe3d"], "-o", "k.csv"),
+        (["stiffness", "planetary_pitting", "--method", "fe3d"], "--plot", "k.png"),
+        (["compare", "planetary_pitting"], "--plot", "k.svg"),
+        (["render", "planetary_pitting"], "-o", "s.vtu"),
+        (["render", "planetary_pitting", "--what", "contact"], "-o", "s.png"),
+        (["dynamics", "planetary_pitting"], "-o", "r.mat"),
+        (["dynamics", "planetary_pitting"], "--plot", "r.pdf"),
+        (["dynamics", "planetary_pitting"], "--kurtogram", "r.png"),
+        (["signal", "none.csv"], "--plot", "r.png"),
+        (["signal", "none.csv"], "--kurtogram", "r.png"),
+    ],
+)
+def test_outputs_are_checked_before_any_work(verb, option, good, tmp_path, monkeypatch, capsys):
+    def work(*_, **__):
+        raise AssertionError("work began")
+
+    for name in ("gearfe.scene.load.load_scene", "gearfe.signal.signal_file.read_signal"):
+        monkeypatch.setattr(name, work)
+    (tmp_path / "folder.png").mkdir()
+    suffix = good.rpartition(".")[2]
+    for given, message in (
+        ("", "empty file name"),
+        (str(tmp_path / "x.xlsx"), "no format for '.xlsx'; use one of "),
+        (str(tmp_path / "nosuffix"), "no format for 'a file without a suffix'"),
+        (str(tmp_path / "missing" / good), "cannot write"),
+        (str(tmp_path / f"{'long' * 100}.{suffix}"), "cannot write"),
+    ):
+        assert main([*verb, option, given]) == 1, given
+        assert message in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.png"], "a check leaves nothing behind"
+    with pytest.raises(AssertionError, match="work began"):
+        main([*verb, option, str(tmp_path / good)])
+
+
+def test_two_outputs_do_not_share_a_file(tmp_path, capsys):
+    same = str(tmp_path / "x.png")
+    assert main(["signal", "none.csv", "--plot", same, "--kurtogram", same]) == 1
+    assert "--plot and --kurtogram name the same file" in capsys.readouterr().err
 
 
 def test_the_command_leaves_the_function_compare_to_the_package():

@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.contact import bodies as bodies3d
 from gearfe.contact import cell_sharing
 from gearfe.contact import cells as lines3d
-from gearfe.contact import seen_bodies as bodies3d
 from gearfe.contact.sharing import share
 from gearfe.contact.solid import STEP, pair_stiffness3d
 from gearfe.flexibility import halfspace

@@ -17,7 +17,7 @@ from gearfe.elements.hexahedron import assemble, face_shapes, gauss, shapes, slo
 from gearfe.elements.solver import factor
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
-from geometry.mesh.solid import extrude, twist_rate
+from geometry.mesh.solid import extrude
 from geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -157,7 +157,7 @@ def test_mirrored_helix_gives_the_mirrored_influence(helical, steel):
 def test_small_helix_angle_is_spur(steel):
     found, tiny = patches(GEAR, axial=3), replace(GEAR, beta=1e-6)
     mesh = mesh_of(GEAR, found)
-    twisted = replace(extrude(mesh.section, mesh.levels, twist_rate(tiny)), gear=tiny)
+    twisted = replace(extrude(mesh.section, mesh.levels, tiny.twist_rate), gear=tiny)
     spur, nearly = (influence(m, steel, found).matrix for m in (mesh, twisted))
     assert_allclose(nearly, spur, atol=1e-5 * abs(spur).max())
     odd = spur[0, :, 1, 0, :, 0]

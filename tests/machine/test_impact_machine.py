@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.machine.contact_cycle import ellipse_loss, overlap_ratio, pit_loss
+from gearfe.machine.contact_cycle import ellipse_loss, pit_loss
 from gearfe.machine.impact import pits_loss
 from gearfe.motion.simulate import simulate
 
@@ -37,7 +37,7 @@ def test_pits_of_a_helical_tooth_are_met_as_the_line_passes(hand):
     width, radius = min(g.b for g in gears), pair.pitch_radius_1
     pit = gf.Pit(radius=radius, z=(gears[0].b - width) / 2 + 5.0, axes=(0.4, 1.5), depth=0.2)
     entry = 5.0 if hand < 0 else width - 5.0
-    phase = np.linspace(0, pair.eps_alpha + overlap_ratio(pair, width), 400)
+    phase = np.linspace(0, pair.eps_alpha + pair.eps_beta_of(width), 400)
     want = ellipse_loss(pair, [(radius, entry, 3.0, 0.8)], width=width)(phase)
     got = pits_loss(pair, [pit])(phase)
     assert want.max() > 0.5

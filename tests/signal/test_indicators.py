@@ -6,6 +6,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.signal import indicators as ind
+from gearfe.signal.spectra import Spectrum
 from validation.make import centroid
 
 RATE, N = 5120.0, 51200  # 10 s, bins 0.1 Hz apart
@@ -172,7 +173,7 @@ def test_printed_349_8_and_352_9_are_impossible():
     for edge, extreme in ((F_M - F_FAULT, 240.0), (F_M + F_FAULT, 320.0)):
         amplitude = np.where(np.isclose(frequency, edge), 1.0, 0.0)
         amplitude[frequency > 330] = 1e6  # energy above the window cannot help
-        found = ind.sideband_centroid_s0(gf.signals.Spectrum(frequency, amplitude, "N", 0.1, 0.1), F_M, F_FAULT)
+        found = ind.sideband_centroid_s0(Spectrum(frequency, amplitude, "N", 0.1, 0.1), F_M, F_FAULT)
         assert_allclose(found, extreme)
     assert 315.4 < found < 349.8 < 352.9, "the moderate values lie in the window, the severe ones beyond its end"
 
@@ -207,7 +208,7 @@ def test_centroids_refuse(centroid, mesh, fault, message):
 def test_no_energy_no_centroid():
     frequency = np.arange(0, 2560, 0.1)
     with pytest.raises(ValueError, match="is zero around 280 Hz"):
-        ind.sideband_centroid_s0(gf.signals.Spectrum(frequency, 0 * frequency, "N", 0.1, 0.1), F_M, F_FAULT)
+        ind.sideband_centroid_s0(Spectrum(frequency, 0 * frequency, "N", 0.1, 0.1), F_M, F_FAULT)
 
 
 def test_every_indicator_states_its_source():

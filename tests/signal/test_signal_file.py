@@ -142,7 +142,7 @@ def test_array_file_refusals(tmp_path, arrays, message, suffix):
 
 def test_files_that_are_something_else(tmp_path):
     for name, content, message in (
-        ("a.wav", b"RIFF", r"no format for '\.wav'; use one of \.csv, \.txt, \.mat, \.npz"),
+        ("a.wav", b"RIFF", r"no format for '\.wav'; use one of \.csv, \.txt, \.npz, \.mat"),
         ("a.npz", b"no archive at all", "is not a numpy archive"),
         ("a.mat", b"no matlab file, but long enough to hold a header " * 5, "is not a MATLAB file"),
         ("b.mat", b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM" + b"\x89HDF", r"version 7\.3 \(HDF5\): save it with '-v7'"),

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.signal import hilbert
 
 import gearfe as gf
-from gearfe.machine.contact_cycle import base_helix, contact_line, ellipse_loss, impact_cycle, line_cycle, pit_loss, sliced
+from gearfe.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle, pit_loss, sliced
 from gearfe.machine.contact_law import hertz_coefficient
 from gearfe.machine.gear_mesh import Samples, cycle_table
 from gearfe.machine.herringbone import pitted_helical
@@ -51,8 +51,8 @@ def test_helical_pair_of_the_article():
     mesh = machine.meshes[0]
     assert_allclose(mesh.cycles() / mesh.frequency, 0.024, rtol=1e-6, err_msg="S3: interval of impacts")
     loss = ellipse_loss(pair, pits)(np.arange(0, 2.8, 0.001))
-    slope = math.tan(base_helix(pinion)) * math.sqrt(pair.pitch_radius_1**2 - pinion.r_b**2) / pinion.r_b
-    chord = 10.0 * 2.0 / math.hypot(10.0 * slope, 2.0) / math.cos(base_helix(pinion))  # through the centre
+    slope = math.tan(abs(pinion.beta_b)) * math.sqrt(pair.pitch_radius_1**2 - pinion.r_b**2) / pinion.r_b
+    chord = 10.0 * 2.0 / math.hypot(10.0 * slope, 2.0) / math.cos(pinion.beta_b)  # through the centre
     assert_allclose(loss.max(), chord, rtol=1e-3)
     assert mesh.at_phase(np.arange(0, 3, 0.01)).min() < line_cycle(pair, 1.0).k.min() * mesh.stiffness.k.max()
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.scene.load import scene_names
-from gearfe.stiffness.curve_file import written
 from geometry.pair.gear_pair import GearPair
 
 from ..shared.places import PAGES, TABLES

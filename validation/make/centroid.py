@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.signal import indicators as ind
-from gearfe.stiffness.curve_file import written
 
 from ..shared.places import PAGES
 

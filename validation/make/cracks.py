@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 from geometry.damage.crack import start_arc
 from geometry.tooth.profile import cartesian, root_curve
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.machine.gear_mesh import Samples, cycle_table
 from gearfe.machine.herringbone import herringbone_planetary, pitted_helical
 from gearfe.machine.stages import pitted_planetary
 from gearfe.motion.simulate import simulate
-from gearfe.stiffness.curve_file import written
 
 from ..shared import machine
 from ..shared.places import PAGES

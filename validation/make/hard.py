@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from ..shared import machine
 from ..shared.places import PAGES

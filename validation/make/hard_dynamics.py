@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
 from gearfe.machine.layout import Body
 from gearfe.machine.stages import disc, gear_pair, single_mesh
@@ -16,7 +17,6 @@ from gearfe.machine.tables import natural_frequencies
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import steady_state
 from gearfe.motion.step_control import chosen_step, difference
-from gearfe.stiffness.curve_file import written
 
 from ..shared import machine
 from ..shared.places import PAGES

@@ -80,17 +80,13 @@ def impact_period():
 
 def hertz():
     """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
-    from gearfe.machine.contact_cycle import base_helix
-
-    radii = pair().curvature_radii(pair().pitch_phase) / np.cos(base_helix(pair().gear_1))
+    radii = pair().curvature_radii(pair().pitch_phase) / np.cos(pair().gear_1.beta_b)
     return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
 
 
 def contact_ratios():
     """Transverse, overlap and total contact ratio."""
-    from gearfe.machine.contact_cycle import overlap_ratio
-
-    over = overlap_ratio(pair(), min(pair().gear_1.b, pair().gear_2.b))
+    over = pair().eps_beta
     return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
 
 

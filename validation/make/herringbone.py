@@ -6,8 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.scene.stored import read_curves, stored_file, write_curves
-from gearfe.stiffness.curve_file import written
 from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
 from ..shared import machine

@@ -7,7 +7,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 from gearfe.stiffness.inputs import by_gear, overlap
 from gearfe.stress.holed import pressed_tooth
 

@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.scene import verdicts
-from gearfe.stiffness.curve_file import written
 
 from ..shared import places, table_rows
 

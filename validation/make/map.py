@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 from gearfe.studies.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
 from ..shared import machine

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 from geometry.damage.pit import pit_row
 
 from ..shared import machine

@@ -6,8 +6,8 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.scene.load import scene_names
-from gearfe.stiffness.curve_file import written
 from gearfe.stress.render import render_contact, render_stress
 
 from ..shared import machine

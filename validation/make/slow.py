@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from ..shared import machine
 from ..shared.places import PAGES, ROOT

@@ -14,7 +14,7 @@ import numpy as np
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
 from gearfe.energy.ritz import solid as ritz3d
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 from geometry.damage.pit import pit_row
 
 from ..shared import machine

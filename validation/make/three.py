@@ -11,8 +11,8 @@ import gearfe as gf
 from gearfe.elements import fe3d
 from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
+from gearfe.files import written
 from gearfe.flexibility import solid as flexibility3d
-from gearfe.stiffness.curve_file import written
 
 from ..shared import machine
 from ..shared.places import PAGES

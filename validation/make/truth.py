@@ -13,7 +13,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.elements.elasticity import Body
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from ..shared import machine, reference
 from ..shared.places import PAGES, TABLES

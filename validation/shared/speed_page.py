@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from .places import PAGES, TABLES
 

@@ -2,8 +2,8 @@
 
 import csv
 
+from gearfe.files import written
 from gearfe.scene.verdicts import COLUMNS, Row
-from gearfe.stiffness.curve_file import written
 
 from .places import TABLES
 

@@ -9,8 +9,8 @@ from geometry.damage.crack import check_apart, check_through
 from geometry.damage.pit import check_pits
 from geometry.tooth.profile import flank
 
-from ...contact.plane import Solved
 from ...flexibility.hertz import linear_hertz, palmgren_line, weber_line
+from ...flexibility.solved import Solved
 from . import published
 from .beam import load_angle
 from .integrals import flank_edges

@@ -1,4 +1,4 @@
-"""Where along the width the pairs touch: quadrature stations on the contact lines of spur, helical and herringbone gears."""
+"""Slices of the tooth pairs along their contact lines: places and weights of an exact integral over the width."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -6,10 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from geometry.damage.pit import crossing
-from geometry.pair.lines import common_width
+from geometry.pair.lines import covered, halves
 
-FACES = ("spur", "helical", "herringbone")
 RULES = {False: leggauss(1), True: leggauss(24)}
 SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
 
@@ -41,12 +39,8 @@ def faces(pair, face, groove=0.0):
     mirrored halves left and right of a relief groove of width `groove` [mm] in the middle, whose outer ends touch first; each
     is a helical gear of width ``(b - groove) / 2``.
     """
-    width = common_width(pair, face, groove, FACES)
-    twist = abs(np.tan(pair.gear_1.beta_b)) / pair.p_bt
-    if face == "herringbone":
-        half = (width - groove) / 2
-        return [(0.0, half, twist * half), (width, width - half, twist * half)]
-    return [(0.0, width, 0.0 if face == "spur" else twist * width)]
+    twist = 0.0 if face == "spur" else abs(np.tan(pair.gear_1.beta_b)) / pair.p_bt
+    return [(first, last, twist * abs(last - first)) for first, last in halves(pair, face, groove)]
 
 
 def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
@@ -84,13 +78,11 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
         i, j = np.nonzero(np.isfinite(found.gap))
         whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
         return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size))
-    rows = []
+    rows, taken = [], _taken(pair, phase, order, pits, bands)
     for i, p in enumerate(phase):
         for j, number in enumerate(order):
-            own = [[q for q in flanks[0] if (q.tooth - number) % pair.gear_1.z == 0]]
-            own.append([q for q in flanks[1] if (q.tooth + number) % pair.gear_2.z == 0])
-            for band in bands:
-                found = _line(pair, p + number, own, band, lost, edges.get(number, ()))
+            for k, band in enumerate(bands):
+                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()))
                 rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
     table = np.concatenate(rows) if rows else np.zeros((0, 5))
     return Stations(
@@ -104,7 +96,21 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
     )
 
 
-def _line(pair, place, pits, band, lost, edges):
+def _taken(pair, phase, order, pits, bands):
+    """Parts of the bands that pits take from the contact line of a pair at a phase, by number of phase, pair and band."""
+    i, j, k = (index.ravel() for index in np.indices((phase.size, order.size, len(bands))))
+    first, last, lag = np.array(bands).T
+    place = phase[i] + order[j]
+    roll = pair.path[0] + np.stack([place, place - lag[k]], axis=1) * pair.p_bt
+    z = np.stack([first, last], axis=1)[k]
+    piece, _, start, end = covered(pair, pits, order[j], (roll, pair.mate_roll(roll)), z)
+    out = {}
+    for n, s, e in zip(piece.tolist(), start.tolist(), end.tolist(), strict=True):
+        out.setdefault((int(i[n]), int(j[n]), int(k[n])), []).append((s, e))
+    return out
+
+
+def _line(pair, place, taken, band, lost, edges):
     """Stations (pinion roll, weight, touching) of one pair whose slice at the first end is at phase `place`."""
     first, last, lag = band
     slack = 1e-9
@@ -118,11 +124,11 @@ def _line(pair, place, pits, band, lost, edges):
     start = pair.path[0]
     roll = np.array([start + place * pair.p_bt, start + (place - lag) * pair.p_bt])
     width = min(pair.gear_1.b, pair.gear_2.b)
-    covered = _covered(pair, pits, roll, np.array([first, last]), (low, high), lag)
+    taken = [(max(a, low), min(b, high)) for a, b in taken if min(b, high) > max(a, low)]
     kinks = [(roll[0] - r) / (roll[0] - roll[1]) for r in edges] if lag > 0 else []
-    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in covered for t in part)])
+    places = np.unique([low, high, *(t for t in kinks if low < t < high), *(t for part in taken for t in part)])
     parts = list(pairwise(places))
-    under = [any(a <= (s + e) / 2 <= b for a, b in covered) for s, e in parts]
+    under = [any(a <= (s + e) / 2 <= b for a, b in taken) for s, e in parts]
     left = sum(e - s for (s, e), gone in zip(parts, under, strict=True) if not gone) / (high - low)
     if left < 1e-12:
         return []
@@ -135,13 +141,3 @@ def _line(pair, place, pits, band, lost, edges):
         at = roll[0] + (roll[1] - roll[0]) * t
         out.append(np.column_stack([at, share * (e - s) / 2 * weights, np.full(t.size, left if lost == "hertz" else 1.0)]))
     return out
-
-
-def _covered(pair, pits, roll, z, limits, lag):
-    """Ranges of t, between `limits`, of a contact line that the pits of both gears cover; they may overlap."""
-    out = []
-    for gear, found, at in ((pair.gear_1, pits[0], roll), (pair.gear_2, pits[1], pair.mate_roll(roll))):
-        offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
-        for pit in found:
-            out += [(max(a, limits[0]), min(b, limits[1])) for a, b in crossing(gear, pit, at, z + offset)]
-    return [(a, b) for a, b in out if b > a]

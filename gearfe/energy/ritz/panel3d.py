@@ -68,7 +68,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
     body = body_of(numbers, order, np.concatenate([load, apart], axis=2), sides, chain(sector.held), seams)
-    body.section = _section(sector, order, material, 0.0 if plane else math.tan(gear.beta) / gear.r)
+    body.section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
     body.axial = along
     kind = np.zeros(body.size.size, dtype=int)  # which functions along the width
     for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):

@@ -66,14 +66,14 @@ def test_pits_are_cut_along_the_normal_of_the_helicoid(beta, side):
 
     def surface(roll, z):
         xy = cartesian(*flank(gear, roll)) * [sign, 1]
-        return holes._twisted(np.array([*xy, z]), holes.twist_rate(gear))
+        return holes._twisted(np.array([*xy, z]), gear.twist_rate)
 
     roll, step = math.sqrt(one.radius**2 - gear.r_b**2), 1e-5
     along = [surface(roll + a, one.z + b) - surface(roll - a, one.z - b) for a, b in ((step, 0), (0, step))]
     normal = np.cross(*along)
-    normal *= np.sign(normal[0] * sign * math.cos(holes.twist_rate(gear) * one.z)) / np.linalg.norm(normal)
+    normal *= np.sign(normal[0] * sign * math.cos(gear.twist_rate * one.z)) / np.linalg.norm(normal)
     centre, _, push, _ = pit_frame(gear, one)
-    ends = [holes._twisted(centre + step * k * push, holes.twist_rate(gear)) for k in (-1, 1)]
+    ends = [holes._twisted(centre + step * k * push, gear.twist_rate) for k in (-1, 1)]
     assert_allclose((ends[1] - ends[0]) / (2 * step), -one.depth * normal, atol=1e-8)
 
 

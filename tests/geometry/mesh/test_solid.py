@@ -12,7 +12,7 @@ import gearfe as gf
 from gearfe.elements.hexahedron import gauss, shapes, slopes_at
 from geometry.damage.crack import crack_path
 from geometry.mesh.quads import Cut, jacobian, quad_section
-from geometry.mesh.solid import HEX, extrude, layers, solid, twist_rate
+from geometry.mesh.solid import HEX, extrude, layers, solid
 from geometry.tooth.profile import cartesian, fillet_length, flank, root_curve, root_half_angle
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -94,7 +94,7 @@ def test_twist_keeps_the_volume_and_puts_nodes_on_the_helicoid(healthy):
     assert_allclose(volume(healthy), volume(straight), rtol=2e-3)
     assert volume(flat) != pytest.approx(volume(healthy), rel=1e-3), "a helical gear of the same normal module is larger"
     rate = math.tan(HELICAL.beta) / HELICAL.r
-    assert twist_rate(HELICAL) == pytest.approx(rate)
+    assert HELICAL.twist_rate == pytest.approx(rate)
     nodes = healthy.faces["flank 1"]
     x, y, z = healthy.points[:, nodes]
     back = np.arctan2(x, y) - rate * z - 2 * math.pi / 12
@@ -142,7 +142,7 @@ CRACKS = {
 def test_cracks_open_on_element_faces_without_losing_volume(name):
     gear, cracks = CRACKS[name]
     made = solid(gear, layer=3.0, loaded=(0,), cracks=cracks, sizes=COARSE)
-    whole = extrude(made.section, made.levels, twist_rate(gear))
+    whole = extrude(made.section, made.levels, gear.twist_rate)
     assert volume(made) == pytest.approx(volume(whole), rel=1e-12)
     assert made.points.shape[1] > whole.points.shape[1]
     used = np.zeros(made.points.shape[1], dtype=bool)

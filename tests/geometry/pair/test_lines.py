@@ -161,7 +161,8 @@ def test_a_pit_over_the_whole_line_leaves_nothing():
 def test_bad_faces_are_refused():
     pair = helical()
     for numbers, message in (
-        ({"face": "spur"}, "must be one of"),
+        ({"face": "worm"}, "must be one of"),
+        ({"face": "spur"}, "have a helix angle"),
         ({"groove": 2.0}, "only face = 'herringbone'"),
         ({"face": "herringbone", "groove": 30.0}, "between 0 and the face width"),
     ):

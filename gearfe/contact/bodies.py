@@ -1,4 +1,4 @@
-"""The bodies of a pair of finite width: each gear, or each half of it, as its flexibility sees it, and what lies between loads.
+"""The elastic bodies behind the contact lines: both gears, or their halves, and the flexibility between the cells on them.
 
 Heights count from the end that touches first: the pinion's roll length falls with them, so its beta is negative. The wheel's, in
 its own frame, is the opposite one; also a ring's, whose frame is mirrored.
@@ -39,9 +39,9 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
     cracks : (tuple, tuple)
         Of pinion and wheel.
     bands : list of (float, float)
-        See `lines3d.bands_of`.
+        See `geometry.pair.lines.bands_of`.
     face, groove
-        As in `contact3d.pair_stiffness3d`.
+        As in `gearfe.contact.solid.pair_stiffness3d`.
     flexible : callable
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
 
@@ -64,7 +64,7 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
 
 
 def between(cells, bodies):
-    """Approach ``(n, n)`` of `lines3d.Cells` per unit normal force on each, half-space left out [mm/N]."""
+    """Approach ``(n, n)`` of `Cells` per unit normal force on each, half-space left out [mm/N]."""
     out = np.zeros((cells.z.size,) * 2)
     for half in np.unique(cells.half):
         at = np.flatnonzero(cells.half == half)

@@ -1,0 +1,251 @@
+"""Files: `FORMATS` says which there are and what each can hold; what is written is complete, or not there.
+
+A curve or a response becomes a `Content`, which every format of numbers can hold; pictures and fields are drawn by their
+libraries into the path that `written` gives. Readers give lines of text or arrays by name.
+"""
+
+import contextlib
+import json
+import os
+import tempfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class Content:
+    """Numbers to be written.
+
+    Attributes
+    ----------
+    title : str
+        First line of a text table, ``gearfe stiffness curve, version 1``.
+    columns : dict of str to ndarray, shape (n,)
+        Of a text table, by ``name [unit]``.
+    arrays : dict of str to ndarray
+        The same for all other formats, by name.
+    meta : dict
+        All that is needed to repeat it; JSON.
+    units : dict of str to str
+        Of the arrays, in JSON files.
+    """
+
+    title: str
+    columns: dict
+    arrays: dict
+    meta: dict
+    units: dict = field(default_factory=dict)
+
+
+@contextlib.contextmanager
+def written(path):
+    """Path of a temporary file beside `path` that replaces it when the block ends without an error.
+
+    Raises
+    ------
+    ValueError
+        If the folder does not exist or cannot be written.
+    """
+    name = _beside(path)
+    try:
+        yield name
+        umask = os.umask(0)
+        os.umask(umask)
+        os.chmod(name, 0o666 & ~umask)
+        os.replace(name, path)
+    except OSError as error:
+        raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(name)
+
+
+def _beside(path):
+    """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
+    path = Path(path)
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix.lower())
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        told = getattr(error, "strerror", None) or error
+        raise ValueError(f"cannot write {path}: {told}; give an existing, writable folder") from error
+    os.close(handle)
+    return name
+
+
+def check_output(path, kind):
+    """Raise ValueError if `path` cannot be written later: to be called before work begins.
+
+    A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
+
+    Parameters
+    ----------
+    path : str or path
+    kind : str
+        What will be written, one of those that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``deck``.
+
+    Raises
+    ------
+    ValueError
+        If the name is empty, a folder, or has a suffix that holds no such content; if its folder is not there or not writable.
+    """
+    if not str(path):
+        raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
+    suffix_of(path, kind)
+    if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
+        raise ValueError(f"cannot write {path}: it is a folder; give the name of a file")
+    os.unlink(_beside(path))
+
+
+def suffixes(kind, *, reading=False):
+    """Suffixes of the files that hold what `kind` says."""
+    found = [suffix for suffix, row in FORMATS.items() if kind in (row.reads if reading else row.writes)]
+    if not found:
+        raise ValueError(f"kind = {kind!r}, but no file holds such a thing; see gearfe.files.FORMATS")
+    return found
+
+
+def suffix_of(path, kind, *, reading=False):
+    """Suffix of `path` in small letters.
+
+    Raises
+    ------
+    ValueError
+        If no such file holds what `kind` says; the message lists those that do.
+    """
+    suffix, known = Path(path).suffix.lower(), suffixes(kind, reading=reading)
+    if suffix not in known:
+        raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
+    return suffix
+
+
+def save(path, kind, content):
+    """Write a `Content` in the format that the suffix of `path` asks for."""
+    save_as(suffix_of(path, kind), path, content)
+
+
+def save_as(suffix, path, content):
+    """Write a `Content` in the format of a suffix, whatever that of `path`."""
+    with written(path) as name:
+        FORMATS[suffix].write(name, content)
+
+
+def save_figure(figure, path, dpi):
+    """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
+    if path is not None:
+        suffix_of(path, "picture")
+        with written(path) as name:
+            figure.savefig(name, dpi=dpi)
+    return figure
+
+
+def read(path, kind):
+    """What stands in a file: its lines if it is text, else its arrays by name.
+
+    Raises
+    ------
+    ValueError
+        If its suffix holds no such content, or it cannot be read or is no file of its format.
+    """
+    return FORMATS[suffix_of(path, kind, reading=True)].read(path)
+
+
+def write_csv(name, content):
+    """Write a table of repr-exact numbers under comment lines with title and meta data (JSON)."""
+    columns = [np.asarray(values, dtype=float).tolist() for values in content.columns.values()]
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(f"# {content.title}\n# meta: {json.dumps(content.meta)}\n{','.join(content.columns)}\n")
+        for row in zip(*columns, strict=True):
+            file.write(",".join(map(repr, row)) + "\n")
+
+
+def write_npz(name, content):
+    """Write a numpy archive; ``meta`` is a JSON string."""
+    with open(name, "wb") as file:
+        np.savez(file, **content.arrays, meta=json.dumps(content.meta))
+
+
+def write_mat(name, content):
+    """Write a MATLAB 5 file; ``meta`` is a JSON string (``jsondecode`` reads it), rows of text are cell arrays."""
+    from scipy.io import savemat
+
+    arrays = {key: value.astype(object) if value.dtype.kind == "U" else value for key, value in content.arrays.items()}
+    savemat(name, arrays | {"meta": json.dumps(content.meta)}, appendmat=False, oned_as="column")
+
+
+def write_json(name, content):
+    """Write JSON: arrays as lists (nan as null), units beside them."""
+    data = {key: json.loads(json.dumps(value.tolist()).replace("NaN", "null")) for key, value in content.arrays.items()}
+    with open(name, "w", encoding="utf-8") as file:
+        json.dump({"units": {key: content.units[key] for key in data}, **data, "meta": content.meta}, file)
+
+
+def read_text(path):
+    """Lines of a text file in UTF-8."""
+    try:
+        return Path(path).read_text(encoding="utf-8-sig").splitlines()
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is not text in UTF-8: export it as CSV in UTF-8, with um for micrometres") from error
+
+
+def read_npz(path):
+    """Arrays of a numpy archive, by name; nothing is unpickled."""
+    from zipfile import BadZipFile
+
+    with _opened(path) as file:
+        try:
+            with np.load(file, allow_pickle=False) as archive:
+                return {name: archive[name] for name in archive.files}
+        except (BadZipFile, ValueError, TypeError, EOFError, zlib.error) as error:
+            raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
+
+
+def read_mat(path):
+    """Variables of a MATLAB file of version 7 or older, by name."""
+    from scipy.io import loadmat
+    from scipy.io.matlab import MatReadError
+
+    with _opened(path) as file:
+        try:
+            return {name: value for name, value in loadmat(file).items() if not name.startswith("__")}
+        except NotImplementedError as error:
+            raise ValueError(f"{path} is a MATLAB file of version 7.3 (HDF5): save it with '-v7'") from error
+        except (MatReadError, ValueError, TypeError, EOFError, zlib.error) as error:
+            raise ValueError(f"{path} is not a MATLAB file: {error}") from error
+
+
+@contextlib.contextmanager
+def _opened(path):
+    try:
+        with open(path, "rb") as file:
+            yield file
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+
+
+class Format(NamedTuple):
+    """What files of a suffix hold, and what writes and reads them; None where the library that draws does."""
+
+    writes: tuple = ()
+    reads: tuple = ()
+    write: Callable | None = None
+    read: Callable | None = None
+
+
+FORMATS = {
+    ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
+    ".txt": Format((), ("signal",), None, read_text),
+    ".npz": Format(("curve", "response"), ("signal",), write_npz, read_npz),
+    ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
+    ".json": Format(("curve",), (), write_json, None),
+    ".png": Format(("picture", "stress")),
+    **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
+    ".vtu": Format(("stress",)),
+    ".inp": Format(("deck",)),
+}
