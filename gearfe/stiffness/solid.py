@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from ..contact.solid import pair_stiffness3d
+from ..flexibility.solved import solved_gears
 from .cache import solved_solid
 from .curve import StiffnessCurve
 
@@ -31,7 +32,9 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
     error : bool
         Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
         Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
-    cache, tell
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    tell
         Of the finite elements, see `gearfe.stiffness.cache.solved_solid`.
 
     Returns
@@ -40,7 +43,8 @@ def wide_curve(pair, force, materials, phase, cracks, pits, meta, error, *, cach
         `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
-    options = {"pits": pits, "cracks": cracks, **{name: meta[name] for name in ("face", "groove", "extended")}}
+    cache = solved_gears(cache)
+    options = {"pits": pits, "cracks": cracks, "cache": cache, **{name: meta[name] for name in ("face", "groove", "extended")}}
     brute = meta["method"] == "fe3d"
     if brute:
         model = partial(solved_solid, refine=meta["refine"], cache=cache, tell=tell)

@@ -16,6 +16,7 @@ from ..contact.plane import Mesh
 from ..energy.closed import coupled
 from ..energy.closed.plain_sum import plain_sum
 from ..energy.ritz import plane as ritz
+from ..flexibility.solved import solved_gears
 from ..material import check_state
 from .cache import solved_gear
 from .curve import StiffnessCurve
@@ -102,7 +103,8 @@ def mesh_stiffness(
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
         `estimate` and `gearfe.stiffness.solid.wide_curve`).
     cache : bool
-        Reuse a gear solved before in this process; for ``fe`` and ``fe3d`` also an earlier one (see `gearfe.stiffness.cache`).
+        Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
+        `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
     tell : callable, optional
         For ``fe3d``: gets a line of text before each gear is solved, with the solver and the expected memory.
 
@@ -129,6 +131,7 @@ def mesh_stiffness(
     for value in forces:
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
+    cache = solved_gears(cache)
     materials = two_materials(material)
     check_state(state)
     cracks, pits = by_gear(pair, damage)
@@ -146,7 +149,7 @@ def mesh_stiffness(
         details["outside"] = [asdict(v) for v in details["outside"]]
     elif method == "coupled":
         options = {"state": state}
-        solve, details = _coupled(pair, materials, phase, state)
+        solve, details = _coupled(pair, materials, phase, state, cache)
     elif method in WIDE:
         options = {"face": face, "groove": groove, "refine": float(refine), "extended": bool(extended)}
         options |= {"order": order} if method == "ritz3d" else {}
@@ -202,9 +205,7 @@ def _coarser(method, refine, order):
 
 def _converged(pair, materials, phase, extended, damage, method, cache, **options):
     started = time.perf_counter()
-    solved = partial(solved_gear, cache=cache) if method == "fe" else ritz.flexibility
-    if method == "ritz" and not cache:
-        ritz.clear()
+    solved = partial(solved_gear if method == "fe" else ritz.flexibility, cache=cache)
     flexible = [
         solved(gear, material, cracks, neighbours=math.ceil(pair.eps_alpha), **options)
         for gear, material, cracks in zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
@@ -213,10 +214,10 @@ def _converged(pair, materials, phase, extended, damage, method, cache, **option
     return mesh.solve, {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
 
 
-def _coupled(pair, materials, phase, state):
+def _coupled(pair, materials, phase, state, cache):
     neighbours = math.ceil(pair.eps_alpha)
     flexible = [
-        coupled.flexibility(gear, material, neighbours=neighbours, state=state)
+        coupled.flexibility(gear, material, neighbours=neighbours, state=state, cache=cache)
         for gear, material in zip((pair.gear_1, pair.gear_2), materials, strict=True)
     ]
     return Mesh(pair, materials, flexible, phase, extended=False, state=state).solve, {"extended": False}
