@@ -69,7 +69,7 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         few = matrix[np.ix_(able, able)], gap[able], load, kernel, [end[able] for end in ends], line[able], radius[able], modulus
         options = {
             "block": None if block is None else block[able],
-            "local": None if local is None else lambda along: local(_spread(along, able, gap.size))[able],
+            "local": None if local is None else lambda along: local(_spread(along, able, gap.size, along.mean()))[able],
             "faces": None if faces is None else (faces[0][:, able], *faces[1:]),
         }
         found, approach = line_cells(*few, **options)
@@ -115,9 +115,9 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
 
 
-def _spread(values, places, size):
-    """Values at their places among `size`, zero elsewhere."""
-    out = np.zeros(size)
+def _spread(values, places, size, others=0.0):
+    """Values at their places among `size`, and what `others` have."""
+    out = np.full(size, float(others))
     out[places] = values
     return out
 
