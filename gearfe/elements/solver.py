@@ -138,11 +138,13 @@ def factor(matrix, plan_=None):
 
 
 def _cholmod(lower):
-    from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+    from sksparse import cholmod
 
     try:
-        factored = cholesky(_full(lower), mode="supernodal", ordering_method="metis")
-    except CholmodNotPositiveDefiniteError as error:
+        if hasattr(cholmod, "cho_factor"):  # scikit-sparse 0.5: no half solutions, `factor` adds the gram of whole ones
+            return cholmod.cho_factor(lower, lower=True, order="metis").solve
+        factored = cholmod.cholesky(_full(lower), mode="supernodal", ordering_method="metis")
+    except cholmod.CholmodNotPositiveDefiniteError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):

@@ -11,7 +11,7 @@ from scipy.interpolate import BivariateSpline, CubicSpline
 from geometry.tooth.gear import Gear
 
 from .plane import Flexibility, SeamFaces, TipHats
-from .solid import Faces, Flexibility3D
+from .solid import PLACES, Faces, Flexibility3D
 
 CUBIC = 3  # degree of all splines
 
@@ -84,7 +84,7 @@ def solid_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility3D:
         seam = Faces(opening, influence)
     degree = tree.whole("degree")
     size = next(iter(near.values())).shape if near else (0, 0)
-    _check(0 < size[0] == size[1] and size[0] % (degree + 1) == 0, "the degree along the width")
+    _check(size == (PLACES * (degree + 1),) * 2, "the degree along the width")
     _check(all(value.shape == size for value in (*near.values(), *far.values())), "teeth")
     width, kernel = (float(tree.take(name, 0)) for name in ("width", "kernel"))
     healthy = tree.healthy(gear, solid_from)

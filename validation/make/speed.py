@@ -68,8 +68,8 @@ def _about(truth, per_phase, per_load):
         "0.03 % away from it is mostly a bias of the reference: its hat pressures are as wide as its own edges and miss about "
         "0.5 % of the local "
         "coefficient at any refinement; with hats twice as wide (`gearfe.flexibility.hats.SPAN`) the two come together. "
-        f"Each further phase of `ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms, that "
-        f"is {1e3 * per_load / 64:.2f} ms per phase and load."
+        f"Each further phase of `ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms, "
+        f"that is {1e3 * per_load / 64:.2f} ms per phase and load."
     )
 
 
