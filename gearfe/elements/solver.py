@@ -7,7 +7,7 @@ import weakref
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, tril
+from scipy.sparse import csc_array, csc_matrix, csr_matrix, tril
 from scipy.sparse.linalg import splu
 
 SOLVERS = {"cholmod": "sksparse", "pardiso": "pypardiso", "superlu": "scipy"}  # in the order of preference, by package
@@ -140,9 +140,9 @@ def factor(matrix, plan_=None):
 def _cholmod(lower):
     from sksparse import cholmod
 
+    if hasattr(cholmod, "cho_factor"):
+        return _cholmod_05(lower, cholmod)
     try:
-        if hasattr(cholmod, "cho_factor"):  # scikit-sparse 0.5: no half solutions, `factor` adds the gram of whole ones
-            return cholmod.cho_factor(lower, lower=True, order="metis").solve
         factored = cholmod.cholesky(_full(lower), mode="supernodal", ordering_method="metis")
     except cholmod.CholmodNotPositiveDefiniteError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
@@ -156,6 +156,15 @@ def _cholmod(lower):
 
     solve.gram = gram
     return solve
+
+
+def _cholmod_05(lower, cholmod):
+    """By scikit-sparse 0.5, whose functions have other names; `factor` adds ``gram`` by whole solutions."""
+    try:
+        factored = cholmod.cho_factor(csc_array(lower), lower=True, order="metis")
+    except cholmod.CholmodNotPositiveDefiniteError as error:
+        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
+    return lambda rhs: factored.solve(np.asfortranarray(rhs, dtype=float))
 
 
 def _pardiso(lower):
