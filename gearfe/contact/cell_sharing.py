@@ -66,10 +66,14 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
     if able.size == 0:
         raise RuntimeError("no cell can touch: every gap is infinite")
     if able.size < gap.size:
-        force = np.zeros(gap.size)
         few = matrix[np.ix_(able, able)], gap[able], load, kernel, [end[able] for end in ends], line[able], radius[able], modulus
-        force[able], approach = line_cells(*few)
-        return force, approach
+        options = {
+            "block": None if block is None else block[able],
+            "local": None if local is None else lambda along: local(_spread(along, able, gap.size, along.mean()))[able],
+            "faces": None if faces is None else (faces[0][:, able], *faces[1:]),
+        }
+        found, approach = line_cells(*few, **options)
+        return np.append(_spread(found[: able.size], able, gap.size), found[able.size :]), approach
     n, length = gap.size, ends[1] - ends[0]
     force = load * length / length.sum()
     mean = smoother(ends, line, SMOOTH * half_width(load / length.sum(), radius.mean(), modulus))
@@ -109,6 +113,13 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
         if not active[:n].any():
             active[:n] = True
     raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
+
+
+def _spread(values, places, size, others=0.0):
+    """Values at their places among `size`, and what `others` have."""
+    out = np.full(size, float(others))
+    out[places] = values
+    return out
 
 
 def _whole(matrix, kernel, ends, line, x):

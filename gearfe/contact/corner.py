@@ -8,23 +8,23 @@ transverse section is taken for the normal one: widths and loads there differ by
 """
 
 import math
-from functools import lru_cache
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from geometry.tooth.profile import arc_at
 
-from ..energy.ritz import plane as ritz
-from ..energy.ritz import solid as ritz3d
+from ..energy.ritz.plane import flexibility
+from ..energy.ritz.solid import plane_hats
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
+from ..flexibility.solved import solved_gears
 from .plane import CORNER, Mesh
 from .sharing import share
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 PLACES = 13  # abscissae of the table at each end of the path
-TABLES = 16  # kept
 
 
 class CornerLaw:
@@ -38,9 +38,11 @@ class CornerLaw:
         Even load [N/mm] of the width.
     further : (float, float)
         How far before the start and after the end of the path contact is looked for [mm].
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     """
 
-    def __init__(self, pair, materials, line_load, further):
+    def __init__(self, pair, materials, line_load, further, *, cache=True):
         start, end = pair.path
         modulus = contact_modulus(materials)
         radius = [abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal)))) for nominal in (start, end)]
@@ -50,7 +52,11 @@ class CornerLaw:
         load = 2.0 ** round(math.log2(line_load))  # so that loads alike share a table
         near = [1.5 * float(half_width(load, r, modulus)) for r in radius]
         away = [2.0 ** math.ceil(math.log2(max(a, n))) for a, n in zip(further, near, strict=True)]
-        self._tables = [_table(pair, materials, load, corner, (-n, a)) for corner, n, a in zip((2, 1), near, away, strict=True)]
+        kept, case = solved_gears(cache), (pair, materials, load)
+        self._tables = [
+            kept.get(("corner", *case, corner, -n, a), partial(_table, *case, corner, (-n, a), kept))
+            for corner, n, a in zip((2, 1), near, away, strict=True)
+        ]
 
     def ends(self, pair, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
@@ -72,10 +78,10 @@ class CornerLaw:
         return out
 
 
-@lru_cache(maxsize=TABLES)
-def _table(pair, materials, line_load, corner, span):
+def _table(pair, materials, line_load, corner, span, cache):
     """Spline over the logarithm of the line load and the abscissa beyond the path, with the limits of both."""
-    bodies = [ritz.flexibility(g, m, neighbours=1) for g, m in zip((pair.gear_1, pair.gear_2), materials, strict=True)]
+    gears = list(zip((pair.gear_1, pair.gear_2), materials, strict=True))
+    bodies = [flexibility(gear, material, neighbours=1, cache=cache) for gear, material in gears]
     low, high = span
     away = low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5
     away = np.unique(np.append(away, 0.0))
@@ -88,9 +94,9 @@ def _table(pair, materials, line_load, corner, span):
     out = np.zeros((loads.size, away.size))
     there = np.isfinite(mesh.found.gap[:, column])
     for i in np.flatnonzero(there).tolist():
-        at = mesh._contacts(i, np.array([column]), np.array([corner]))
+        at = mesh.contacts_at(i, np.array([column]), np.array([corner]))
         rolls = mesh.found.roll_1[i, column], mesh.found.roll_2[i, column]
-        smooth = sum(_read(g, m, r) for g, m, r in zip((pair.gear_1, pair.gear_2), materials, rolls, strict=True))
+        smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
         radius = mesh.radius[i, column]
         for j, load in enumerate(loads.tolist()):
             closing = share(at["flexibility"], at["gap"], load)[1] - mesh.found.gap[i, column]
@@ -99,7 +105,7 @@ def _table(pair, materials, line_load, corner, span):
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 
 
-def _read(gear, material, roll):
-    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `gearfe.energy.ritz.solid` carry it."""
+def _read(gear, material, roll, cache):
+    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `ritz3d` carry it."""
     row = carry(gear, np.array([roll]))[0]
-    return float(row @ ritz3d.plane_hats(gear, material) @ row)
+    return float(row @ plane_hats(gear, material, cache=cache) @ row)

@@ -30,9 +30,11 @@ class PhaseContact:
     pits : (sequence of Pit, sequence of Pit)
     face, groove, step, extended
         As in `gearfe.contact.solid.pair_stiffness3d`.
+    cache
+        As in `gearfe.contact.corner.CornerLaw`.
     """
 
-    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended):
+    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, cache=True):
         self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
         self.bands = bands_of(pair, face, groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
@@ -42,7 +44,8 @@ class PhaseContact:
         # first guess of the approach: the half-plane's logarithm over the size of a tooth, and as much for the tooth
         self.reach = 40 / (math.pi * self.modulus) * force / self.width
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
-        self.law = CornerLaw(pair, materials, force / self.width, self._further(2 * self.reach)) if extended else None
+        case = (pair, materials, force / self.width, self._further(2 * self.reach))
+        self.law = CornerLaw(*case, cache=cache) if extended else None
 
     @property
     def neighbours(self):

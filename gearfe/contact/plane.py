@@ -10,7 +10,7 @@ from scipy.linalg import block_diag
 from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
-from ..flexibility.solved import Solved
+from ..flexibility.section_contact import Solved
 from .sharing import line_contact, line_contacts
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
@@ -77,7 +77,7 @@ class Mesh:
         closed = []
         for i in np.flatnonzero(~done).tolist():
             line[i] = pressure[i] = 0.0
-            contacts = _within(self._contacts(i, np.flatnonzero(possible[i]), corner[i, possible[i]]), reach[i])
+            contacts = _within(self.contacts_at(i, np.flatnonzero(possible[i]), corner[i, possible[i]]), reach[i])
             force, approach[i], tangent[i] = self._share(contacts, line_load)
             if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)
@@ -136,8 +136,23 @@ class Mesh:
             corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def _contacts(self, i, near, corner):
-        """Flexibility, gap, logarithm coefficient, radius, pair column and crack opening of every unknown at phase i."""
+    def contacts_at(self, i, near, corner):
+        """Unknowns of the contact problem at one phase.
+
+        Parameters
+        ----------
+        i : int
+            Number of the phase.
+        near : ndarray of int
+            Columns of the pairs that may touch.
+        corner : ndarray of int
+            For each of them 0, or the gear (1, 2) whose tip corner it touches: then it is a row of hats.
+
+        Returns
+        -------
+        dict
+            ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
+        """
         key = i, tuple(near), tuple(corner)
         if key not in self._known:
             self._known[key] = self._built(i, near, corner)

@@ -14,6 +14,7 @@ import numpy as np
 from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
+from ..flexibility.solved import solved_gears
 from .bodies import bodies_of
 from .phase_contact import REACH, PhaseContact
 
@@ -59,6 +60,7 @@ def pair_stiffness3d(
     extended=True,
     error=False,
     model=None,
+    cache=True,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -96,6 +98,8 @@ def pair_stiffness3d(
         1 and an axial degree less by 2, or the mean of those over the phases if that is larger.
     model : callable, optional
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
@@ -116,13 +120,15 @@ def pair_stiffness3d(
     materials = material if isinstance(material, tuple) else (material, material)
     for gear, found in zip((pair.gear_1, pair.gear_2), pits, strict=True):
         check_pits(gear, found)
-    options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended}
+    cache = solved_gears(cache)
+    options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
     contact = PhaseContact(pair, force, materials, **options)
 
     def energy(order, less):
         def flexible(gear, own, found, neighbours):
             degree = (axial_degree(gear.b, gear.m_n) if axial is None else axial) - less
-            return flexibility3d(gear, own, found, neighbours=neighbours, order=order, axial=degree, refine=refine)
+            options = {"order": order, "axial": degree, "refine": refine, "cache": cache}
+            return flexibility3d(gear, own, found, neighbours=neighbours, **options)
 
         return flexible
 

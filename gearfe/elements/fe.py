@@ -19,15 +19,14 @@ from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import arc_at, flank_normal
 
+from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE, hat_knots
 from ..flexibility.hertz import half_plane, hat_logarithm
 from ..flexibility.plane import Flexibility, SeamFaces, TipHats
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
-SPAN = 2  # edges on either side of a hat's top
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
 # three next teeth, all other teeth
-EDGES = {"flank": 0.05, "tip": 0.0005, "low": 0.02, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
-TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
+EDGES = FLANK_EDGES | {"read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,9 +49,7 @@ def hats(section_, tooth, *, corner=False):
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = arc_at(gear, roll)
-    knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
-    if corner:
-        knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
+    knots = hat_knots(arc, corner=corner)
 
     def height(s):
         start, top, stop = knots[:, :, None, None]

@@ -24,7 +24,7 @@ def axial_modes(width, m_n):
 
 
 def solid_flexibility(
-    gear, material, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, solver=None, tell=None, healthy=None
+    gear, material, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, solver=None, tell=None, healthy=None, cache=True
 ):
     """Flexibility of a gear of finite width by finite elements of all of it.
 
@@ -46,6 +46,8 @@ def solid_flexibility(
         As in `gearfe.elements.fe3d.influence`.
     healthy : Flexibility3D, optional
         Of the gear without cracks; needed if there are `cracks`.
+    cache : bool or SolvedGears
+        Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
@@ -71,17 +73,17 @@ def solid_flexibility(
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
     whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
-    kept = _resolved(gear, material, whole[0, :, 0], degree, refine) if healthy is None else healthy.degree
+    kept = _resolved(gear, material, whole[0, :, 0], degree, refine, cache) if healthy is None else healthy.degree
     own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
     between = {(i, j): whole[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    return parted(gear, material, gear.b, kept, between, found.dofs, healthy)
+    return parted(gear, material, gear.b, kept, between, found.dofs, healthy, cache=cache)
 
 
-def _resolved(gear, material, own, degree, refine):
+def _resolved(gear, material, own, degree, refine, cache):
     """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
-        flat = half_space(material) * own_distance(gear, gear.b, kept)
+        flat = half_space(material) * own_distance(gear, gear.b, kept, cache=cache)
         least = eigh(own[np.ix_(at, at)], flat, eigvals_only=True)[0]
         if least >= RESOLVED:
             return kept

@@ -7,7 +7,7 @@ import weakref
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csc_matrix, csr_matrix, tril
+from scipy.sparse import csc_array, csc_matrix, csr_matrix, tril
 from scipy.sparse.linalg import splu
 
 SOLVERS = {"cholmod": "sksparse", "pardiso": "pypardiso", "superlu": "scipy"}  # in the order of preference, by package
@@ -138,11 +138,13 @@ def factor(matrix, plan_=None):
 
 
 def _cholmod(lower):
-    from sksparse.cholmod import CholmodNotPositiveDefiniteError, cholesky
+    from sksparse import cholmod
 
+    if hasattr(cholmod, "cho_factor"):
+        return _cholmod_05(lower, cholmod)
     try:
-        factored = cholesky(_full(lower), mode="supernodal", ordering_method="metis")
-    except CholmodNotPositiveDefiniteError as error:
+        factored = cholmod.cholesky(_full(lower), mode="supernodal", ordering_method="metis")
+    except cholmod.CholmodNotPositiveDefiniteError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs):
@@ -154,6 +156,15 @@ def _cholmod(lower):
 
     solve.gram = gram
     return solve
+
+
+def _cholmod_05(lower, cholmod):
+    """By scikit-sparse 0.5, whose functions have other names; `factor` adds ``gram`` by whole solutions."""
+    try:
+        factored = cholmod.cho_factor(csc_array(lower), lower=True, order="metis")
+    except cholmod.CholmodNotPositiveDefiniteError as error:
+        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
+    return lambda rhs: factored.solve(np.asfortranarray(rhs, dtype=float))
 
 
 def _pardiso(lower):

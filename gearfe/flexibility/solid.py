@@ -15,6 +15,7 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, roll_at_arc
 
 from .halfspace import half_space, hat_points, modes, patch_kernel
+from .solved import solved_gears
 
 PLACES = 8  # hats on each flank
 HAT = 0.4  # half their width [m_n]
@@ -128,7 +129,7 @@ def solved_teeth(gear, cracks, neighbours):
     return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
 
 
-def parted(gear, material, width, degree, influence, unknowns, healthy=None):
+def parted(gear, material, width, degree, influence, unknowns, healthy=None, *, cache=True):
     """`Flexibility3D` from the influence between patches.
 
     Parameters
@@ -144,12 +145,14 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     unknowns : int
     healthy : Flexibility3D, optional
         If the gear is cracked: of the gear without cracks.
+    cache : bool or SolvedGears
+        Where to look for `own_distance`, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
     Flexibility3D
     """
-    local = half_space(material) * own_distance(gear, width, degree)
+    local = half_space(material) * own_distance(gear, width, degree, cache=cache)
     cracked = healthy is not None
     near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
     far = {
@@ -158,14 +161,17 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None):
     return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy)
 
 
-@lru_cache(maxsize=8)
-def own_distance(gear, width, degree):
+def own_distance(gear, width, degree, *, cache=True):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
-    knots = hats(gear)
-    roll = roll_at_arc(gear, knots.mean(axis=0))
-    slope = gear.twist_rate * (roll[:, None] + roll) / 2
-    n = PLACES * (degree + 1)
-    return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
+
+    def solve():
+        knots = hats(gear)
+        roll = roll_at_arc(gear, knots.mean(axis=0))
+        slope = gear.twist_rate * (roll[:, None] + roll) / 2
+        n = PLACES * (degree + 1)
+        return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
+
+    return solved_gears(cache).get(("own distance", gear, width, degree), solve)
 
 
 def _scale(gear):

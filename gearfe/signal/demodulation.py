@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .kurtogram import Kurtogram, fast_kurtogram
-from .series import Signal
 from .spectra import Spectrum, squared_envelope_spectrum
 from .spectral_lines import find_lines
 
@@ -74,9 +73,3 @@ def with_noise(signal, decibels, seed=0):
     size = np.std(signal.values) * 10 ** (-decibels / 20)
     noise = np.random.default_rng(seed).standard_normal(signal.values.size)
     return replace(signal, values=signal.values + size * noise, name=f"{signal.name} with noise {-decibels:+g} dB")
-
-
-def measured_like(response, channel, *, decibels=10.0, seed=0):
-    """A channel of a response as an accelerometer in noise would show it: a `Signal` for `demodulate`."""
-    rate = 1 / (response.time[1] - response.time[0])
-    return with_noise(Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), channel), decibels, seed)

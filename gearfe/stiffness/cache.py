@@ -1,14 +1,15 @@
-"""Gears solved before: kept in this process, and on disk between processes.
+"""Gears solved before by finite elements: kept in this process, and on disk between processes.
 
 A stored flexibility is used only if its whole key, spelled out and stored beside it, equals the one asked for: the gear, its
-material and damage, the options, the source code of both packages and the versions of the libraries that made it. The folder
-is ``$GEARFE_CACHE``, by default ``~/.cache/gearfe``; an empty ``GEARFE_CACHE`` switches the disk off.
+material and damage, the options, the source code of both packages and the versions of the libraries that made it. A file that is
+anything else, or damaged, is as good as none: the gear is solved and the file replaced. The folder is ``$GEARFE_CACHE``, by
+default ``~/.cache/gearfe``; an empty ``GEARFE_CACHE`` switches the disk off.
 """
 
+import contextlib
 import hashlib
 import os
-import pickle
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -16,17 +17,20 @@ import geometry
 
 from ..elements import fe
 from ..elements.fe_gear3d import solid_flexibility
-from ..energy.ritz import plane as ritz
-from ..files import written
+from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
+from ..flexibility.solved import PROCESS, solved_gears
+from .flexibility_file import read_flexibility, write_flexibility
 
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "gmsh")
-MOST = 32  # gears kept in this process
-_known = {}
+FORMATS = {"section": (plane_arrays, plane_from), "solid": (solid_arrays, solid_from)}
 
 
 def folder():
     """Folder of stored flexibilities, None if switched off."""
-    place = os.environ.get("GEARFE_CACHE", str(Path.home() / ".cache" / "gearfe"))
+    place = os.environ.get("GEARFE_CACHE")
+    if place is None:
+        with contextlib.suppress(RuntimeError):  # a user without a home has no folder
+            return Path.home() / ".cache" / "gearfe"
     return Path(place) if place else None
 
 
@@ -38,8 +42,9 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     gear : Gear
     material : Material
     cracks : tuple of Crack
-    cache : bool
-        False: solve anew, store nothing.
+    cache : bool or SolvedGears
+        False: solve anew, store nothing. See `gearfe.flexibility.solved.solved_gears`; only with the results of this process is
+        the disk used.
     **options
         As in `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
 
@@ -47,14 +52,16 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     -------
     Flexibility
     """
+    kept = solved_gears(cache)
 
     def solve():
         if not cracks:
             return fe.flexibility(gear, material, **options)
-        healthy = solved_gear(gear, material, cache=cache, **options)
+        healthy = solved_gear(gear, material, cache=kept, **options)
         return fe.cracked_flexibility(gear, material, cracks, healthy, **options)
 
-    return _kept(("section", gear, material, cracks, sorted(options.items()), sorted(fe.EDGES.items())), solve, cache)
+    case = (material, cracks, tuple(sorted(options.items())), tuple(sorted(fe.EDGES.items())))
+    return _kept("section", gear, case, solve, kept)
 
 
 def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
@@ -65,8 +72,8 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     gear : Gear
     material : Material
     cracks : tuple of Crack
-    cache : bool
-        False: solve anew, store nothing.
+    cache : bool or SolvedGears
+        As of `solved_gear`.
     tell : callable, optional
         Gets one line of text before each solve: which gear, the solver, the expected memory.
     **options
@@ -76,48 +83,39 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     -------
     Flexibility3D
     """
+    kept = solved_gears(cache)
 
     def said(plan):
         damage = f", {len(cracks)} cracks" if cracks else ""
         tell(f"z = {gear.z}, b = {gear.b:g} mm{damage}: {plan}")
 
     def solve():
-        healthy = solved_solid(gear, material, cache=cache, tell=tell, **options) if cracks else None
-        return solid_flexibility(gear, material, cracks, healthy=healthy, tell=said if tell else None, **options)
+        healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
+        own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
+        return solid_flexibility(gear, material, cracks, **own, **options)
 
-    return _kept(("solid", gear, material, cracks, sorted(options.items())), solve, cache)
-
-
-def _kept(what, solve, cache):
-    """What `solve` gives, from this process or the disk if it is there."""
-    if not cache:
-        return solve()
-    key = repr((*what, _made_by()))
-    if key not in _known:
-        if len(_known) >= MOST:
-            del _known[next(iter(_known))]
-        _known[key] = _stored(key, solve)
-    return _known[key]
+    return _kept("solid", gear, (material, cracks, tuple(sorted(options.items()))), solve, kept)
 
 
-def _stored(key, solve):
+def _kept(kind, gear, case, solve, kept):
+    """What `solve` gives, from `kept` or, if that is of this process, from the disk if it is there."""
+    return kept.get((kind, gear, *case), partial(_stored, kind, gear, case, solve) if kept is PROCESS else solve)
+
+
+def _stored(kind, gear, case, solve):
     place = folder()
     if place is None:
         return solve()
-    file = place / f"{hashlib.sha256(key.encode()).hexdigest()}.pickle"
-    try:
-        stored_key, stored = pickle.loads(file.read_bytes())
-        if stored_key == key:
-            return stored
-    except (OSError, pickle.UnpicklingError, EOFError, ValueError, AttributeError, ImportError, IndexError):
-        pass  # absent, cut off or from another version: solve
+    key = repr((kind, gear, *case, _made_by()))
+    file = place / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
+    arrays_of, made_from = FORMATS[kind]
+    stored = read_flexibility(file, key, partial(made_from, gear))
+    if stored is not None:
+        return stored
     solved = solve()
-    try:
+    with contextlib.suppress(OSError, ValueError):  # a full or read-only disk costs only the reuse
         place.mkdir(parents=True, exist_ok=True)
-        with written(file) as name:
-            Path(name).write_bytes(pickle.dumps((key, solved)))
-    except (OSError, ValueError):
-        pass  # a full or read-only disk costs only the reuse
+        write_flexibility(file, key, arrays_of(solved))
     return solved
 
 
@@ -125,13 +123,17 @@ def _stored(key, solve):
 def _made_by():
     """Hash of the source of both packages, and the versions of the libraries."""
     digest = hashlib.sha256()
-    for package in (Path(geometry.__file__).parent, Path(__file__).parent):
-        for source in sorted(package.rglob("*.py")):
-            digest.update(source.read_bytes())
+    for source in sources():
+        digest.update(source.read_bytes())
     return digest.hexdigest(), tuple((name, version(name)) for name in LIBRARIES)
 
 
+def sources():
+    """Source files of both packages."""
+    packages = (Path(geometry.__file__).parent, Path(__file__).parents[1])
+    return [source for package in packages for source in sorted(package.rglob("*.py"))]
+
+
 def clear():
-    """Forget the gears kept in this process (files stay)."""
-    _known.clear()
-    ritz.clear()
+    """Forget everything solved in this process (files stay)."""
+    PROCESS.clear()

@@ -48,8 +48,8 @@ class Method:
         Whether it has variants, can leave out teeth, estimates its error, and lets tip corners touch off the path of contact.
     order : int or None
         Default order of its polynomials.
-    kept : bool
-        Its solved gears are kept by `gearfe.stiffness.cache`, to which `home` leads.
+    kept : {"", "process", "disk"}
+        Whether its function takes ``cache``, and keeps solved gears there: in this process, or also on disk, as finite elements.
     crack_models : tuple of str
         Limit lines of a crack with which `gearfe.error_map` judges it.
     """
@@ -69,7 +69,7 @@ class Method:
     error: bool = False
     extended: bool = False
     order: int | None = None
-    kept: bool = False
+    kept: str = ""
     crack_models: tuple = ()
 
     def load(self):
@@ -82,25 +82,26 @@ ROWS = (
     Method(
         "ritz", "converged energy model of the transverse section", "section", "gearfe.energy.ritz.plane:flexibility",
         "milliseconds", converged=True, cracks="through", error=True, extended=True, order=4,
+        kept="process",
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
         "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="part of the width", pits=True, faces=FACES,
-        error=True, extended=True, order=3,
+        error=True, extended=True, order=3, kept="process",
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",
         "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", teeth=True, error=True, extended=True,
-        kept=True,
+        kept="disk",
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
         "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="sloping", pits=True, faces=FACES, error=True,
-        extended=True, kept=True,
+        extended=True, kept="disk",
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
-        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no",
+        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no", kept="process",
     ),
     Method(
         "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",

@@ -7,7 +7,6 @@ from dataclasses import asdict, replace
 
 from ..contact.plane import Mesh
 from ..energy.closed.plain_sum import plain_sum
-from ..energy.ritz import plane as ritz
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate
 from .own_flexibility import flexibility_of
@@ -35,14 +34,13 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
     extended : bool
         Where the method knows of tip corners.
     state : str
-    cache : bool
+    cache : SolvedGears
+        Where solved gears are looked up and kept.
     **numeric
         ``refine``, ``order``, ``teeth``: each method gets those that it has.
     """
     started = time.perf_counter()
     extended = extended and (own or row).extended
-    if row.name == "ritz" and not cache:
-        ritz.clear()
 
     def named(row, gear, material, cracks=()):
         return _flexibility(row, gear, material, cracks, math.ceil(pair.eps_alpha), state, cache, numeric)

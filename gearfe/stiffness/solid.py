@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 
 from ..contact.solid import pair_stiffness3d
+from ..flexibility.solved import solved_gears
 from .cache import solved_solid
 from .curve import StiffnessCurve
 
@@ -34,7 +35,9 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
     error : bool
         Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
         Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
-    cache, tell
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    tell
         Of the finite elements, see `gearfe.stiffness.cache.solved_solid`.
 
     Returns
@@ -43,8 +46,9 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
+    cache = solved_gears(cache)
     pair, materials, phase, cracks, pits = case
-    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
+    options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:

@@ -7,6 +7,7 @@ import numpy as np
 
 from geometry.pair.gear_pair import GearPair
 
+from ..flexibility.solved import solved_gears
 from ..material import check_state
 from .inputs import by_gear, check_method, choose, overlap, phase_array, refuse, row_of, two_materials
 from .plane import curve, section_solver, sum_solver, with_error
@@ -91,7 +92,8 @@ def mesh_stiffness(
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
         `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.wide_curve`).
     cache : bool
-        Reuse a gear solved before in this process; for ``fe`` and ``fe3d`` also an earlier one (see `gearfe.stiffness.cache`).
+        Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
+        `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
     tell : callable, optional
         For ``fe3d``: gets a line of text before each gear is solved, with the solver and the expected memory.
 
@@ -112,6 +114,7 @@ def mesh_stiffness(
     forces = _forces(force)
     if teeth is not None and not (isinstance(teeth, Integral) and teeth >= 1):
         raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
+    cache = solved_gears(cache)
     materials = two_materials(material)
     check_state(state)
     cracks, pits = by_gear(pair, damage)
@@ -128,7 +131,7 @@ def mesh_stiffness(
         case = (pair, materials, phase, cracks, pits)
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
-        options |= {"brute": row.kept, "error": error, "cache": cache, "tell": tell}
+        options |= {"brute": row.kept == "disk", "error": error, "cache": cache, "tell": tell}
         curves = [wide_curve(value, case, meta, **options) for value in forces]
         return curves if np.ndim(force) else curves[0]
     if row.kind == "sum":

@@ -296,6 +296,29 @@ def test_crack_in_one_half_of_a_herringbone_pair():
     assert first < part < healthy
 
 
+def test_cells_that_cannot_touch_leave_the_corners_and_the_faces_of_cracks_in():
+    """Cells of an infinite gap are as good as absent, also where tip corners and faces of cracks take part."""
+    n, edge = 20, np.linspace(0, 10, 21)
+    line, gap = np.repeat([0, 1], n // 2), np.where((np.arange(n) > 5) & (np.arange(n) < 9), np.inf, 0.0)
+    matrix = 1e-6 * (line[:, None] == line) + 1e-8 * np.eye(n)
+    opening = np.vstack([np.linspace(-4e-7, 1e-7, n), np.linspace(-1e-7, -5e-7, n)]) * (line == np.array([[0], [1]]))
+    found = []
+    for own in (np.arange(n), np.flatnonzero(np.isfinite(gap))):
+        softer = np.linspace(0.0, 0.5, n)[own]
+        options = {
+            "block": line[own],
+            "faces": (opening[:, own], 1e-6 * np.eye(2), np.array([0, 1])),
+            "local": lambda along, softer=softer: softer * np.log1p(along),
+        }
+        case = matrix[np.ix_(own, own)], gap[own], 500.0, 2.8e-6, (edge[own], edge[own + 1]), line[own], np.full(own.size, 3.0)
+        force, approach = cell_sharing.line_cells(*case, 1.1e5, **options)
+        whole = np.zeros(n)
+        whole[own] = force[:-2]
+        found.append([*whole, *force[-2:], approach])
+    assert_allclose(found[0], found[1], rtol=1e-12)
+    assert max(found[0][n : n + 2]) > 0, "a face that would pass through the other is held back"
+
+
 def test_a_piece_that_vanishes_takes_its_load_with_it():
     """A short piece of line beside a long one: what it carries falls to nothing with its length."""
     edge = np.linspace(0, 10, 26)

@@ -1,11 +1,13 @@
 """The solver ladder: every installed solver agrees, and what cannot be is refused beforehand."""
 
 import gc
+import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.sparse import diags, eye, kron, tril
+from scipy.sparse import csc_array, diags, eye, kron, tril
 
 from gearfe.elements import solver
 
@@ -35,6 +37,70 @@ def test_the_factor_lives_as_long_as_it_is_used(name):
 def test_indefinite_matrices_are_refused(name):
     with pytest.raises(RuntimeError, match="not held"):
         solver.factor(GRID - 2 * eye(GRID.shape[0]), solver.plan(GRID.shape[0], solver=name))
+
+
+class NotPositiveDefiniteError(Exception):
+    """Stands for that of scikit-sparse."""
+
+
+class Factored:
+    """Dense stand-in for the factor of scikit-sparse, old and new."""
+
+    def __init__(self, matrix):
+        try:
+            self.lower = np.linalg.cholesky(matrix)
+        except np.linalg.LinAlgError as error:
+            raise NotPositiveDefiniteError from error
+
+    def solve(self, b):
+        return np.linalg.solve(self.lower.T, np.linalg.solve(self.lower, b))
+
+    __call__ = solve
+
+    def apply_P(self, b):  # noqa: N802
+        return b
+
+    def solve_L(self, b, use_LDLt_decomposition=True):  # noqa: N802
+        assert not use_LDLt_decomposition
+        return np.linalg.solve(self.lower, b)
+
+
+def cho_factor(A, *, lower=False, order=None):
+    """Signature of scikit-sparse 0.5: reads one triangle."""
+    assert isinstance(A, csc_array)
+    assert order == "metis"
+    half = tril(A).toarray() if lower else tril(A.T).toarray()
+    return Factored(half + np.tril(half, -1).T)
+
+
+def cholesky_04(A, beta=0, mode="auto", ordering_method="default", use_long=None):
+    """Signature of scikit-sparse 0.4."""
+    return Factored(A.toarray())
+
+
+def cholesky_05(A, *, lower=False, order=None):
+    """Signature of scikit-sparse 0.5: gives a matrix."""
+    raise AssertionError("this gives no factor to solve with")
+
+
+@pytest.mark.parametrize("functions", [{"cholesky": cholesky_04}, {"cholesky": cholesky_05, "cho_factor": cho_factor}])
+def test_scikit_sparse_old_and_new(monkeypatch, functions):
+    """By its signatures; with the package itself the tests above run it."""
+    cholmod = ModuleType("sksparse.cholmod")
+    vars(cholmod).update(functions, CholmodNotPositiveDefiniteError=NotPositiveDefiniteError)
+    package = ModuleType("sksparse")
+    package.cholmod = cholmod
+    monkeypatch.setitem(sys.modules, "sksparse", package)
+    monkeypatch.setitem(sys.modules, "sksparse.cholmod", cholmod)
+    small = (kron(LINE, eye(12)) + kron(eye(12), LINE)).tocsc()
+    want = np.random.default_rng(1).normal(size=(small.shape[0], 3))
+    plan = solver.Plan("cholmod", small.shape[0], 0.0, 1.0)
+    solve = solver.factor(tril(small), plan)
+    assert_allclose(solve(small @ want), want, rtol=1e-10, atol=1e-12)
+    assert_allclose(solve(small @ want[:, 0]), want[:, 0], rtol=1e-10, atol=1e-12)
+    assert_allclose(solve.gram(small @ want), want.T @ small @ want, rtol=1e-10, atol=1e-9)
+    with pytest.raises(RuntimeError, match="not held"):
+        solver.factor(small - 2 * eye(small.shape[0]), plan)
 
 
 def test_an_empty_diagonal_is_refused():

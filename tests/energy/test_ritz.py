@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.energy.ritz import join
 from gearfe.energy.ritz import plane as ritz
 from gearfe.flexibility import flamant
 from geometry.mesh.sector import sector
@@ -63,14 +64,14 @@ def test_area_of_the_sector_is_that_of_the_profile(gear, cracks):
 
 def test_sectors_join_to_the_whole_gear():
     """Doubling against sectors joined one by one, and all teeth explicit."""
-    one = ritz._panel(GEAR, STEEL, (), "plane strain", 3, 1.0)
+    one = ritz.loaded_sector(GEAR, STEEL, (), order=3)
     row = one.stiffness
     for count in range(2, 8):
-        row = ritz._pair(row, one.stiffness)
-        assert_allclose(ritz._repeated(one.stiffness, count), row, atol=1e-9 * np.abs(row).max())
-    few, _ = ritz._join(GEAR, {0: one, 1: one}, one)
-    every, _ = ritz._join(GEAR, dict.fromkeys(range(GEAR.z), one), one)
-    apart, _ = ritz._join(GEAR, {0: one, 5: one, 9: one}, one)
+        row = join.side_by_side(row, one.stiffness)
+        assert_allclose(join.repeated(one.stiffness, count), row, atol=1e-9 * np.abs(row).max())
+    few, _ = join.join(GEAR, {0: one, 1: one}, one)
+    every, _ = join.join(GEAR, dict.fromkeys(range(GEAR.z), one), one)
+    apart, _ = join.join(GEAR, {0: one, 5: one, 9: one}, one)
     for key in few:
         assert_allclose(few[key], every[key], atol=1e-9 * np.abs(every[key]).max())
     assert_allclose(apart[0, 5], every[0, 5], atol=1e-9 * np.abs(every[0, 1]).max())
@@ -79,7 +80,7 @@ def test_sectors_join_to_the_whole_gear():
 
 @pytest.mark.parametrize("gear", [GEAR, RING], ids=["18", "ring"])
 def test_reciprocity_error_falls_with_the_order(gear):
-    own = [ritz._panel(gear, STEEL, (), "plane strain", order, 1.0).own for order in (2, 3, 4, 6)]
+    own = [ritz.loaded_sector(gear, STEEL, (), order=order).own for order in (2, 3, 4, 6)]
     off = [np.abs(one - one.T).max() / np.abs(one).max() for one in own]
     assert off[0] > off[1] > off[2] > off[3]
     assert off[2] < 8e-3

@@ -14,9 +14,11 @@ from gearfe.energy.ritz import elimination, panel3d
 from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.axial import axial
+from gearfe.energy.ritz.join import join
 from gearfe.flexibility import halfspace
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.hertz import half_plane, hat_logarithm
+from gearfe.flexibility.solved import PROCESS
 from geometry.mesh.sector import sector
 from geometry.mesh.triangle import ENDS
 from geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
@@ -38,7 +40,7 @@ def surface(gear, roll, z):
 def test_loads_act_at_right_angles_to_the_helicoid(gear):
     order = 3
     made = sector(gear, sizes=ritz3d.SIZES)
-    _, count, chain = panel3d._numbering(made, order)
+    _, count, chain = panel3d.numbering(made, order)
     force = panel3d._hats(gear, made, chain, count, flexibility3d.hats(gear), order, gear.beta_b).sum(axis=0)
     points, weight = halfspace.hat_points(flexibility3d.hats(gear), 12)
     for i, (arc, share_of) in enumerate(zip(points, weight, strict=True)):
@@ -55,12 +57,11 @@ def test_rigid_motions_store_no_energy():
     coarse = {"flank": 0.8, "corner": 0.8, "kink": 0.8, "fillet": 0.8, "root": 2.0, "side": 2.0}
     made = sector(GEAR, sizes=coarse)
     made = replace(made, bulge={edge: 0 * curve for edge, curve in made.bulge.items()})  # nodes at the middles
-    numbers, count, _ = panel3d._numbering(made, order)
-    body = elimination.body_of(numbers, order, np.zeros((count, 3, 1)), np.arange(1), np.zeros(0, dtype=int), [])
-    body.section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
-    body.axial = axial(width, degree)
-    body.kind = np.zeros(body.size.size, dtype=int)
-    body.size = body.size * (degree + 1)
+    numbers, count, _ = panel3d.numbering(made, order)
+    numbers, _ = elimination.all_nodes(numbers, count, order)
+    section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
+    no = np.zeros(0, dtype=int)
+    body = elimination.body_of(numbers, np.zeros((count, 3, 1)), section, axial(width, degree), sides=np.arange(1), held=no)
     stiffness = elimination.leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
     straight = np.zeros((2, count))
     straight[:, numbers[:3]] = made.points[:, made.triangles]
@@ -92,15 +93,15 @@ def test_plane_strain_is_the_constant_along_the_width():
     """One axial mode on spur gears: patch to patch what `ritz` gives in the plane, logarithm and all, healthy and cracked."""
     gear = replace(GEAR, beta=0.0)
     points, weight = halfspace.hat_points(flexibility3d.hats(gear), 8)
-    carry = ritz._carry(ritz._variable(gear, points.ravel())).reshape(*points.shape, -1)
+    carry = ritz.carry(gear, points.ravel()).reshape(*points.shape, -1)
     mean = np.einsum("hg,hgk->hk", weight, carry)
     knots = flexibility3d.hats(gear)
     local = half_plane(STEEL) * hat_logarithm(knots, knots)
     for cracks in ((), (gf.Crack(level=0.5),)):
-        plane = [ritz._panel(gear, STEEL, own, "plane strain", 6, 1.0) for own in (cracks, ())]
-        solid = [ritz3d._panel(gear, STEEL, own, 10.0, 3, 0, 1.0) for own in (cracks, ())]
-        want, _ = ritz._join(gear, dict(enumerate(plane)), plane[1])
-        got, _ = ritz._join(gear, dict(enumerate(solid)), solid[1])
+        plane = [ritz.loaded_sector(gear, STEEL, own, order=6) for own in (cracks, ())]
+        solid = [ritz3d.solid_sector(gear, STEEL, own, width=10.0, order=3, axial=0, refine=1.0) for own in (cracks, ())]
+        want, _ = join(gear, dict(enumerate(plane)), plane[1])
+        got, _ = join(gear, dict(enumerate(solid)), solid[1])
         own = mean @ want[0, 0] @ mean.T + local
         assert_allclose(got[0, 0][1:, 1:], own[1:, 1:], rtol=4e-3, atol=2e-3 * own.max(), err_msg=str(cracks))
         across = mean @ want[0, 1] @ mean.T
@@ -145,7 +146,8 @@ def test_a_crack_over_parts_of_the_width():
         softer = np.linalg.eigvalsh(made.near[0] - ritz3d.flexibility3d(gear, STEEL, **run).near[0])
         assert softer.min() > -0.01 * softer.max()
     assert (np.diff(added, axis=0) > 0).all()
-    plane = ritz3d._missing(gear, STEEL, (gf.Crack(level=0.5),), 2, 1.0) - ritz3d._missing(gear, STEEL, (), 2, 1.0)
+    cracked, whole = (ritz3d._missing(gear, STEEL, own, 2, 1.0, PROCESS) for own in ((gf.Crack(level=0.5),), ()))
+    plane = cracked - whole
     assert_allclose(added[-1], np.diag(through - healthy - plane), rtol=2e-3)
     left, right = (
         ritz3d.flexibility3d(gear, STEEL, (gf.Crack(level=0.5, width=width),), **run) for width in ((0.0, 4.0), (6.0, 10.0))
@@ -173,11 +175,12 @@ def test_what_half_a_crack_adds_is_that_of_hexahedra(beta):
     knots, modes = flexibility3d.hats(gear), 2
     full = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))[-2:]
     patches = fe3d.Patches((0,), knots[:, full], modes)
-    one = ritz3d._panel(gear, STEEL, (), 8.0, 3, 9, 1.0)
+    size = {"width": 8.0, "order": 3, "axial": 9, "refine": 1.0}
+    one = ritz3d.solid_sector(gear, STEEL, (), **size)
     found = []
     for own in ((), (crack,)):
-        panels = {0: ritz3d._panel(gear, STEEL, own, 8.0, 3, 9, 1.0), 1: one}
-        made = ritz._join(gear, panels, one)[0][0, 0].reshape(flexibility3d.PLACES, 10, flexibility3d.PLACES, 10)
+        panels = {0: ritz3d.solid_sector(gear, STEEL, own, **size), 1: one}
+        made = join(gear, panels, one)[0][0, 0].reshape(flexibility3d.PLACES, 10, flexibility3d.PLACES, 10)
         scale = 1 / np.sqrt((2 * np.arange(modes) + 1) * gear.b)  # from orthonormal polynomials to those of unit resultant
         model = np.einsum("iaia->ia", made)[full][:, :modes] * scale**2
         mesh = fe3d.mesh_patches(gear, patches, cracks=own, refine=0.7, fine=[(4.0, 4.0, 0.2)])

@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.energy.closed import coupled, slices, textbook
+from gearfe.energy.closed import coupled, textbook
 from gearfe.energy.ritz import plane as ritz
 from gearfe.stiffness.inputs import why_solid
 from gearfe.stiffness.methods import FACES, METHODS, NAMES, ROWS, fitted
@@ -105,7 +105,7 @@ def test_the_energy_model_of_finite_width_is_as_its_row_says(steel):
 
 def test_rows_are_complete():
     assert NAMES == ("auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published")
-    assert FACES == slices.FACES
+    assert FACES == lines.FACES
     for row in ROWS:
         assert row.about
         assert row.cost in ("milliseconds", "seconds", "minutes")

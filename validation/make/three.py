@@ -9,8 +9,8 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.elements import fe3d
-from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
+from gearfe.energy.ritz.join import join
 from gearfe.files import written
 from gearfe.flexibility import solid as flexibility3d
 
@@ -47,8 +47,8 @@ def both(gear, cracks):
     """
     started = time.perf_counter()
     width, axial = gear.b, ritz3d.axial_degree(gear.b, gear.m_n)
-    panels = [ritz3d._panel(gear, STEEL, own, width, 3, axial, 1.0) for own in (cracks, ())]
-    influence, _ = ritz._join(gear, {0: panels[0], 1: panels[1]}, panels[1])
+    panels = [ritz3d.solid_sector(gear, STEEL, own, width=width, order=3, axial=axial, refine=1.0) for own in (cracks, ())]
+    influence, _ = join(gear, {0: panels[0], 1: panels[1]}, panels[1])
     knots = flexibility3d.hats(gear)
     whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))  # not cut off
     at = whole * (axial + 1)

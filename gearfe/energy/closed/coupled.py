@@ -30,7 +30,7 @@ Range of validity, k against `gearfe.elements.fe` without contact off the path o
 
 import math
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 
 import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
@@ -39,6 +39,7 @@ from geometry.tooth.profile import arc_at, cartesian, fillet, flank, roll_at_arc
 
 from ...flexibility.hertz import half_plane
 from ...flexibility.plane import Flexibility
+from ...flexibility.solved import solved_gears
 from .annulus import root_flexibility, shear_height
 from .beam import Components, along_fillet, along_flank, load_angle
 
@@ -151,14 +152,17 @@ def beam(gear, material, roll, *, state="plane strain"):
     return out / np.array([[stretch], [material.shear_modulus], [stretch]])
 
 
-@lru_cache(maxsize=64)
-def body(gear, material, state="plane strain", neighbours=1):
+def body(gear, material, state="plane strain", neighbours=1, *, cache=True):
     """Flexibility ``(neighbours + 1, 3, 3)`` of the gear body between a tooth, and itself and the next ones.
 
     See `annulus.root_flexibility`: between bore and root circle, each tooth on the arc between the feet of its fillets.
     """
-    apart = 2 * math.pi / gear.z * np.arange(neighbours + 1)
-    return root_flexibility(gear.r_bore, gear.r_f, root_half_angle(gear), apart, material, state=state)
+
+    def solve():
+        apart = 2 * math.pi / gear.z * np.arange(neighbours + 1)
+        return root_flexibility(gear.r_bore, gear.r_f, root_half_angle(gear), apart, material, state=state)
+
+    return solved_gears(cache).get(("coupled", gear, material, state, neighbours), solve)
 
 
 def body_loads(gear, roll):
@@ -166,11 +170,11 @@ def body_loads(gear, roll):
     return section_loads(gear, np.atleast_1d(roll), shear_height(gear.r_f, root_half_angle(gear)))
 
 
-def components(gear, material, roll, *, state="plane strain"):
+def components(gear, material, roll, *, state="plane strain", cache=True):
     """`Components` of one tooth: `beam`, and as foundation the `body` under this tooth alone; local part excluded."""
     loads = body_loads(gear, roll)
     bending, shear, axial = beam(gear, material, roll, state=state)
-    foundation = np.einsum("an,ab,bn->n", loads, body(gear, material, state)[0], loads)
+    foundation = np.einsum("an,ab,bn->n", loads, body(gear, material, state, cache=cache)[0], loads)
     return Components(bending, shear, axial, foundation)
 
 
@@ -217,7 +221,7 @@ def isolated(gear, material, formula, *, state="plane strain"):
     return Flexibility(gear, {0: CubicSpline(arc, near)}, {}, {}, (arc[0], arc[-1]))
 
 
-def flexibility(gear, material, *, neighbours=1, state="plane strain"):
+def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
     """Flexibility of a healthy external gear in closed form, to be used where `gearfe.elements.fe.flexibility` is.
 
     It has no tip hats, so `gearfe.contact.plane.Mesh` takes it with ``extended=False`` only.
@@ -229,6 +233,8 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain"):
     neighbours : int
         How many following teeth may carry load at the same time.
     state : {"plane strain", "plane stress"}
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
@@ -241,9 +247,9 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain"):
     """
     if gear.internal:
         raise ValueError("the coupled closed form has no ring (wide tooth roots, body held outside): use finite elements")
-    alone = isolated(gear, material, partial(components, state=state), state=state)
+    alone = isolated(gear, material, partial(components, state=state, cache=cache), state=state)
     arc = alone.near[0].x
     loads = body_loads(gear, roll_at_arc(gear, arc))
-    between = body(gear, material, state, neighbours)[1:]
+    between = body(gear, material, state, neighbours, cache=cache)[1:]
     far = {(0, k): RectBivariateSpline(arc, arc, loads.T @ c.T @ loads) for k, c in enumerate(between, start=1)}
     return replace(alone, far=far)

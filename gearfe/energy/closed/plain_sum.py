@@ -10,7 +10,7 @@ from geometry.damage.pit import check_pits
 from geometry.tooth.profile import flank
 
 from ...flexibility.hertz import linear_hertz, palmgren_line, weber_line
-from ...flexibility.solved import Solved
+from ...flexibility.section_contact import Solved
 from . import published
 from .beam import load_angle
 from .integrals import flank_edges

@@ -1,14 +1,16 @@
 """Elimination of a sector's unknowns, triangles by nested halves, with a set of functions along the width at every node."""
 
 import math
+from dataclasses import dataclass
 from itertools import pairwise
-from types import SimpleNamespace
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.linalg.blas import dsyrk
 
 from geometry.mesh.triangle import table
+
+from .axial import Axial
 
 LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
@@ -45,38 +47,104 @@ def _halves(triangles, centre, own):
     return halves
 
 
-def body_of(numbers, order, load, sides, held, seams):
-    """All that the elimination looks up.
+@dataclass(frozen=True, slots=True)
+class SectorBody:
+    """All that the elimination looks up; unknowns are counted in functions along the width.
 
-    It numbers the nodes from 0, then the insides of the triangles, and the loads from `first_load`; `size` is in modes. `touch`
-    are the numbers a triangle is coupled to; in `seams`, pairs of facing nodes, the first number stands for their mean and the
-    second for their distance.
+    Nodes have numbers from 0, then the insides of the triangles; loads have those from `first_load` on, to k.
+
+    Attributes
+    ----------
+    numbers : ndarray, shape (n, m)
+        Nodes of the triangles, inside ones last.
+    touch : tuple of ndarray
+        Numbers each triangle is coupled to: its nodes, and those that face them in a crack.
+    seams : tuple of (ndarray, ndarray)
+        Pairs of facing nodes: the first number stands for their mean, the second for their distance.
+    owner : ndarray, shape (first_load,)
+        The first triangle at each node, which brings its load in.
+    load : ndarray, shape (first_load, 3, loads)
+        Nodal forces.
+    first_load : int
+    uses : ndarray, shape (k,)
+        How many triangles touch each number.
+    stays, there : ndarray of bool, shape (k,)
+        What is not eliminated, and what is not held.
+    section : ndarray, shape (3, m, 3 n, 3 n)
+        ``K00, K01, K11`` of the triangles.
+    axial : Axial
+        The functions along the width.
+    kind : ndarray, shape (k,)
+        Which set of `axial` each number has.
+    size : ndarray, shape (k,)
+        How many unknowns each number stands for.
     """
-    count, _, n = load.shape
-    triangles = numbers.shape[1]
-    inside = table(order).inside
-    first_load = count + triangles * inside
+
+    numbers: np.ndarray
+    touch: tuple
+    seams: tuple
+    owner: np.ndarray
+    load: np.ndarray
+    first_load: int
+    uses: np.ndarray
+    stays: np.ndarray
+    there: np.ndarray
+    section: np.ndarray
+    axial: Axial
+    kind: np.ndarray
+    size: np.ndarray
+
+
+def all_nodes(numbers, count, order):
+    """Nodes of the triangles with the insides, numbered from `count` on, and how many nodes there are."""
+    triangles, inside = numbers.shape[1], table(order).inside
     every = np.concatenate([numbers, count + np.arange(triangles * inside).reshape(triangles, inside).T])
-    owner = np.full(first_load, triangles)
-    np.minimum.at(owner, every.ravel(), np.broadcast_to(np.arange(triangles), every.shape).ravel())
-    stays, there = np.zeros(first_load + n, dtype=bool), np.ones(first_load + n, dtype=bool)
-    stays[sides] = stays[first_load:] = True
+    return every, count + triangles * inside
+
+
+def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None):
+    """`SectorBody` of the triangles.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (n, m)
+        Of `all_nodes`.
+    load : ndarray, shape (count, 3, loads)
+        Forces on the nodes that triangles share.
+    section : ndarray
+    axial : Axial
+    sides, held : ndarray
+        Nodes that stay, and nodes that do not move.
+    seams : sequence of (ndarray, ndarray)
+    kinds : ndarray, shape (nodes + loads,), optional
+        Default: all have the polynomials over the whole width.
+    """
+    nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]
+    owner = np.full(nodes, numbers.shape[1])
+    np.minimum.at(owner, numbers.ravel(), np.broadcast_to(np.arange(numbers.shape[1]), numbers.shape).ravel())
+    stays, there = np.zeros(nodes + loads, dtype=bool), np.ones(nodes + loads, dtype=bool)
+    stays[sides] = stays[nodes:] = True
     there[held] = False
-    partner = np.arange(first_load)
+    partner = np.arange(nodes)
     for left, right in seams:
         partner[left], partner[right] = right, left
-    touch = [np.union1d(own, partner[own]) for own in every.T]
-    return SimpleNamespace(
-        numbers=every,
+    touch = tuple(np.union1d(own, partner[own]) for own in numbers.T)
+    kind = np.zeros(nodes + loads, dtype=int) if kinds is None else kinds
+    each = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
+    return SectorBody(
+        numbers=numbers,
         touch=touch,
-        seams=seams,
+        seams=tuple(seams),
         owner=owner,
-        load=np.concatenate([load, np.zeros((first_load - count, 3, n))]),
-        first_load=first_load,
-        size=np.append(np.full(first_load, 3), np.ones(n, dtype=int)),
-        uses=np.bincount(np.concatenate(touch), minlength=first_load + n),
+        load=np.concatenate([load, np.zeros((nodes - load.shape[0], 3, loads))]),
+        first_load=nodes,
+        uses=np.bincount(np.concatenate(touch), minlength=nodes + loads),
         stays=stays,
         there=there,
+        section=section,
+        axial=axial,
+        kind=kind,
+        size=each * np.array([own.size for own in axial.sets])[kind],
     )
 
 

@@ -62,7 +62,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     """
     modulus = material.plane_modulus(state)
     ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
-    numbers, count, chain = _numbering(sector, order)
+    numbers, count, chain = numbering(sector, order)
     stiffness = _assemble(sector, numbers, count, order, modulus, ratio)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     inner = np.setdiff1d(np.arange(count), np.concatenate([sides, chain(sector.held)]))
@@ -91,7 +91,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     )  # fmt: skip
 
 
-def _numbering(sector, order):
+def numbering(sector, order):
     """Node numbers of the triangles without their insides, their count, and the nodes along a chain of vertices."""
     triangles = sector.triangles
     ends = np.array([triangles[[a, b]] for a, b in ENDS])  # (3, 2, m)

@@ -21,8 +21,8 @@ from geometry.mesh.triangle import BULGE, jacobians, lagrange, table
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .axial import axial
-from .elimination import body_of, dissect, front, places
-from .panel import Panel, _numbering
+from .elimination import all_nodes, body_of, dissect, front, places
+from .panel import Panel, numbering
 
 CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
 NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
@@ -58,7 +58,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
         at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
-    numbers, count, chain = _numbering(sector, order)
+    numbers, count, chain = numbering(sector, order)
     tilt = 0.0 if plane else gear.beta_b
     load = _hats(gear, sector, chain, count, knots, order, tilt)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
@@ -67,17 +67,16 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
     apart, owner = (np.zeros((count, 3, 0)), []) if plane else _apart(sector, chain, count)
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
-    body = body_of(numbers, order, np.concatenate([load, apart], axis=2), sides, chain(sector.held), seams)
-    body.section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
-    body.axial = along
-    kind = np.zeros(body.size.size, dtype=int)  # which functions along the width
+    load = np.concatenate([load, apart], axis=2)
+    every, nodes = all_nodes(numbers, count, order)
+    kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
     for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):
-        kind[_near(gear, sector, body, sector.faces[i])] = 3 + 3 * i
-        kind[right] = 1 + 3 * i
-    kind[sides] = 0
-    kind[body.first_load + knots.shape[1] :] = [2 + 3 * i for i in owner]
-    body.kind = kind
-    body.size = body.size * np.array([own.size for own in along.sets])[kind]
+        kinds[_near(gear, sector, every, sector.faces[i])] = 3 + 3 * i
+        kinds[right] = 1 + 3 * i
+    kinds[sides] = 0
+    kinds[nodes + knots.shape[1] :] = [2 + 3 * i for i in owner]
+    section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
+    body = body_of(every, load, section, along, sides=sides, held=chain(sector.held), seams=seams, kinds=kinds)
     ids, matrix = front(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
@@ -119,14 +118,14 @@ def _apart(sector, chain, count):
     return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
 
 
-def _near(gear, sector, body, face):
+def _near(gear, sector, numbers, face):
     """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack."""
     line = sector.points[:, face[0]]
     part = np.arange(8) / 8
     line = (line[:, :-1, None] + np.diff(line, axis=1)[..., None] * part).reshape(2, -1)
     away = np.hypot(*(sector.points[:, :, None] - line[:, None, :])).min(axis=1)
     close = (away < CLOSE * gear.m_n)[sector.triangles].any(axis=0)
-    return np.unique(body.numbers[:, close])
+    return np.unique(numbers[:, close])
 
 
 def _polar(angle, matrix):

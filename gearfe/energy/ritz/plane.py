@@ -5,22 +5,23 @@ a hundred curved triangles of order 4; sectors without load are joined by doubli
 one tooth.
 """
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from numbers import Integral
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
-from scipy.linalg import cholesky, solve_triangular
 
 from geometry.damage.crack import check_through
 from geometry.mesh.outline import stations
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
-from ...elements.fe import EDGES, SPAN, TIP_ZONE
+from ...flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE, hat_knots
 from ...flexibility.hertz import half_plane, hat_logarithm
 from ...flexibility.plane import Flexibility, SeamFaces, TipHats
+from ...flexibility.solved import solved_gears
+from .join import join
 from .panel import panel
 
 PLACES = 16  # loads on each flank
@@ -29,7 +30,7 @@ HATS = 2  # times finer hats at the tip corner than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
-def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0):
+def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
     """Flexibility of a gear by the energy model.
 
     Parameters
@@ -45,6 +46,8 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
         Polynomial order, 2 to 8.
     refine : float
         Divides the edge lengths of the triangles.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
@@ -59,119 +62,52 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
     options = (state, int(order), float(refine))
     check_through(cracks, "the energy model of the section")
-    if not cracks:
-        return _healthy(gear, material, neighbours, *options)
-    reach = max(1, neighbours - 1)
-    solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
-    by_tooth = {tooth: tuple(c for c in cracks if c.tooth % gear.z == tooth) for tooth in solved}
-    return _solved(gear, material, by_tooth, _healthy(gear, material, neighbours, *options), *options)
+    case = (gear, material, tuple(cracks), neighbours, *options)
+    kept = solved_gears(cache)
+    return kept.get(("ritz", *case), partial(_cracked if cracks else _healthy, *case, kept))
 
 
-@lru_cache(maxsize=64)
-def _healthy(gear, material, neighbours, state, order, refine):
-    one = _panel(gear, material, (), state, order, refine)
+def _healthy(gear, material, _, neighbours, state, order, refine, cache):
+    one = loaded_sector(gear, material, (), state=state, order=order, refine=refine, cache=cache)
     teeth = range(min(neighbours + 1, gear.z))
-    influence, _ = _join(gear, dict.fromkeys(teeth, one), one)
+    influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     near, tip = _own_tooth(gear, influence[0, 0], half_plane(material, state), refine)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
     return Flexibility(gear, {0: near}, far, {0: tip}, _limits(gear), one.unknowns)
 
 
-def _solved(gear, material, cracks, healthy, state, order, refine):
-    """Flexibility with the `cracks` of each solved tooth; `healthy` serves the others."""
-    one = _panel(gear, material, (), state, order, refine)
-    panels = {t: _panel(gear, material, own, state, order, refine) if own else one for t, own in cracks.items()}
-    influence, opening = _join(gear, panels, one)
+def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
+    """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
+    options = {"state": state, "order": order, "refine": refine, "cache": cache}
+    healthy = flexibility(gear, material, neighbours=neighbours, **options)
+    reach = max(1, neighbours - 1)
+    teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
+    one = loaded_sector(gear, material, (), **options)
+    own = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
+    panels = {tooth: loaded_sector(gear, material, found, **options) if found else one for tooth, found in own.items()}
+    influence, opening = join(gear, panels, one)
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
     near, tip, far = {}, {}, {}
-    for i in cracks:
-        for j in cracks:
+    for i in teeth:
+        for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
                 near[i], tip[i] = _own_tooth(gear, glued, half_plane(material, state), refine)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
-    arcs, carry = _knots(gear)
-    seam = SeamFaces({t: CubicSpline(arcs, carry @ opening[t].T) for t in cracks}, between, stiffness)
+    arcs, matrix = _knots(gear)
+    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t].T) for t in teeth}, between, stiffness)
     return Flexibility(gear, near, far, tip, _limits(gear), sum(p.unknowns for p in panels.values()), healthy, seam)
 
 
-@lru_cache(maxsize=64)
-def _panel(gear, material, cracks, state, order, refine):
-    """A sector under loads at `_places`."""
-    return panel(gear, sector(gear, cracks, refine=refine), material, _places(gear), order=order, state=state)
+def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
+    """`Panel` of a sector with `cracks` under the loads at `_places`; the other arguments as of `flexibility`."""
 
+    def solve():
+        return panel(gear, sector(gear, cracks, refine=refine), material, _places(gear), order=order, state=state)
 
-def _join(gear, panels, healthy):
-    """Influence between the loads of the teeth of `panels`, with `healthy` sectors everywhere else.
-
-    Returns
-    -------
-    influence : dict of (int, int) to ndarray, shape (n, n)
-    opening : dict
-        By tooth the opening of all facing crack nodes under its loads ``(k, n)``, and under ``"influence"`` that under unit
-        forces on them ``(k, k)``.
-    """
-    teeth = sorted(panels)
-    segments = []
-    for tooth, following in zip(teeth, [*teeth[1:], teeth[0] + gear.z], strict=True):
-        segments.append((tooth, panels[tooth].stiffness))
-        if following - tooth > 1:
-            segments.append((None, _repeated(healthy.stiffness, following - tooth - 1)))
-    half = healthy.stiffness.shape[0] // 2
-    total = np.zeros((len(segments) * half,) * 2)
-    pushes, loads = {}, []
-    for k, (tooth, stiffness) in enumerate(segments):
-        places = np.concatenate([k * half + np.arange(half), (k + 1) % len(segments) * half + np.arange(half)])
-        total[np.ix_(places, places)] += stiffness
-        if tooth is not None:
-            push = np.zeros((total.shape[0], panels[tooth].push.shape[1] + panels[tooth].open_push.shape[1]))
-            push[places] = np.hstack([panels[tooth].push, panels[tooth].open_push])
-            pushes[tooth] = slice(sum(p.shape[1] for p in loads), sum(p.shape[1] for p in loads) + push.shape[1])
-            loads.append(push)
-    loads = np.hstack(loads)
-    halved = _halved(total, loads)
-    between = halved.T @ halved
-    n = healthy.push.shape[1]
-    for tooth in teeth:
-        at, one = pushes[tooth], panels[tooth]
-        own = (one.own + one.own.T) / 2
-        between[at, at] += np.block([[own, one.open_own.T], [one.open_own, one.open_open]])
-    index = {t: np.arange(pushes[t].start, pushes[t].start + n) for t in teeth}
-    faces = np.concatenate([np.arange(pushes[t].start + n, pushes[t].stop) for t in teeth])
-    influence = {(i, j): between[np.ix_(index[i], index[j])] for i in teeth for j in teeth}
-    opening = {t: between[np.ix_(faces, index[t])] for t in teeth}
-    mutual = between[np.ix_(faces, faces)]
-    return influence, opening | {"influence": (mutual + mutual.T) / 2}
-
-
-def _repeated(stiffness, count):
-    """Stiffness between the outer sides of `count` equal sectors in a row, by doubling."""
-    out = None
-    while count:
-        if count % 2:
-            out = stiffness if out is None else _pair(out, stiffness)
-        count //= 2
-        stiffness = _pair(stiffness, stiffness) if count else stiffness
-    return out
-
-
-def _pair(one, two):
-    """Two sectors side by side, their common side eliminated."""
-    h = one.shape[0] // 2
-    middle = one[h:, h:] + two[:h, :h]
-    coupling = np.hstack([one[h:, :h], two[:h, h:]])
-    halved = _halved(middle, coupling)
-    out = -halved.T @ halved
-    out[:h, :h] += one[:h, :h]
-    out[h:, h:] += two[h:, h:]
-    return (out + out.T) / 2
-
-
-def _halved(stiffness, loads):
-    """``L**-1 loads`` of ``stiffness = L L'``: its square is the displacement of the loads under each other."""
-    return solve_triangular(cholesky(stiffness, lower=True, check_finite=False), loads, lower=True, check_finite=False)
+    return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
 
 
 def _limits(gear):
@@ -207,6 +143,11 @@ def _places(gear):
     return roll_at_arc(gear, _arcs(gear, chebyshev.chebpts2(PLACES)))
 
 
+def carry(gear, arc):
+    """Matrix ``(n, PLACES)`` from values at the loads to values at arcs ``(n,)`` of the flank [mm]."""
+    return _carry(_variable(gear, arc))
+
+
 def _carry(places):
     """Matrix ``(n, PLACES)`` from values at the loads to values at `places` of `_variable`."""
     nodes = chebyshev.chebvander(chebyshev.chebpts2(PLACES), PLACES - 1)
@@ -221,31 +162,24 @@ def _knots(gear):
 
 
 def _spline(gear, influence):
-    arcs, carry = _knots(gear)
-    return RectBivariateSpline(arcs, arcs, carry @ influence @ carry.T)
+    arcs, matrix = _knots(gear)
+    return RectBivariateSpline(arcs, arcs, matrix @ influence @ matrix.T)
 
 
 @lru_cache(maxsize=64)
 def _hats(gear, refine):
     """Knots ``(3, n)`` of the hats next to the tip corner, and the matrix from values at the loads to values at their centres."""
-    edge = {name: size * gear.m_n / (HATS * refine) for name, size in EDGES.items()}
+    edge = {name: size * gear.m_n / (HATS * refine) for name, size in FLANK_EDGES.items()}
     arc = arc_at(gear, stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], span=SPAN))
-    knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
-    knots = np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]])
+    knots = hat_knots(arc, corner=True)
     knots = knots[:, knots[1] > arc[-1] - TIP_ZONE * gear.m_n]
-    return knots, _carry(_variable(gear, knots.mean(axis=0)))
+    return knots, carry(gear, knots.mean(axis=0))
 
 
 def _own_tooth(gear, influence, coefficient, refine):
     """Spline S(s, s) of a tooth and its `TipHats`, from the smooth influence between its loads."""
-    arcs, carry = _knots(gear)
-    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", carry, influence, carry))
-    knots, carry = _hats(gear, refine)
-    smooth = carry @ influence @ carry.T
+    arcs, matrix = _knots(gear)
+    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, influence, matrix))
+    knots, matrix = _hats(gear, refine)
+    smooth = matrix @ influence @ matrix.T
     return near, TipHats(knots.mean(axis=0), knots, smooth + coefficient * hat_logarithm(knots, knots))
-
-
-def clear():
-    """Forget the gears kept in this process."""
-    for kept in (_healthy, _panel, _places, _knots, _hats):
-        kept.cache_clear()

@@ -6,7 +6,7 @@ patches on the flank; see `gearfe.flexibility.solid` for what is made of them.
 
 import math
 from dataclasses import replace
-from functools import lru_cache
+from functools import partial
 from numbers import Integral
 
 import numpy as np
@@ -16,9 +16,11 @@ from geometry.mesh.sector import sector
 from ...flexibility.halfspace import hat_points
 from ...flexibility.hertz import half_plane, hat_logarithm
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
-from . import plane as ritz
+from ...flexibility.solved import solved_gears
 from .elimination import dissect
+from .join import join
 from .panel3d import panel3d
+from .plane import carry, loaded_sector
 
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.mesh.sector.SIZES`
@@ -35,7 +37,7 @@ SIZES = {
 }
 
 
-def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=3, axial=None, refine=1.0):
+def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
     """Flexibility of a gear of finite width by the energy model.
 
     Parameters
@@ -57,6 +59,8 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
         Degree of the polynomials along the width, 0 or at least 3; default `axial_degree`. 0 on a spur gear is plane strain.
     refine : float
         Divides the edge lengths of the triangles.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
     Returns
     -------
@@ -76,9 +80,9 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
     options = (width, int(order), int(axial), float(refine))
-    if not cracks:
-        return _healthy(gear, material, min(neighbours, gear.z - 1), *options)
-    return _cracked(gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
+    case = (gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
+    kept = solved_gears(cache)
+    return kept.get(("ritz3d", *case), partial(_solved, *case, kept))
 
 
 def axial_degree(width, m_n):
@@ -86,19 +90,14 @@ def axial_degree(width, m_n):
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
-@lru_cache(maxsize=16)
-def _healthy(gear, material, neighbours, *options):
-    one = _panel(gear, material, (), *options)
-    return _joined(gear, material, dict.fromkeys(solved_teeth(gear, (), neighbours), one), one, {}, *options, None)
-
-
-@lru_cache(maxsize=8)
-def _cracked(gear, material, cracks, neighbours, *options):
-    one = _panel(gear, material, (), *options)
-    found = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
+def _solved(gear, material, cracks, neighbours, width, order, axial, refine, cache):
+    options = {"width": width, "order": order, "axial": axial, "refine": refine, "cache": cache}
+    one = solid_sector(gear, material, (), **options)
+    own = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
     panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), one)
-    panels |= {t: _panel(gear, material, own, *options) for t, own in found.items()}
-    return _joined(gear, material, panels, one, found, *options, _healthy(gear, material, neighbours, *options))
+    panels |= {t: solid_sector(gear, material, found, **options) for t, found in own.items()}
+    healthy = flexibility3d(gear, material, neighbours=neighbours, **options) if cracks else None
+    return _joined(gear, material, panels, one, own, healthy, **options)
 
 
 def _even(cracks):
@@ -132,70 +131,81 @@ def _seams(cracks):
     return tuple(found), tuple(None if None in widths else tuple(widths) for widths in found.values())
 
 
-@lru_cache(maxsize=16)
-def _panel(gear, material, cracks, width, order, axial, refine):
-    shapes, parts = _seams(cracks)
-    section, tree = _sector(gear, shapes, refine)
-    options = {"order": order, "degree": axial, "parts": parts, "tree": tree}
-    return panel3d(gear, section, material, hats(gear), width, **options)
+def solid_sector(gear, material, cracks, *, width, order, axial, refine, cache=True):
+    """`Panel` of a sector with `cracks`, loaded by the hats times all modes; the arguments as of `flexibility3d`."""
+    kept = solved_gears(cache)
+
+    def solve():
+        shapes, parts = _seams(cracks)
+        section, tree = _sector(gear, shapes, refine, kept)
+        return panel3d(gear, section, material, hats(gear), width, order=order, degree=axial, parts=parts, tree=tree)
+
+    return kept.get(("ritz3d sector", gear, material, cracks, width, order, axial, refine), solve)
 
 
-@lru_cache(maxsize=16)
-def _plane_panel(gear, material, cracks, order, refine):
-    section, tree = _sector(gear, cracks, refine)
-    options = {"order": order, "degree": 0, "plane": True, "tree": tree}
-    return panel3d(gear, section, material, hats(gear), 1.0, **options)
+def _plane_sector(gear, material, cracks, order, refine, cache):
+    def solve():
+        section, tree = _sector(gear, cracks, refine, cache)
+        return panel3d(gear, section, material, hats(gear), 1.0, order=order, degree=0, plane=True, tree=tree)
+
+    return cache.get(("ritz3d plane sector", gear, material, cracks, order, refine), solve)
 
 
-@lru_cache(maxsize=16)
-def _sector(gear, cracks, refine):
-    made = sector(gear, cracks, refine=refine, sizes=SIZES)
-    return made, dissect(made)
+def _sector(gear, cracks, refine, cache):
+    """The section's triangles and their nested halves."""
+
+    def solve():
+        made = sector(gear, cracks, refine=refine, sizes=SIZES)
+        return made, dissect(made)
+
+    return cache.get(("ritz3d section", gear, cracks, refine), solve)
 
 
-def _joined(gear, material, panels, one, cracks, width, order, axial, refine, healthy):
-    influence, opening = ritz._join(gear, panels, one)
+def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial, refine, cache):
+    influence, opening = join(gear, panels, one)
     degree = max(axial - LOST, 0)
     kept = (np.arange(PLACES)[:, None] * (axial + 1) + np.arange(degree + 1)).ravel()
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
-    missing = _missing(gear, material, (), order, refine)
+    missing = _missing(gear, material, (), order, refine, cache)
     for tooth in panels:
         influence[tooth, tooth] = influence[tooth, tooth] + np.kron(missing, np.eye(degree + 1))
     even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
     for tooth, own in cracks.items():
         if all(crack.through for crack in own):
-            influence[tooth, tooth][even] += _missing(gear, material, own, order, refine) - missing
-    made = parted(gear, material, width, degree, influence, sum(p.unknowns for p in panels.values()), healthy)
+            influence[tooth, tooth][even] += _missing(gear, material, own, order, refine, cache) - missing
+    unknowns = sum(p.unknowns for p in panels.values())
+    made = parted(gear, material, width, degree, influence, unknowns, healthy, cache=cache)
     if not cracks:
         return made
     faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
     return replace(made, seam=faces)
 
 
-@lru_cache(maxsize=64)
-def _missing(gear, material, cracks, order, refine):
+def _missing(gear, material, cracks, order, refine, cache):
     """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm], known in plane strain.
 
     There `ritz` has it: it takes the singular fields of loads out. Near the tip corner the difference is that of all modes along
     the width, to a thousandth; what a crack adds to it is taken for the even mode only.
     """
-    panels = {tooth: _plane_panel(gear, material, own, order, refine) for tooth, own in ((0, cracks), (1, ()))}
-    found = ritz._join(gear, panels, panels[1])[0][0, 0]
-    return plane_hats(gear, material, cracks) + half_plane(material) * hat_logarithm(hats(gear), hats(gear)) - found
+
+    def solve():
+        panels = {tooth: _plane_sector(gear, material, own, order, refine, cache) for tooth, own in ((0, cracks), (1, ()))}
+        found = join(gear, panels, panels[1])[0][0, 0]
+        local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
+        return plane_hats(gear, material, cracks, cache=cache) + local - found
+
+    return cache.get(("ritz3d missing", gear, material, cracks, order, refine), solve)
 
 
-@lru_cache(maxsize=64)
-def plane_hats(gear, material, cracks=()):
+def plane_hats(gear, material, cracks=(), *, cache=True):
     """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
-    panels = {k: ritz._panel(gear, material, own, "plane strain", 4, 1.0) for k, own in enumerate((cracks, ()))}
-    influence = ritz._join(gear, panels, panels[1])[0][0, 0]
-    points, weight = hat_points(hats(gear), 12)
-    carry = ritz._carry(ritz._variable(gear, points.ravel())).reshape(*points.shape, -1)
-    mean = np.einsum("hg,hgk->hk", weight, carry)
-    return mean @ (influence + influence.T) @ mean.T / 2
+    kept = solved_gears(cache)
 
+    def solve():
+        panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
+        influence = join(gear, panels, panels[1])[0][0, 0]
+        points, weight = hat_points(hats(gear), 12)
+        mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
+        return mean @ (influence + influence.T) @ mean.T / 2
 
-def clear():
-    """Forget the gears kept in this process."""
-    for kept in (_healthy, _cracked, _panel, _plane_panel, _sector, _missing, plane_hats):
-        kept.cache_clear()
+    return kept.get(("plane hats", gear, material, cracks), solve)

@@ -1,0 +1,22 @@
+"""`Solved`: what a section's contact gives at some phases, whether gears share the load or a plain sum of pairs does."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """Contact at some phases, per unit width.
+
+    `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
+    `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
+    `closed` the phases at which crack faces touch and were kept from passing through each other.
+    """
+
+    order: np.ndarray
+    approach: np.ndarray
+    tangent: np.ndarray
+    line_load: np.ndarray
+    pressure: np.ndarray
+    closed: tuple = ()
