@@ -6,10 +6,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.linalg import eigh
 
-from .contact_law import force, slopes
+from .contact_law import LAW, force, slopes
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
-LAW = ("power", "damping", "beta", "backlash", "film", "push")
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +115,7 @@ class Machine:
         object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
         object.__setattr__(self, "C", R.T @ (np.array([s.c for s in self.springs])[:, None] * R))
         object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
-        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW}
+        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW if key != "per_depth"}
         law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})

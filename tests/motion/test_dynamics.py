@@ -32,7 +32,7 @@ def test_order_of_the_fast_path_and_the_reference(compiled):
 
 def test_compiled_loop_is_the_same(monkeypatch):
     """Where numba is missing its loop is run as it stands, for a shorter time."""
-    monkeypatch.setattr("gearfe.motion.fast.find_spec", lambda name: True)
+    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: True)
     duration = 0.02 if importlib.util.find_spec("numba") else 0.006
     cases = [
         two_masses(error=((1e-6, 500.0, 0.3),)),
