@@ -120,7 +120,7 @@ class ToothDamage:
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class GearMesh:
     """A gear mesh: the force ``F`` of `gearfe.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
 
     Parameters
@@ -131,14 +131,14 @@ class Mesh:
     stiffness : float, ndarray, StiffnessCurve or Table
         Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
     frequency : float
-        Mesh frequency [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+        GearMesh frequency [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
     phase : float
         At t = 0; whole cycles count (they number the teeth).
     teeth, first : (int, int)
         Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
     damage : tuple of ToothDamage
     error : tuple of (float, float, float)
-        Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
+        GearMesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
     damping, beta, zeta : float
         ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
         m))`` by `gearfe.motion.simulate.Machine` over all degrees of freedom the row moves in rotation or translation.
@@ -183,6 +183,9 @@ class Mesh:
             raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
         if self.power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {self.power} needs a backlash > 0 (inf: no back flank)")
+        for one in self.error:
+            if len(one) != 3 or not all(map(math.isfinite, one)):
+                raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
         changes = []
@@ -208,7 +211,7 @@ class Mesh:
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t):
-        """Mesh error and its rate at times `t` [m], [m/s]."""
+        """GearMesh error and its rate at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
         for amplitude, frequency, angle in self.error:
             turn = 2 * math.pi * frequency * np.asarray(t) + angle
@@ -217,7 +220,7 @@ class Mesh:
         return out, rate
 
     def cycles(self):
-        """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
+        """GearMesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
     def entries(self, duration):

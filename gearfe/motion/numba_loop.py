@@ -38,7 +38,9 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
     still = np.concatenate([np.zeros(other), np.where(count > 1, 0.0, flat.knots[flat.knot_place[:-1], 1][: count.size])])
     matrices = _matrices(plan, kept, still)
-    changing = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
+    changing = [
+        flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1
+    ]
     flat = flat._replace(
         knots=np.concatenate(changing) if changing else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, changing)])
     )

@@ -48,7 +48,7 @@ def simulate(
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
-        Keep one output in so many; without `dt` of those that `default_step` is apart, whatever the step.
+        Keep every n-th output; without `dt` of those that `default_step` is apart, whatever the step.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool
@@ -123,7 +123,9 @@ def _outputs(machine, duration, dt, every):
 
 def _check(machine, duration, method, dt, every):
     if not isinstance(machine, Machine):
-        raise ValueError(f"machine = {type(machine).__name__}, but give a Machine (see gearfe.machine.stages)")
+        raise ValueError(
+            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine(scene), gf.planetary(...), gf.gear_pair(...)"
+        )
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:

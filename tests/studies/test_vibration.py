@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.studies.responses import analysis, responses
+from gearfe.studies.vibration import analysis, responses
 
 SCENE = gf.load_scene("compound_planetary")
 
