@@ -131,7 +131,7 @@ class GearMesh:
     stiffness : float, ndarray, StiffnessCurve or Table
         Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
     frequency : float
-        GearMesh frequency [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+        Of the mesh [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
     phase : float
         At t = 0; whole cycles count (they number the teeth).
     teeth, first : (int, int)

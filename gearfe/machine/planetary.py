@@ -1,7 +1,7 @@
 """A planetary stage with any number of planets, and the phases of its meshes.
 
 What a source leaves out is an argument with a default, named in the docstring as an assumption. Stiffnesses are given by mesh
-name as anything `gearfe.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `gearfe.machine.gear_mesh.ToothDamage`.
+name as anything `gearfe.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `ToothDamage`.
 """
 
 import math

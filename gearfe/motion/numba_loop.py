@@ -44,11 +44,12 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     flat = flat._replace(
         knots=np.concatenate(changing) if changing else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, changing)])
     )
-    laws, bent = np.array([machine.law[key].astype(float) for key in LAW]).T.copy(), bool((machine.law["power"] != 1).any())
+    laws = np.array([machine.law[key].astype(float) for key in LAW]).T.copy()
+    kind = plan.affine, bool((machine.law["power"] != 1).any()), len(plan.P) > len(machine.meshes)
     linear = np.stack([plan.k, plan.c])
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
-    done = _run(matrices, laws, bent, linear, flat, edges, z.copy(), plan.h, start, every, states, counts)
+    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
@@ -72,10 +73,17 @@ def _matrices(plan, kept, still):
 
 
 @njit(cache=True, error_model="numpy")
-def _forces(out, x, now, laws, bent, linear, rub_mesh, total, rates):
+def _forces(out, x, now, laws, kind, linear, rub_mesh, total):
     """Forces of the meshes and friction rows beyond the linear part, and loads that change."""
     k, e, rate, weight, load = now
+    affine, bent, rates = kind
     m, rub = k.size, rub_mesh.size
+    for j in range(load.size):
+        out[m + rub + j] = load[j]
+    if affine:  # every mesh stays closed: the same, without asking where it is
+        for i in range(m):
+            out[i] = (k[i] - linear[0, i]) * x[i] - k[i] * e[i] - (laws[i, 1] + laws[i, 2] * k[i]) * rate[i]
+        return
     for i in range(m):
         v, law = x[m + i] if rates else 0.0, laws[i]
         whole = _force(x[i] - e[i], v - rate[i], k[i], law[0], law[1], law[2], law[3], law[4], law[5], law[6], bent)
@@ -83,8 +91,6 @@ def _forces(out, x, now, laws, bent, linear, rub_mesh, total, rates):
         total[i] = whole
     for j in range(rub):
         out[m + j] = weight[j] * total[rub_mesh[j]]
-    for j in range(load.size):
-        out[m + rub + j] = load[j]
 
 
 @njit(cache=True, error_model="numpy")
@@ -114,10 +120,10 @@ def _stage(x, base, columns, f):
 
 
 @njit(cache=True, error_model="numpy")
-def _run(matrices, laws, bent, linear, flat, edges, z, h, start, every, states, counts):
+def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts):
     E, Y, S, T, PF, add, push, P = matrices
     m, p, f, n, size, last = len(laws), P.shape[0], S.shape[1], z.size, E.shape[2], len(E) - 1
-    rates, rub, whole, opens = p > m, flat.rub_mesh, 1 << last, last > 0
+    rub, whole, opens = flat.rub_mesh, 1 << last, last > 0
     g = np.zeros(4 * f)  # forces of the stages 1, 3, 4, 2
     f1, f3, f4, f2, f13, f134 = g[:f], g[f : 2 * f], g[2 * f : 3 * f], g[3 * f :], g[: 2 * f], g[: 3 * f]
     y, x, x0, new, total = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(m)
@@ -153,16 +159,16 @@ def _run(matrices, laws, bent, linear, flat, edges, z, h, start, every, states, 
             lookup(flat, t + own / 2, middle)
             lookup(flat, start + h * (step + (at + part) / whole), high)
             _stage(y, add[level], Y[level], z)
-            _forces(f1, x0, low, laws, bent, linear, rub, total, rates)
+            _forces(f1, x0, low, laws, kind, linear, rub, total)
             _stage(x, before, S[level], f1)
             change = opens and _changed(side, x, middle[1], laws)
-            _forces(f2, x, middle, laws, bent, linear, rub, total, rates)
+            _forces(f2, x, middle, laws, kind, linear, rub, total)
             _stage(x, before, S[level], f2)
             change = change or (opens and _changed(side, x, middle[1], laws))
-            _forces(f3, x, middle, laws, bent, linear, rub, total, rates)
+            _forces(f3, x, middle, laws, kind, linear, rub, total)
             _stage(x, after, T[level], f13)
             change = change or (opens and _changed(side, x, high[1], laws))
-            _forces(f4, x, high, laws, bent, linear, rub, total, rates)
+            _forces(f4, x, high, laws, kind, linear, rub, total)
             for i in range(f):
                 f3[i] += f2[i]
             _stage(new, push[level], PF[level], f134)

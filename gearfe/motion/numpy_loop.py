@@ -4,6 +4,7 @@ A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe
 """
 
 import numpy as np
+from numpy import add, multiply
 
 from ..machine.contact_law import force
 from . import excitation
@@ -22,7 +23,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
         ``steps`` done, ``rejected`` for a change of contact, ``losses`` of contact.
     """
     step, forces = Step(plan), (_AffineForces if plan.affine else _Forces)(plan, machine, flat)
-    whole = len(plan.levels) == 1  # nothing opens or bends
+    fill, whole = forces.fill, len(plan.levels) == 1  # nothing opens or bends
     states = np.empty((1 + steps // every, z.size))
     states[0] = z
     stats = {"steps": 0, "rejected": 0, "losses": 0}
@@ -33,7 +34,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
         grid = start + plan.h * (first + np.arange(2 * count + 1) / 2)
         forces.at(grid)
         for i in range(count):
-            new = step(z, 0, forces, 2 * i)
+            new = step(z, 0, fill, 2 * i)
             if whole:
                 stats["steps"] += 1
             else:
@@ -70,7 +71,7 @@ def _halve(step, plan, forces, sides, z, side, start, breaks, stats):
         low = start + plan.h * at / whole
         high = low + plan.h / 2**level
         forces.at(np.array([low, (low + high) / 2, high]))
-        new = step(z, level, forces, 0)
+        new = step(z, level, forces.fill, 0)
         if level < last and (sides.changed(side, step, new, *forces.e[1:]) or _broken(breaks, low, high)):
             level += 1
             stats["rejected"] += 1
@@ -97,7 +98,8 @@ class _Forces:
         self.weight = excitation.rubbing(self.flat, phase) if self.rub else None
         self.load = excitation.loads(self.flat, times)
 
-    def __call__(self, x, out, i):
+    def fill(self, x, out, i):
+        """Forces `out` at x, at the time of number i; for `gearfe.motion.exponential.Step`."""
         m, plan, rub = self.m, self.plan, self.rub
         v = x[m:] if self.rates else 0.0
         total = force(x[:m] - self.e[i], v - self.rate[i], self.k[i], self.law)
@@ -113,14 +115,15 @@ class _AffineForces(_Forces):
     def at(self, times):
         super().at(times)
         m, k = self.m, self.k
-        self.slope, self.shift = np.zeros((2, len(k), m + self.load.shape[1]))
-        self.slope[:, :m] = k - self.plan.k
-        self.shift[:, :m] = -k * self.e - (self.law["damping"] + self.law["beta"] * k) * self.rate
-        self.shift[:, m:] = self.load
+        slope, shift = np.zeros((2, len(k), m + self.load.shape[1]))
+        slope[:, :m] = k - self.plan.k
+        shift[:, :m] = -k * self.e - (self.law["damping"] + self.law["beta"] * k) * self.rate
+        shift[:, m:] = self.load
+        self.slope, self.shift = list(slope), list(shift)  # rows of lists are found sooner than those of arrays
 
-    def __call__(self, x, out, i):
-        np.multiply(self.slope[i], x, out)
-        np.add(out, self.shift[i], out)
+    def fill(self, x, out, i):
+        multiply(self.slope[i], x, out)
+        add(out, self.shift[i], out)
 
 
 class _Sides:

@@ -124,7 +124,7 @@ def _outputs(machine, duration, dt, every):
 def _check(machine, duration, method, dt, every):
     if not isinstance(machine, Machine):
         raise ValueError(
-            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine(scene), gf.planetary(...), gf.gear_pair(...)"
+            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
         )
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"duration = {duration} s, but it must be positive")
