@@ -43,7 +43,7 @@ class Load:
         """Refuse what is no load."""
         if callable(self.value):
             return
-        if np.ndim(self.value) == 0:
+        if not isinstance(self.value, (tuple, list)) and np.ndim(self.value) == 0:
             if not math.isfinite(self.value):
                 raise ValueError(f"load {self.name} = {self.value}, but it must be finite")
             return

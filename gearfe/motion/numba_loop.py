@@ -192,7 +192,13 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
             at += part
             counts[0] += 1
             level = max(0, level - 1) if at == whole else max(1, level - 1)
-            low, high, known = high, low, start + h * (step + at / whole)
+            known = start + h * (step + at / whole)
+            for i in range(m):
+                k[0, i], e[0, i], rate[0, i] = k[2, i], e[2, i], rate[2, i]
+            for i in range(rub.size):
+                weight[0, i] = weight[2, i]
+            for i in range(load.shape[1]):
+                load[0, i] = load[2, i]
         if step % 64 == 0 and not np.isfinite(np.sum(z)):
             return step
         if (step + 1) % every == 0:
