@@ -136,7 +136,7 @@ def compound_planetary(
     n_planets : int
         Branches.
     beta : float
-        GearMesh damping over stiffness [s]; the article's constants are lost, assumed 2e-6.
+        Mesh damping over stiffness [s]; the article's constants are lost, assumed 2e-6.
     zeta, bearing : float
         Damping ratio and stiffness [N/m] of the supports of every body, assumed 0.02 and 1e8.
     hold, drive : float

@@ -138,7 +138,7 @@ class GearMesh:
         Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
     damage : tuple of ToothDamage
     error : tuple of (float, float, float)
-        GearMesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
+        Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
     damping, beta, zeta : float
         ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
         m))`` by `gearfe.motion.simulate.Machine` over all degrees of freedom the row moves in rotation or translation.
@@ -211,7 +211,7 @@ class GearMesh:
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t):
-        """GearMesh error and its rate at times `t` [m], [m/s]."""
+        """Mesh error and its rate at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
         for amplitude, frequency, angle in self.error:
             turn = 2 * math.pi * frequency * np.asarray(t) + angle
@@ -220,7 +220,7 @@ class GearMesh:
         return out, rate
 
     def cycles(self):
-        """GearMesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
+        """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
     def entries(self, duration):

@@ -1,4 +1,4 @@
-"""GearMesh errors of a whole machine: of the profiles at mesh frequency, of eccentric bodies, of misplaced ones."""
+"""Mesh errors of a whole machine: of the profiles at mesh frequency, of eccentric bodies, of misplaced ones."""
 
 import math
 from dataclasses import replace

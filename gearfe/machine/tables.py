@@ -97,7 +97,7 @@ class Stage:
     follower : tuple of str
         Bodies of the first gear that it drives.
     mesh : float
-        GearMesh frequency [Hz].
+        Mesh frequency [Hz].
     turning : float
         Of the driving gear, against the carrier if there is one [Hz].
     fault : float, optional
@@ -258,7 +258,7 @@ def natural_frequencies(machine, *, x=None):
     ----------
     machine : Machine
     x : ndarray, shape (m,), optional
-        GearMesh compressions [m] about which laws that are not linear are taken; default: those at rest.
+        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
 
     Returns
     -------
