@@ -12,7 +12,7 @@ from scipy.ndimage import maximum_filter1d
 
 from geometry.pair.gear_pair import GearPair
 
-from ..contact.plane import Mesh
+from ..contact.plane import PairContact
 from ..energy.closed import coupled
 from ..energy.closed.plain_sum import plain_sum
 from ..energy.ritz import plane as ritz
@@ -209,7 +209,7 @@ def _converged(pair, materials, phase, extended, damage, method, cache, **option
         solved(gear, material, cracks, neighbours=math.ceil(pair.eps_alpha), **options)
         for gear, material, cracks in zip((pair.gear_1, pair.gear_2), materials, damage, strict=True)
     ]
-    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=options["state"])
+    mesh = PairContact(pair, materials, flexible, phase, extended=extended, state=options["state"])
     return mesh.solve, {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
 
 
@@ -219,7 +219,7 @@ def _coupled(pair, materials, phase, state):
         coupled.flexibility(gear, material, neighbours=neighbours, state=state)
         for gear, material in zip((pair.gear_1, pair.gear_2), materials, strict=True)
     ]
-    return Mesh(pair, materials, flexible, phase, extended=False, state=state).solve, {"extended": False}
+    return PairContact(pair, materials, flexible, phase, extended=False, state=state).solve, {"extended": False}
 
 
 def _curve(pair, phase, force, solve, meta):
