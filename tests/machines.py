@@ -6,8 +6,8 @@ import math
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.gear_mesh import Mesh, Samples, cycle_table
-from gearfe.machine.herringbone import herringbone_planetary
+from gearfe.machine.gear_mesh import GearMesh, Samples, cycle_table
+from gearfe.machine.herringbone_planetary import herringbone_planetary
 from gearfe.machine.tables import Load, Machine, Spring
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
@@ -18,7 +18,7 @@ STEEL = gf.Material(E=207e3, nu=0.25)
 
 
 def two_masses(c=10.0, zeta=0.03, stiffness=WAVE, load=1000.0, **mesh):
-    one = Mesh("m", np.array([1.0, -1.0]), stiffness, frequency=500.0, zeta=zeta, **mesh)
+    one = GearMesh("m", np.array([1.0, -1.0]), stiffness, frequency=500.0, zeta=zeta, **mesh)
     ground = Spring("ground", np.array([0.0, 1.0]), 5e7, c)
     return Machine(("a.x", "b.x"), np.array([1.0, 2.0]), (ground,), (one,), (Load("F", np.array([1.0, 0.0]), load),))
 
@@ -37,6 +37,7 @@ def tooth(wave, loss, eps):
 
 def herringbone(stage, damage=None, **options):
     stiffness = {"sun_planet": 6e8 * SHAPE, "planet_ring": 7e8 * SHAPE}
+    options = {"members": gf.load_scene("herringbone").machine["bodies"]} | options
     return herringbone_planetary(stage, stiffness, damage=damage, **options)
 
 

@@ -149,7 +149,7 @@ def dynamics(arguments):
 
     from ..machine.tables import natural_frequencies
     from ..scene.load import load_scene
-    from ..studies.responses import analysis, responses
+    from ..studies.vibration import analysis, responses
 
     _check_outputs(arguments, output="response", plot="picture", kurtogram="picture")
     scene = load_scene(arguments.scene)
@@ -177,7 +177,7 @@ def dynamics(arguments):
 def signal(arguments):
     """``gearfe signal``."""
     from ..signal.signal_file import read_signal
-    from ..studies.responses import analyse
+    from ..studies.vibration import analyse
 
     _check_outputs(arguments, plot="picture", kurtogram="picture")
     read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
@@ -188,7 +188,7 @@ def signal(arguments):
 
 
 def _print_analysis(report, arguments):
-    """Tables, envelope and plots of a `gearfe.studies.responses.Analysis`."""
+    """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`."""
     from ..signal.demodulation import demodulate
 
     if report.lines:

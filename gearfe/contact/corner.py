@@ -20,7 +20,7 @@ from ..energy.ritz.solid import plane_hats
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
-from .plane import CORNER, Mesh
+from .plane import CORNER, PairContact
 from .sharing import share
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
@@ -87,7 +87,7 @@ def _table(pair, materials, line_load, corner, span, cache):
     away = np.unique(np.append(away, 0.0))
     sign, limit = (1, pair.path[1]) if corner == 1 else (-1, pair.path[0])
     nominal = limit + sign * away
-    mesh = Mesh(pair, materials, bodies, (nominal - pair.path[0]) / pair.p_bt, extended=True, state="plane strain")
+    mesh = PairContact(pair, materials, bodies, (nominal - pair.path[0]) / pair.p_bt, extended=True, state="plane strain")
     column = int(np.flatnonzero(mesh.found.order == 0)[0])
     c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     loads = line_load * LOADS

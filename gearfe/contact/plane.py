@@ -33,7 +33,7 @@ def _within(contacts, reach):
     return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
 
 
-class Mesh:
+class PairContact:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
     Parameters

@@ -10,6 +10,8 @@ import numpy as np
 
 from ..flexibility.hertz import contact_modulus
 
+LAW = ("power", "damping", "beta", "per_depth", "backlash", "film", "push")  # in the order `contact_force` takes them
+
 
 def step(x, x0, h0, x1, h1):
     """Cubic step of multibody programs: `h0` up to `x0`, `h1` from `x1` on, ``3 u**2 - 2 u**3`` between.
@@ -67,6 +69,22 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
     return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))
 
 
+def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push, bent):
+    """Force of a mesh, of numbers or of arrays; see `force`.
+
+    Written without branches, so that numpy takes arrays through it and numba compiles it for numbers. `bent`: whether any
+    power is not 1. Where the flanks are apart both depths are zero, and with them the spring.
+    """
+    front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
+    ahead, behind = front > 0, rear > 0
+    inside = ahead | behind
+    u = np.minimum((front + rear) * per_depth, 1.0)
+    share = inside * (u * u * (3 - 2 * u) + (per_depth == 0)) + (1 - inside) * film
+    spring = front**power - rear**power if bent else front - rear
+    out = k * spring + (damping + beta * k) * share * v
+    return push * (ahead * np.maximum(out, 0.0) + behind * np.minimum(out, 0.0)) + (1 - push) * out
+
+
 def force(x, v, k, law):
     """Force of each mesh along its line of action [N], positive when it pushes.
 
@@ -81,16 +99,9 @@ def force(x, v, k, law):
     k : ndarray, shape (..., m)
         Stiffness [N/m^power].
     law : dict of ndarray, shape (m,)
-        ``power, damping, beta, depth, backlash, film, push`` (see `gearfe.machine.gear_mesh.Mesh`).
+        `LAW` (see `gearfe.machine.gear_mesh.GearMesh`; ``per_depth`` is one over its depth, or 0).
     """
-    back = x < -law["backlash"]
-    delta = np.where(back, -law["backlash"] - x, np.maximum(x, 0.0))
-    inside = back | (x > 0)
-    full = law["damping"] + law["beta"] * k
-    u = np.minimum(delta * law["per_depth"], 1.0)
-    share = np.where(inside, np.where(law["per_depth"] > 0, u * u * (3 - 2 * u), 1.0), law["film"])
-    out = k * np.where(law["power"] == 1.0, delta, delta ** law["power"]) * np.where(back, -1.0, 1.0) + full * share * v
-    return np.where(law["push"], np.where(back, np.minimum(out, 0.0), np.maximum(out, 0.0)) * inside, out)
+    return contact_force(x, v, k, *(law[key] for key in LAW), np.any(law["power"] != 1))
 
 
 def slopes(x, v, k, law):

@@ -120,7 +120,7 @@ class ToothDamage:
 
 
 @dataclass(frozen=True, slots=True)
-class Mesh:
+class GearMesh:
     """A gear mesh: the force ``F`` of `gearfe.machine.contact_law.force` acts on the degrees of freedom as ``-row F``.
 
     Parameters
@@ -131,7 +131,7 @@ class Mesh:
     stiffness : float, ndarray, StiffnessCurve or Table
         Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
     frequency : float
-        Mesh frequency [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+        Of the mesh [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
     phase : float
         At t = 0; whole cycles count (they number the teeth).
     teeth, first : (int, int)
@@ -183,6 +183,9 @@ class Mesh:
             raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
         if self.power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {self.power} needs a backlash > 0 (inf: no back flank)")
+        for one in self.error:
+            if len(one) != 3 or not all(map(math.isfinite, one)):
+                raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
         changes = []

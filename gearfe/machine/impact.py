@@ -11,8 +11,9 @@ from geometry.pair.lines import contact_lines, lost_length
 from ..scene.machine_table import IMPACT
 from .contact_cycle import impact_cycle
 from .contact_law import hertz_coefficient
-from .herringbone import pitted_helical
-from .stages import pitted_planetary
+from .helical_pair import pitted_helical
+from .pitted_planetary import pitted_planetary
+from .scene_curves import speed_of, stage_of
 from .tables import pulses
 
 PULSED = 100.0  # s: for so long the load on the carrier has pulses
@@ -34,21 +35,14 @@ def pits_loss(pair, pits):
     return lost
 
 
-def impact_planetary(stage, materials, found, machine, speed):
-    """Planetary stage under the impact law.
-
-    Parameters
-    ----------
-    stage : PlanetarySet
-    materials : dict
-        ``{"sun_planet": (Material, Material), "planet_ring": ...}``.
-    found : list of Pit
-        On a tooth of the sun.
-    machine : dict
-        A scene's ``[machine]`` table (`gearfe.scene.machine_table`).
-    speed : float
-        Of the sun [rad/s].
-    """
+def impact_planetary(scene, case):
+    """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
+    chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
+    if pits_of(chosen["planet_ring"].damage.get(case, {})):
+        raise ValueError("the impact law knows pits of the sun only: use contact = 'linear'")
+    found = pits_of(chosen["sun_planet"].damage.get(case, {}))
+    materials = {name: one.materials for name, one in chosen.items()}
+    stage, machine = stage_of(scene), scene.machine
     options, pair = _options(machine), stage.sun_planet
     stiffness = {"sun_planet": impact_cycle(pair, materials["sun_planet"])}
     stiffness["planet_ring"] = impact_cycle(stage.planet_ring, materials["planet_ring"])
@@ -65,14 +59,16 @@ def impact_planetary(stage, materials, found, machine, speed):
         )
     radii = (float(r) for r in pair.curvature_radii(pair.pitch_phase))
     return pitted_planetary(
-        stage, stiffness, damage=damage, speed=speed, torque=machine["torque_Nm"], carrier_torque=load,
+        stage, stiffness, damage=damage, speed=speed_of(scene), torque=machine["torque_Nm"], carrier_torque=load,
         friction=_friction(options),
         **_law(options, machine, hertz_coefficient(*radii, materials["sun_planet"])),
     )  # fmt: skip
 
 
-def impact_helical(pair, materials, found, machine, speed):
-    """Helical pair under the impact law; see `impact_planetary`."""
+def impact_helical(scene, case):
+    """Helical pair of a scene under the impact law, healthy or with pits on a tooth of the pinion."""
+    chosen, machine = scene.pair(), scene.machine
+    pair, materials, found = chosen.pair, chosen.materials, pits_of(chosen.damage.get(case, {}))
     options = _options(machine)
     for key in ("friction", "pulse_Nm"):
         if options[key]:
@@ -81,7 +77,7 @@ def impact_helical(pair, materials, found, machine, speed):
     law = _law(options, machine, hertz_coefficient(*radii, materials))
     pits = [(found[0].tooth, pits_loss(pair, found))] if found else []
     return pitted_helical(
-        pair, materials, pits=pits, speed=speed, torque=machine["torque_Nm"],
+        pair, materials, pits=pits, speed=speed_of(scene), torque=machine["torque_Nm"],
         **{key: law[key] for key in ("damping", "depth", "backlash")},
     )  # fmt: skip
 

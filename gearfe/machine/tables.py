@@ -1,15 +1,16 @@
 """`Machine`: masses, linear springs, gear meshes and loads as tables; its matrices, modes and state of rest."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from .contact_law import force, slopes
+from .contact_law import LAW, force, slopes
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
-LAW = ("power", "damping", "beta", "backlash", "film", "push")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,16 +28,41 @@ class Load:
     """A load along a row: a number, a history ``(times, values)`` linear between its times, or a function of an array of times.
 
     A history holds its first and last values outside; two equal times are a jump. A function must be smooth.
+
+    Raises
+    ------
+    ValueError
+        If a number or a history is not finite, or the times of a history do not rise.
     """
 
     name: str
     row: np.ndarray
-    value: object
+    value: float | tuple[NDArray, NDArray] | Callable
+
+    def __post_init__(self):
+        """Refuse what is no load."""
+        if callable(self.value):
+            return
+        if not isinstance(self.value, (tuple, list)) and np.ndim(self.value) == 0:
+            if not math.isfinite(self.value):
+                raise ValueError(f"load {self.name} = {self.value}, but it must be finite")
+            return
+        times, values = (np.asarray(part, dtype=float) for part in self.value)
+        if times.ndim != 1 or times.shape != values.shape or not times.size:
+            raise ValueError(f"load {self.name}: give as many times as values, got shapes {times.shape} and {values.shape}")
+        if not (np.isfinite(times).all() and np.isfinite(values).all()):
+            raise ValueError(f"load {self.name}: its history has a time or a value that is not finite (nan or inf)")
+        if (np.diff(times) < 0).any():
+            at = int(np.argmax(np.diff(times) < 0)) + 1
+            raise ValueError(f"load {self.name}: time {times[at]:g} s follows {times[at - 1]:g} s; sort the history by time")
 
     def __call__(self, t):
         """Value at times `t`."""
         if callable(self.value):
-            return np.broadcast_to(np.asarray(self.value(t), dtype=float), np.shape(t))
+            found = np.broadcast_to(np.asarray(self.value(t), dtype=float), np.shape(t))
+            if not np.isfinite(found).all():
+                raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
+            return found
         if np.ndim(self.value) == 0:
             return np.full(np.shape(t), float(self.value))
         return np.interp(t, *self.value)
@@ -60,6 +86,36 @@ def pulses(base, peak, period, width, count, *, start=0.0, rise=0.1):
 
 
 @dataclass(frozen=True, slots=True)
+class Stage:
+    """One stage of a machine: who drives whom, and what is heard of it.
+
+    Attributes
+    ----------
+    name : str
+    driver : tuple of str
+        Bodies of the driving gear (two of a herringbone gear).
+    follower : tuple of str
+        Bodies of the first gear that it drives.
+    mesh : float
+        Mesh frequency [Hz].
+    turning : float
+        Of the driving gear, against the carrier if there is one [Hz].
+    fault : float, optional
+        Of a damaged tooth of the driving gear that meets several gears [Hz]; None: that is `turning`.
+    carrier : float, optional
+        Of the carrier [Hz].
+    """
+
+    name: str
+    driver: tuple[str, ...]
+    follower: tuple[str, ...]
+    mesh: float
+    turning: float
+    fault: float | None = None
+    carrier: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Machine:
     """A machine as tables.
 
@@ -74,10 +130,12 @@ class Machine:
     mass : ndarray, shape (n,)
         Mass [kg] or moment of inertia [kg m2] of each.
     springs : tuple of Spring
-    meshes : tuple of Mesh
+    meshes : tuple of GearMesh
     loads : tuple of Load
     notes : dict
         What had to be assumed, and derived numbers to be printed (phases, frequencies).
+    stages : tuple of Stage
+        What spectra and errors of the machine ask for; the last one is the driven one.
 
     Attributes
     ----------
@@ -95,6 +153,7 @@ class Machine:
     meshes: tuple
     loads: tuple = ()
     notes: dict = field(default_factory=dict)
+    stages: tuple[Stage, ...] = ()
     K: np.ndarray = field(init=False)
     C: np.ndarray = field(init=False)
     G: np.ndarray = field(init=False)
@@ -116,7 +175,7 @@ class Machine:
         object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
         object.__setattr__(self, "C", R.T @ (np.array([s.c for s in self.springs])[:, None] * R))
         object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
-        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW}
+        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW if key != "per_depth"}
         law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})

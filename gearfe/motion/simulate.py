@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 
 from ..machine.tables import Machine
 from . import excitation
-from .fast import fast
+from .fixed_step import fixed_steps
 from .response import Response, acceleration
 from .step_control import WANTED_OPEN, chosen_step, default_step, difference
 
@@ -48,7 +48,7 @@ def simulate(
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
-        Keep one output in so many; without `dt` of those that `default_step` is apart, whatever the step.
+        Keep every n-th output; without `dt` of those that `default_step` is apart, whatever the step.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool
@@ -82,10 +82,10 @@ def simulate(
     if dt is None:
         return _controlled(machine, duration, state, initial is not None, every, error, numba)
     steps = every * _outputs(machine, duration, dt, every)
-    out = fast(machine, duration, steps, state, every=every, numba=numba)
+    out = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
     if not error:
         return out
-    finer = fast(machine, duration, 2 * steps, state, every=2 * every, numba=numba)
+    finer = fixed_steps(machine, duration, 2 * steps, state, every=2 * every, numba=numba)
     stats = {"error": max(difference(out, finer)), "seconds": out.stats["seconds"] + finer.stats["seconds"]}
     return replace(out, stats=out.stats | stats | {"error_seconds": float(duration)})
 
@@ -97,13 +97,13 @@ def _controlled(machine, duration, state, given, every, error, numba):
     outputs = _outputs(machine, duration, None, every)
     every = math.ceil(duration / outputs / dt * (1 - 1e-9))
     steps = every * outputs
-    out = fast(machine, duration, steps, state, every=every, numba=numba)
+    out = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
     if not (out.stats["losses"] or error):
         stats = {"error": doubt, "error_seconds": length, "seconds": time.perf_counter() - started}
         return replace(out, stats=out.stats | stats)
     for _ in range(FINER):
         steps, every = 2 * steps, 2 * every
-        finer = fast(machine, duration, steps, state, every=every, numba=numba)
+        finer = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
         doubt = max(difference(out, finer))
         out = finer
         if doubt <= ALLOWED or not out.stats["losses"]:
@@ -123,7 +123,9 @@ def _outputs(machine, duration, dt, every):
 
 def _check(machine, duration, method, dt, every):
     if not isinstance(machine, Machine):
-        raise ValueError(f"machine = {type(machine).__name__}, but give a Machine (see gearfe.machine.stages)")
+        raise ValueError(
+            f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
+        )
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:

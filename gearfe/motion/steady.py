@@ -8,7 +8,9 @@ from fractions import Fraction
 import numpy as np
 
 from ..machine.contact_law import slopes
-from . import excitation, exponential, propagator
+from . import excitation, propagator
+from .exponential import Step
+from .numpy_loop import run
 from .response import Response
 from .step_control import chosen_step
 
@@ -147,7 +149,7 @@ class _Flow:
         self.turn = self.coarse.inverse @ self.plan.basis
 
     def __call__(self, z):
-        return exponential.run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
+        return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
 
     def monodromy(self, states):
         """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""
@@ -162,30 +164,21 @@ class _Flow:
         by_x, by_v = slopes(x, v, k, machine.law)
         rub = len(self.flat.rub_mesh)
         weight = excitation.rubbing(self.flat, phase) if rub else None
-        E, Y, S, T, F = self.coarse.levels[0]
-        E, (p, wide) = propagator.dense(E), S.shape
-        X, g = np.eye(2 * n), np.zeros((4 * wide, 2 * n))
+        X, step = np.eye(2 * n), Step(self.coarse, (2 * n,))
 
-        def forces(out, y, j):
+        def forces(y, out, j):
             if self.coarse.affine:
-                out[:m] = (k[j] - self.coarse.k)[:, None] * y
+                out[:m] = (k[j] - self.coarse.k)[:, None] * y[:m]
                 return
             total = by_x[j][:, None] * y[:m]
             out[:m] = total - self.coarse.k[:, None] * y[:m]
-            if p > m:
+            if len(y) > m:
                 total = total + by_v[j][:, None] * y[m:]
                 out[:m] += (by_v[j] - self.coarse.c)[:, None] * y[m:]
             if rub:
                 out[m : m + rub] = weight[j][:, None] * total[self.flat.rub_mesh]
 
-        f1, f3, f4, f2 = (g[i * wide : (i + 1) * wide] for i in range(4))
         for j in range(0, 2 * self.steps, 2):
-            y = Y @ X
-            forces(f1, self.coarse.P @ X, j)
-            forces(f2, y[:p] + S @ f1, j + 1)
-            forces(f3, y[:p] + S @ f2, j + 1)
-            forces(f4, y[p:] + T @ g[: 2 * wide], j + 2)
-            f3 += f2
-            X = E @ X + F @ g[: 3 * wide]
+            X = step(X, 0, forces, j)
         back = np.linalg.inv(self.turn)
         return back @ X @ self.turn

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from ..machine.tables import natural_frequencies
-from .fast import fast
+from .fixed_step import fixed_steps
 
 STEPS = 80  # per mesh cycle, at first
 SHARE = 0.35  # of the period of the stiffest mesh, at first
@@ -100,7 +100,7 @@ def chosen_step(machine, duration, initial=None, numba=None):
     def error(h):
         steps = math.ceil(length / h * (1 - 1e-12))
         try:
-            one, two = (fast(machine, length, c * steps, initial, every=c, numba=numba, start=start) for c in (1, 2))
+            one, two = (fixed_steps(machine, length, c * steps, initial, every=c, numba=numba, start=start) for c in (1, 2))
         except RuntimeError:
             if h < 0.9 * low:
                 raise

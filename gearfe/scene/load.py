@@ -204,10 +204,11 @@ def _scene(file, data):
 
 
 def _machine(file, table):
-    """Check a [machine] table and its [machine.impact]."""
-    flat = {key: value for key, value in table.items() if key != "impact"} if isinstance(table, dict) else table
-    out = checked(file, "machine", flat, MACHINE, extra=("impact",))
-    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT)}
+    """Check a [machine] table, its [machine.impact] and its [machine.bodies.NAME]."""
+    flat = {key: value for key, value in table.items() if key not in ("impact", "bodies")} if isinstance(table, dict) else table
+    out = checked(file, "machine", flat, MACHINE, extra=("impact", "bodies"))
+    bodies = machine_table.checked_bodies(file, table.get("bodies", {}))
+    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT), "bodies": bodies}
 
 
 def _cases(file, damage, gears, name, pairs):

@@ -8,6 +8,10 @@
 - ``profile_error_um``: amplitude of a profile error at mesh frequency in all meshes.
 - ``runout_um``: eccentricity of the driving gear. ``misplaced_um``: shift of planet 1 (or the wheel) along x, away from the sun.
 
+``[machine.bodies.NAME]``, of sun, planet, ring and carrier of a herringbone stage; default: from the gears
+
+- ``mass_kg, inertia_kgm2``: of a whole body, the inertia about its axis.
+
 ``[machine.impact]``, read where contact is ``"impact"``
 
 - ``damping_Ns_per_mm``: largest damping of the law; default: 0.1 % of K as a number (S0), K in N/mm**1.5.
@@ -17,7 +21,7 @@
 - ``pulse_Nm, pulse_period_s, pulse_width_s``: what the load on the carrier rises by, how often and how long. Planetary only.
 """
 
-from .strict import NUMBER, TEXT, TWO
+from .strict import NUMBER, REQUIRED, TEXT, TWO, checked
 
 MACHINE = {
     "contact": (TEXT, "linear"),
@@ -35,3 +39,16 @@ IMPACT = {
     "pulse_period_s": (NUMBER, 0.5),
     "pulse_width_s": (NUMBER, 0.05),
 }
+BODY = {"mass_kg": (NUMBER, REQUIRED), "inertia_kgm2": (NUMBER, REQUIRED)}
+BODIES = ("sun", "planet", "ring", "carrier")
+
+
+def checked_bodies(file, tables):
+    """Masses [kg] and inertias [kg m2] by body, of none or of all."""
+    if tables and (not isinstance(tables, dict) or set(tables) != set(BODIES)):
+        raise ValueError(f"{file} [machine.bodies]: give a table for each of {', '.join(BODIES)}, or none")
+    rows = {name: checked(file, f"machine.bodies.{name}", table, BODY) for name, table in tables.items()}
+    for name, row in rows.items():
+        if not min(row.values()) > 0:
+            raise ValueError(f"{file} [machine.bodies.{name}]: mass_kg and inertia_kgm2 must be positive")
+    return {name: (float(row["mass_kg"]), float(row["inertia_kgm2"])) for name, row in rows.items()}

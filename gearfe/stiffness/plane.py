@@ -5,7 +5,7 @@ import time
 import warnings
 from dataclasses import asdict, replace
 
-from ..contact.plane import Mesh
+from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate
@@ -50,11 +50,11 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
         flexible = [named(row, gear, material, found) for gear, material, found in gears]
     else:
         flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
-    mesh = Mesh(pair, materials, flexible, phase, extended=extended, state=state)
+    contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state)
     details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
-    return mesh.solve, details
+    return contact.solve, details
 
 
 def _numeric(row, given):

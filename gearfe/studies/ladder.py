@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..contact.plane import Mesh
+from ..contact.plane import PairContact
 from ..energy.closed import coupled, textbook
 from ..material import Material
 from ..stiffness.solve import mesh_stiffness
@@ -89,7 +89,7 @@ def ladder(pair, force, material, phases=64):
     width = min(pair.gear_1.b, pair.gear_2.b)
     curves = {"textbook": sum_of_pairs.k}
     for name, flexible in models.items():
-        solved = Mesh(pair, materials, flexible, phase, extended=False, state="plane strain").solve(force / width)
+        solved = PairContact(pair, materials, flexible, phase, extended=False, state="plane strain").solve(force / width)
         curves[name] = force / (solved.approach * 1e-3)
     curves["fe"] = reference.k
     alone_there = np.isfinite(pair.contacts(phase, extended=False).gap).sum(axis=1) == 1

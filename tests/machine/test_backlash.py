@@ -8,7 +8,7 @@ from machines import RUNS, two_masses, worst
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from gearfe.machine.stages import single_mesh
+from gearfe.machine.single_mesh import single_mesh
 from gearfe.motion.simulate import simulate
 
 

@@ -5,7 +5,7 @@ from machines import WAVE
 from numpy.testing import assert_allclose
 
 from gearfe.machine.contact_law import force, friction_coefficient, slopes, step
-from gearfe.machine.gear_mesh import Mesh, Samples, ToothDamage, cycle_table
+from gearfe.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
 
 
 def test_step_and_friction_at_their_corners():
@@ -52,7 +52,7 @@ def test_table_passes_through_its_samples_without_overshoot():
 def test_damaged_tooth_replaces_the_healthy_curve_once_in_z_cycles():
     phase = np.arange(-16, 116) / 64
     hurt = Samples(phase, 0.7 * cycle_table(WAVE)(phase % 1.0))
-    mesh = Mesh("m", np.ones(1), WAVE, 100.0, phase=-3.0, teeth=(5, 7), damage=(ToothDamage(0, 2, hurt),))
+    mesh = GearMesh("m", np.ones(1), WAVE, 100.0, phase=-3.0, teeth=(5, 7), damage=(ToothDamage(0, 2, hurt),))
     inside = np.linspace(-0.2, 1.75, 300)
     for cycle in (2, 7, 12, -3):
         assert_allclose(mesh.at_phase(cycle + inside), 0.7 * mesh.cycle(inside % 1.0), rtol=2e-4)

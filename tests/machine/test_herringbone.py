@@ -84,7 +84,7 @@ def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage, 
 
 def test_compiled_loop_on_55_degrees_of_freedom(herringbone_stage, monkeypatch):
     """The halves share their stiffness look-ups there; without numba the loop is run as it stands."""
-    monkeypatch.setattr("gearfe.motion.fast.find_spec", lambda name: True)
+    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: True)
     machine = herringbone(herringbone_stage, {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})})
     one, two = (simulate(machine, 0.001, dt=2.5e-5, numba=numba) for numba in (False, True))
     assert_allclose(two.states, one.states, atol=1e-9 * np.ptp(one.states))

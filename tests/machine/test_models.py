@@ -7,11 +7,15 @@ import pytest
 from machines import SHAPE, herringbone, tooth
 from numpy.testing import assert_allclose
 
-from gearfe.machine.compound import KINDS, compound_pairs, compound_planetary
+import gearfe as gf
+from gearfe.machine.compound_planetary import KINDS, compound_planetary, scene_pairs
 from gearfe.machine.layout import around, through
-from gearfe.machine.stages import pitted_planetary, stage_phases
+from gearfe.machine.pitted_planetary import pitted_planetary
+from gearfe.machine.planetary import stage_phases
 from gearfe.machine.tables import natural_frequencies
 from validation.shared.reference import lin_parker
+
+PAIRS = scene_pairs(gf.load_scene("compound_planetary"))
 
 
 def test_frequencies_of_lin_and_parker():
@@ -90,7 +94,7 @@ def test_frequencies_of_the_articles(spur_stage, herringbone_stage):
     angled = herringbone(herringbone_stage)
     assert_allclose([angled.notes[k] for k in list(angled.notes)[:2]], [480, 80], rtol=1e-9, err_msg="S4: f_m, f_g")
     assert (len(angled.dofs), len(angled.meshes)) == (55, 12)
-    compound = compound_planetary(dict.fromkeys(KINDS, 1.6e9 * SHAPE))
+    compound = compound_planetary(dict.fromkeys(KINDS, 1.6e9 * SHAPE), pairs=PAIRS)
     assert_allclose(compound.notes["mesh frequencies [Hz]"], [168, 182], rtol=1e-9, err_msg="S2")
     assert_allclose(compound.notes["fault frequencies of sun teeth [Hz]"], [16.8, 18.2], rtol=1e-9, err_msg="S2")
     assert len(compound.dofs) == 39
@@ -98,9 +102,9 @@ def test_frequencies_of_the_articles(spur_stage, herringbone_stage):
 
 def test_phase_table_of_the_compound_stage():
     """Three planets divide all tooth numbers, so that branches are in phase; within a branch each mesh has its own phase."""
-    table = compound_planetary(dict.fromkeys(KINDS, 1.6e9)).notes["relative phases"]
+    table = compound_planetary(dict.fromkeys(KINDS, 1.6e9), pairs=PAIRS).notes["relative phases"]
     assert_allclose([first for first, _ in table.values()], 0, atol=1e-9)
-    pairs = compound_pairs()
+    pairs = PAIRS
     planet = pairs["b_c"].gear_1
     for i in (1, 2, 3):
         alone = through(0.0, pairs["sun1_p"], pairs["p_ring"], -1, -math.pi) % 1.0
@@ -111,7 +115,7 @@ def test_phase_table_of_the_compound_stage():
 
 
 def test_compound_stage_balances_its_torques():
-    machine = compound_planetary(dict.fromkeys(KINDS, 1.6e9), torque=200.0)
+    machine = compound_planetary(dict.fromkeys(KINDS, 1.6e9), pairs=PAIRS, torque=200.0)
     forces = machine.G @ machine.rest() * 1.6e9
     assert (forces > 0).all()
     by_kind = forces.reshape(3, 5)

@@ -9,8 +9,8 @@ import pytest
 from machines import RUNS, WAVE, two_masses, worst
 from numpy.testing import assert_allclose
 
-from gearfe.machine.gear_mesh import Mesh, Samples, ToothDamage, cycle_table
-from gearfe.machine.stages import single_mesh
+from gearfe.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
+from gearfe.machine.single_mesh import single_mesh
 from gearfe.machine.tables import Load, Machine, Spring, natural_frequencies, pulses
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import steady_state
@@ -32,7 +32,7 @@ def test_order_of_the_fast_path_and_the_reference(compiled):
 
 def test_compiled_loop_is_the_same(monkeypatch):
     """Where numba is missing its loop is run as it stands, for a shorter time."""
-    monkeypatch.setattr("gearfe.motion.fast.find_spec", lambda name: True)
+    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: True)
     duration = 0.02 if importlib.util.find_spec("numba") else 0.006
     cases = [
         two_masses(error=((1e-6, 500.0, 0.3),)),
@@ -56,7 +56,7 @@ def test_energy_of_free_vibration_over_1000_periods(options):
     """Constant stiffness, no damping: the energy stays within 1e-6 over 1000 periods of the slowest mode."""
     row = np.array([1.0, -1.0])
     ground = Spring("ground", np.array([0.0, 1.0]), 5e7)
-    machine = Machine(("a.x", "b.x"), np.array([1.0, 2.0]), (ground,), (Mesh("m", row, 1e8),))
+    machine = Machine(("a.x", "b.x"), np.array([1.0, 2.0]), (ground,), (GearMesh("m", row, 1e8),))
     slow = natural_frequencies(machine)[0][0]
     start = np.array([1e-5, -2e-5]), np.array([0.1, 0.05])
     got = simulate(machine, 1000 / slow, initial=start, dt=0.7 / slow, **options)
@@ -86,7 +86,7 @@ def test_rigid_body_motion_and_torque_histories():
     row = np.array([1.0, -1.0])
     jump = np.array([0.0, 4e-3, 4e-3, 1.0]), np.array([0.0, 0.0, 100.0, 100.0])
     machine = Machine(
-        ("a.x", "b.x"), np.array([1.0, 3.0]), (), (Mesh("m", row, WAVE, 500.0),), (Load("F", np.array([1.0, 0.0]), jump),)
+        ("a.x", "b.x"), np.array([1.0, 3.0]), (), (GearMesh("m", row, WAVE, 500.0),), (Load("F", np.array([1.0, 0.0]), jump),)
     )
     for options in ({"numba": False, "dt": 3e-5}, {"method": "RK45", "dt": 1e-4}):
         got = simulate(machine, 0.01, initial=(np.zeros(2), np.zeros(2)), **options)
@@ -117,7 +117,7 @@ def test_impossible_machines_are_refused():
     with pytest.raises(ValueError, match="finite numbers"):
         replace(machine, springs=(Spring("s", np.ones(3), 1.0),))
     with pytest.raises(ValueError, match="needs a backlash"):
-        Mesh("m", np.ones(1), 1e8, power=1.5)
+        GearMesh("m", np.ones(1), 1e8, power=1.5)
     with pytest.raises(RuntimeError, match="no state of rest"):
         single_mesh(1.0, 1e8, 100.0, force=-10.0, backlash=np.inf).rest()
 

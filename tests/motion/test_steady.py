@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
-from gearfe.machine.stages import single_mesh
+from gearfe.machine.single_mesh import single_mesh
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import common_period, floquet, steady_state
 

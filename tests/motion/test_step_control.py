@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm
 
 from gearfe.machine.gear_mesh import ToothDamage
-from gearfe.machine.stages import pitted_planetary
+from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.motion import simulate as dynamics
 from gearfe.motion.propagator import _phi
 from gearfe.motion.simulate import simulate

@@ -16,6 +16,7 @@ from gearfe.energy.ritz import plane as ritz
 from gearfe.stiffness.inputs import why_solid
 from gearfe.stiffness.methods import FACES, METHODS, NAMES, ROWS, fitted
 from gearfe.studies.own_model import own_models
+from geometry.pair import lines
 from geometry.tooth.profile import roll_at_arc
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 2.0}

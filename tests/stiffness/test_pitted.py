@@ -12,8 +12,8 @@ import gearfe as gf
 from gearfe.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle, pit_loss, sliced
 from gearfe.machine.contact_law import hertz_coefficient
 from gearfe.machine.gear_mesh import Samples, cycle_table
-from gearfe.machine.herringbone import pitted_helical
-from gearfe.machine.stages import pitted_planetary
+from gearfe.machine.helical_pair import pitted_helical
+from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.machine.tables import pulses
 from gearfe.motion.simulate import simulate
 

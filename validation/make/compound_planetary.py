@@ -8,7 +8,7 @@ import numpy as np
 from scipy.signal import resample_poly
 
 import gearfe as gf
-from gearfe.machine.compound import compound_planetary
+from gearfe.machine.compound_planetary import compound_planetary
 
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum
 

@@ -11,8 +11,9 @@ import numpy as np
 import gearfe as gf
 from gearfe.files import written
 from gearfe.machine.gear_mesh import Samples, cycle_table
-from gearfe.machine.herringbone import herringbone_planetary, pitted_helical
-from gearfe.machine.stages import pitted_planetary
+from gearfe.machine.helical_pair import pitted_helical
+from gearfe.machine.herringbone_planetary import herringbone_planetary
+from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.motion.simulate import simulate
 
 from ..shared import machine
@@ -57,6 +58,9 @@ def tooth(curve, loss, eps):
     return Samples(phase, cycle_table(curve)(phase % 1.0) * (1 - loss * dip))
 
 
+MEMBERS = gf.load_scene("herringbone").machine["bodies"]
+
+
 def stage(damaged=True, **options):
     """The herringbone stage with a cracked sun tooth; synthetic stiffnesses of the size of a half's."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 30.0, "beta": math.radians(16)}
@@ -64,7 +68,7 @@ def stage(damaged=True, **options):
     ring = gf.Gear(z=72, r_rim=90.0, addendum=0.8, tip_radius=0.2, **rack)
     stiffness = {"sun_planet": 6e8 * WAVE, "planet_ring": 7e8 * WAVE}
     damage = {"sun": (0, {"sun_planet": tooth(stiffness["sun_planet"], 0.3, 1.5)})} if damaged else None
-    return herringbone_planetary(gf.PlanetarySet(sun, planet, ring, 3), stiffness, damage=damage, **options)
+    return herringbone_planetary(gf.PlanetarySet(sun, planet, ring, 3), stiffness, damage=damage, members=MEMBERS, **options)
 
 
 def spur(damaged):

@@ -11,8 +11,10 @@ import numpy as np
 import gearfe as gf
 from gearfe.files import written
 from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
+from gearfe.machine.gear_pair import gear_pair
 from gearfe.machine.layout import Body
-from gearfe.machine.stages import disc, gear_pair, single_mesh
+from gearfe.machine.member import disc
+from gearfe.machine.single_mesh import single_mesh
 from gearfe.machine.tables import natural_frequencies
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import steady_state

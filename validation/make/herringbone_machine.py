@@ -8,7 +8,6 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.energy.closed.beam import SAINSOT
-from gearfe.machine.herringbone import MEMBERS
 
 from ..shared.simulated import PHASES, amplitude, machine, periodic, record, scene, signal, spectrum
 
@@ -93,7 +92,7 @@ def inertias():
     """Of discs of the printed mass up to the reference circle, of the ring as a hoop of that radius [kg m2]."""
     out = {}
     for name, part in (("sun", 0.5), ("planet", 0.5), ("ring", 1.0)):
-        out[name] = part * MEMBERS[name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2
+        out[name] = part * scene(NAME).machine["bodies"][name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2
     return out
 
 

@@ -11,7 +11,8 @@ from gearfe.energy.closed import textbook
 from gearfe.energy.closed.beam import load_angle
 from gearfe.energy.closed.iso import theoretical_stiffness, virtual_teeth
 from gearfe.flexibility.hertz import half_plane, linear_hertz, weber_line
-from gearfe.machine.stages import Member, planetary
+from gearfe.machine.member import Member
+from gearfe.machine.planetary import planetary
 from geometry.tooth.profile import flank
 
 from .places import SOURCES

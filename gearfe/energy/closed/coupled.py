@@ -224,7 +224,7 @@ def isolated(gear, material, formula, *, state="plane strain"):
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
     """Flexibility of a healthy external gear in closed form, to be used where `gearfe.elements.fe.flexibility` is.
 
-    It has no tip hats, so `gearfe.contact.plane.Mesh` takes it with ``extended=False`` only.
+    It has no tip hats, so `gearfe.contact.plane.PairContact` takes it with ``extended=False`` only.
 
     Parameters
     ----------

@@ -1,83 +1,25 @@
-"""Helical machines as tables: the pitted helical pair, and the herringbone planetary stage with its relief groove."""
+"""The herringbone planetary stage with its relief groove."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from .contact_cycle import ellipse_loss, line_cycle
-from .contact_law import hertz_coefficient
-from .gear_mesh import Mesh, ToothDamage
+from geometry.pair.gear_pair import GearPair
+
+from .gear_mesh import GearMesh
 from .layout import SPACE, Body, Layout
-from .stages import damages, disc, gear_pair, stage_phases
-from .tables import Load, Machine, Spring
+from .member import disc
+from .planetary import damages, stage_phases
+from .scene_curves import healthy_and_hurt, speed_of, stage_of
+from .tables import Load, Machine, Spring, Stage
 
 HALVES = {"L": -1, "R": 1}
 
 
-def pitted_helical(
-    pair, materials, *, pits=(), speed=2500 * math.pi / 30, torque=250.0, damping=1e3, depth=1e-4, support=None, drive=1e4,
-    density=7840.0, zeta=0.02, backlash=1e-4,
-):  # fmt: skip
-    """The helical pair with pitted pinion teeth: impact law, load shared by the lengths of the contact lines.
-
-    8 degrees of freedom: x, y, z and theta of both gears.
-
-    Parameters
-    ----------
-    pair : GearPair
-        The article has 17/60, m_n 2.1 mm, 17.5 and 29 degrees, widths 19.8 and 16.9 mm.
-    materials : (Material, Material)
-        For the coefficient of the impact law at the pitch point.
-    pits : sequence of (int, sequence of (float, float, float, float))
-        Pinion teeth and their pits, as `gearfe.machine.contact_cycle.ellipse_loss` takes them, or instead of pits a function of
-        the phase (`gearfe.machine.impact.pits_loss`); where the pits are is not in the article.
-    speed, torque : float
-        Of the pinion [rad/s], [N m]: 2500 rpm; that 250 N m act on the pinion is assumed.
-    damping, depth : float
-        Largest damping of the impact law [N s/m], assumed 1e3, and the penetration from which it is full [m], 0.1 mm.
-    support : dict, optional
-        Bearings of both gears by direction, assumed 1e8 N/m in x, y and z.
-    drive : float
-        Torsional stiffness of the shafts to motor and brake [N m/rad], assumed 1e4 at the pinion, none at the wheel.
-    density, zeta, backlash : float
-        [kg/m3]; damping ratio of supports, assumed 0.02; play along the line of action [m], assumed 0.1 mm.
-    """
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    radii = pair.curvature_radii(pair.pitch_phase)
-    helix = math.cos(pair.gear_1.beta_b)  # radii of curvature across the contact line
-    coefficient = hertz_coefficient(float(radii[0]) / helix, float(radii[1]) / helix, materials) / helix**2.5
-    bodies = []
-    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
-        made = disc(gear, density, 0.0)
-        bodies.append(Body(name, made.mass, made.inertia, "x y z theta"))
-    damage = tuple(
-        ToothDamage(0, tooth, line_cycle(pair, coefficient, lost=lost, width=width))
-        for tooth, lost in ((n, own if callable(own) else ellipse_loss(pair, own, width=width)) for n, own in pits)
-    )
-    return gear_pair(
-        pair,
-        bodies,
-        line_cycle(pair, coefficient, width=width),
-        speed=speed,
-        torque=torque,
-        support={"x": 1e8, "y": 1e8, "z": 1e8} if support is None else support,
-        torsion=(drive, 0.0),
-        zeta=zeta,
-        damage=damage,
-        power=1.5,
-        push=True,
-        damping=damping,
-        depth=depth,
-        backlash=backlash,
-    )
-
-
-MEMBERS = {"sun": (1.49, 0.028), "planet": (2.86, 0.042), "ring": (3.24, 0.116), "carrier": (1.98, 0.15)}  # kg, kg m2, printed
-
-
 def herringbone_planetary(
     stage, stiffness, *, damage=None, speed=2000 * math.pi / 30, torque=400.0, members=None, bearing=1e8, tilt=1e5, housing=1e9,
-    drive=1e4, groove=20.0, shear_modulus=80e9, zeta=0.02, mesh_zeta=0.05, **mesh
+    drive=1e4, groove=20.0, shear_modulus=80e9, zeta=0.02, mesh_zeta=0.05, density=7800.0, **mesh
 ):  # fmt: skip
     """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
 
@@ -93,12 +35,13 @@ def herringbone_planetary(
     stiffness : dict
         ``{"sun_planet": ..., "planet_ring": ...}`` of one half (`gearfe.machine.contact_cycle.sliced`) [N/m].
     damage : dict, optional
-        ``{"sun": (tooth, {"sun_planet": curve})}`` as in `gearfe.machine.stages.pitted_planetary`; in both halves.
+        ``{"sun": (tooth, {"sun_planet": curve})}`` as in `gearfe.machine.pitted_planetary.pitted_planetary`; in both halves.
     speed, torque : float
         Of the sun [rad/s], [N m]: the article has 2000 rpm and 400.
     members : dict, optional
-        Masses and inertias of whole bodies; default: as printed (`MEMBERS`), though the inertias are far above those of the
-        gears. Inertias across the axis are half of them (assumed).
+        Masses [kg] and inertias [kg m2] of whole bodies, ``{"sun": (mass, inertia), "planet": ..., "ring": ..., "carrier":
+        ...}``; default: rings from bore to reference circle of `density`, the carrier as heavy as its planets (assumed).
+        Inertias across the axis are half of those about it (assumed).
     bearing, tilt : float
         Supports of each half of sun and planets [N/m], [N m/rad], assumed 1e8 and 1e5.
     housing : float
@@ -111,13 +54,15 @@ def herringbone_planetary(
         Of it [Pa]; Young's modulus is 2.6 times it.
     zeta, mesh_zeta : float
         Damping ratios of supports and meshes, assumed 0.02 and 0.05.
+    density : float
+        [kg/m3], assumed 7800.
     **mesh
-        Further fields of every `Mesh` (``backlash``: half of the article's dead zone lies on either side of 0 there).
+        Further fields of every `GearMesh` (``backlash``: half of the article's dead zone lies on either side of 0 there).
     """
     outer, inner, n = stage.sun_planet, stage.planet_ring, stage.n_planets
     sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
     frequency = speed * ring.z / (sun.z + ring.z) * sun.z / (2 * math.pi)
-    layout, apart = _halves(stage, members or MEMBERS), 5e-4 * (sun.b + groove)
+    layout, apart = _halves(stage, members or _solid(stage, density)), 5e-4 * (sun.b + groove)
     springs = _supports(layout, stage, (bearing, tilt, housing, drive, zeta))
     for name, gear in (("sun", sun), *((f"planet{i + 1}", planet) for i in range(n))):
         springs += _neck(layout, name, gear, (groove, shear_modulus, apart, zeta))
@@ -137,7 +82,7 @@ def herringbone_planetary(
             if inside:
                 row = row + _offset(layout, row, hand * apart, "ring")
             options = {"zeta": mesh_zeta} | fields | {"damage": found} | mesh
-            meshes.append(Mesh(f"{name}{half}", row, stiffness[kind], **options))
+            meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
     loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
     loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
     notes = {
@@ -147,7 +92,32 @@ def herringbone_planetary(
         "phases": {mesh.name: mesh.phase for mesh in meshes},
         "overlap ratio of one half": outer.eps_beta_of(sun.b),
     }
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes)
+    driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
+    one = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (one,))
+
+
+def scene_herringbone(scene, case, **options):
+    """Machine of a scene: the stiffness curves of halves of its pairs, the bodies that it states."""
+    halves = {}
+    for name, one in scene.pairs.items():
+        width = (min(one.pair.gear_1.b, one.pair.gear_2.b) - one.groove) / 2
+        gears = (replace(gear, b=width) for gear in (one.pair.gear_1, one.pair.gear_2))
+        halves[name] = replace(one, pair=GearPair(*gears, one.pair.a), force=one.force / 2, face="helical", groove=0.0)
+    half = replace(scene, pairs=halves)
+    healthy, hurt = healthy_and_hurt(half, case, options, {"sun_planet": "sun_planet", "planet_ring": "planet_ring"})
+    damage, members = {"sun": (0, hurt)} if hurt else None, scene.machine.get("bodies") or None
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "members": members}
+    return herringbone_planetary(stage_of(half), healthy, damage=damage, **settings)
+
+
+def _solid(stage, density):
+    """Masses and inertias of whole bodies from the gears, each of two halves."""
+    gears = {"sun": stage.sun, "planet": stage.planet, "ring": stage.ring}
+    made = {name: disc(gear, density, 0.0, width=2 * gear.b) for name, gear in gears.items()}
+    out = {name: (one.mass, one.inertia) for name, one in made.items()}
+    together = stage.n_planets * out["planet"][0]
+    return out | {"carrier": (together, together * (1e-3 * stage.a) ** 2)}
 
 
 def _halves(stage, members):

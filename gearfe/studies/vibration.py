@@ -90,10 +90,17 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     out = {}
     for name in ("healthy", *([case] if case else [])):
         made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
-        whole = simulate(made, (1 + SETTLE) * duration, method=method)
-        kept = whole.time >= SETTLE * duration
-        out[name] = replace(whole, time=whole.time[kept], states=whole.states[kept])
+        out[name] = settled(simulate(made, (1 + SETTLE) * duration, method=method))
     return out
+
+
+def settled(whole):
+    """The part of a response after its first `SETTLE` / (1 + `SETTLE`), counted in samples.
+
+    Two runs of one duration and one number of samples keep equally many, whatever the rounding of their times.
+    """
+    first = math.ceil(SETTLE / (1 + SETTLE) * (len(whole.time) - 1) - 1e-6)
+    return replace(whole, time=whole.time[first:], states=whole.states[first:])
 
 
 def analysis(found, channel=None):
@@ -110,15 +117,16 @@ def analysis(found, channel=None):
     Analysis
     """
     first = next(iter(found.values()))
-    notes = first.machine.notes
-    mesh, fault = _last(notes, "mesh frequenc"), _last(notes, "fault frequenc")
-    driven = next(one for one in first.machine.meshes if abs(one.frequency - mesh) < 1e-6 * mesh)
-    turning, channel = mesh / driven.teeth[0], channel or f"force {driven.name}"
+    if not first.machine.stages:
+        raise ValueError("the machine names no stages, so that no lines are known: give it stages=(Stage(...),)")
+    stage = first.machine.stages[-1]
+    driven = next(one for one in first.machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    channel = channel or f"force {driven.name}"
     rate = 1 / (first.time[1] - first.time[0])
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
     }
-    return analyse(signals, mesh, fault, turning=turning, carrier=_last(notes, "carrier frequency"), channel=channel)
+    return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, carrier=stage.carrier, channel=channel)
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
@@ -157,11 +165,3 @@ def _lines(mesh, fault, turning, carrier, resolution):
     if carrier and carrier > LOBES * resolution and apart > LOBES / 2 * resolution:
         lines |= expected_lines(mesh, None, carrier, count=1)
     return lines
-
-
-def _last(notes, start):
-    """Last frequency of the note whose name starts so, None without one (the last stage is the driven one)."""
-    for name, value in notes.items():
-        if name.startswith(start):
-            return float(np.atleast_1d(value)[-1])
-    return None

@@ -9,7 +9,7 @@ from . import excitation, propagator
 from .response import Response
 
 
-def fast(machine, duration, steps, state, *, every=1, numba=None, start=0.0):
+def fixed_steps(machine, duration, steps, state, *, every=1, numba=None, start=0.0):
     """Response of a machine over `steps` equal steps.
 
     Parameters
@@ -21,7 +21,7 @@ def fast(machine, duration, steps, state, *, every=1, numba=None, start=0.0):
     state : ndarray, shape (2n,)
         Displacements and velocities at time `start`.
     every : int
-        Keep one output in so many.
+        Keep every n-th state.
     numba : bool, optional
         Use the compiled loop; default: if numba is installed.
     start : float
@@ -43,9 +43,9 @@ def fast(machine, duration, steps, state, *, every=1, numba=None, start=0.0):
         raise ValueError("numba=True, but numba is not installed: pip install gearfe[fast], or leave the choice open")
     compiled = installed if numba is None else numba
     if compiled:
-        from .compiled import run
+        from .numba_loop import run
     else:
-        from .exponential import run
+        from .numpy_loop import run
     started, h = time.perf_counter(), duration / steps
     x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
     plan = propagator.plan(machine, h, x)

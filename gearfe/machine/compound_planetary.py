@@ -4,31 +4,33 @@ import math
 
 import numpy as np
 
-from geometry.pair.gear_pair import GearPair
-from geometry.tooth.gear import Gear
-
-from .gear_mesh import Mesh, ToothDamage
+from .gear_mesh import GearMesh, ToothDamage
 from .layout import Body, Layout, around, through
-from .stages import disc
-from .tables import Load, Machine
+from .member import disc
+from .scene_curves import healthy_and_hurt, speed_of
+from .tables import Load, Machine, Stage
 
-KINDS = ("sun1_p", "p_ring", "sun2_b", "b_c", "c_ring")
+SCENE_PAIRS = {  # by kind of mesh (b inner, c outer planet of stage 2), the pair of a scene
+    "sun1_p": "sun_planet",
+    "p_ring": "planet_ring_1",
+    "sun2_b": "sun_planet",
+    "b_c": "planet_planet",
+    "c_ring": "planet_ring_2",
+}
+KINDS = tuple(SCENE_PAIRS)
 
 
-def compound_pairs():
-    """Pairs of the machine by kind of mesh.
+def scene_compound(scene, case, **options):
+    """Machine of a scene: the stiffness curves of its pairs."""
+    healthy, hurt = healthy_and_hurt(scene, case, options, SCENE_PAIRS)
+    damage = {"sun2": (0, {"sun2_b": hurt["sun2_b"]})} if hurt else None
+    settings = {"speed": speed_of(scene), "torque": scene.machine["torque_Nm"], "n_planets": scene.machine["n_planets"]}
+    return compound_planetary(healthy, pairs=scene_pairs(scene), damage=damage, **settings)
 
-    Stage 1 ``sun1_p, p_ring``; stage 2 ``sun2_b, b_c, c_ring`` (b inner, c outer planet).
 
-    The article's table of parameters is lost. Its frequencies give z = 30/21/72 and 30/21/21/78 with three planets; the module
-    3.5 mm and the width 40 mm are inferred from its stiffnesses; bores of 0.4 root radii, rims of 5 modules and a ring
-    addendum of 0.8 modules (no interference) are assumed.
-    """
-    rack = {"m_n": 3.5, "alpha_n": math.radians(20), "b": 40.0}
-    sun, planet = (Gear(z=z, r_bore=0.4 * 1.75 * (z - 2.5), **rack) for z in (30, 21))
-    ring1, ring2 = (Gear(z=z, r_rim=1.75 * (z + 12.5), addendum=0.8, tip_radius=0.2, **rack) for z in (72, 78))
-    gears = ((sun, planet), (planet, ring1), (sun, planet), (planet, planet), (planet, ring2))
-    return {kind: GearPair(*two) for kind, two in zip(KINDS, gears, strict=True)}
+def scene_pairs(scene):
+    """GearPairs of a scene by kind of mesh."""
+    return {kind: scene.pairs[name].pair for kind, name in SCENE_PAIRS.items()}
 
 
 def carrier_speed(pairs, speed):
@@ -65,7 +67,7 @@ def compound_table(pairs, n_planets, rates=(1.0, 1.0)):
     Returns
     -------
     dict
-        `geometry` are arguments of `gearfe.machine.layout.Layout.mesh` and `mesh` fields of `gearfe.machine.gear_mesh.Mesh`:
+        `geometry` are arguments of `gearfe.machine.layout.Layout.mesh` and `mesh` fields of `gearfe.machine.gear_mesh.GearMesh`:
         phases by `gearfe.machine.layout.around` and `through`, 0 for the first mesh of each sun at t = 0.
     """
     inner, outer, ahead = branch(pairs)
@@ -111,7 +113,7 @@ def _whole(value, kind):
 
 
 def compound_planetary(
-    stiffness, *, pairs=None, damage=None, speed=700 * math.pi / 30, torque=200.0, n_planets=3, beta=2e-6, zeta=0.02,
+    stiffness, *, pairs, damage=None, speed=700 * math.pi / 30, torque=200.0, n_planets=3, beta=2e-6, zeta=0.02,
     bearing=1e8, hold=1e6, drive=1e4, density=7800.0, **mesh
 ):  # fmt: skip
     """Two-stage compound planetary: sun 2 driven, sun 1 held, load on the carrier; 39 degrees of freedom (3 per body).
@@ -123,8 +125,8 @@ def compound_planetary(
     ----------
     stiffness : dict
         By kind of mesh (`KINDS`) [N/m].
-    pairs : dict, optional
-        GearPairs by kind; default: `compound_pairs`.
+    pairs : dict
+        GearPairs by kind (`scene_pairs` of a scene).
     damage : dict, optional
         ``{"sun2": (tooth, {"sun2_b": curve})}``: by body, the tooth and its curves by kind of mesh.
     speed : float
@@ -142,9 +144,8 @@ def compound_planetary(
     density : float
         [kg/m3]; bodies are rings from bore to reference circle, the carrier as heavy as its planets (assumed).
     **mesh
-        Further fields of every `Mesh`.
+        Further fields of every `GearMesh`.
     """
-    pairs = compound_pairs() if pairs is None else pairs
     turn = carrier_speed(pairs, speed)
     suns = pairs["sun1_p"].gear_1, pairs["sun2_b"].gear_1
     rates = -turn * suns[0].z / (2 * math.pi), (speed - turn) * suns[1].z / (2 * math.pi)
@@ -155,7 +156,7 @@ def compound_planetary(
         hurt = ((body, *(damage or {}).get(own, (0, {}))) for body, own in enumerate(bodies))
         found = tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in hurt if kind in curves)
         row = layout.mesh(*bodies, **place)
-        meshes.append(Mesh(name, row, stiffness[kind], damage=found, **({"beta": beta} | fields | mesh)))
+        meshes.append(GearMesh(name, row, stiffness[kind], damage=found, **({"beta": beta} | fields | mesh)))
     arms = [1e-3 * g.r_b for g in suns]
     rings = pairs["c_ring"].gear_2.r_b / pairs["p_ring"].gear_2.r_b  # force in stage 1 over that in stage 2
     driven = torque * arms[1] / (arms[1] + rings * arms[0])
@@ -168,7 +169,14 @@ def compound_planetary(
         "phases": phases,
         "relative phases": relative_phases(table),
     }
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), loads, notes)
+    stages = tuple(
+        Stage(
+            f"stage {i + 1}", (f"sun{i + 1}",), (planet,), abs(rate), abs(rate) / gear.z, n_planets * abs(rate) / gear.z,
+            turn / (2 * math.pi),
+        )
+        for i, (planet, rate, gear) in enumerate(zip(("p1", "b1"), rates, suns, strict=True))
+    )  # fmt: skip
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), loads, notes, stages)
 
 
 def relative_phases(table):

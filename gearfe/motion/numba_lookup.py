@@ -9,7 +9,7 @@ if find_spec("numba"):
 else:
 
     def njit(**options):
-        """Leave the loops as they are: the same numbers, slowly (`gearfe.simulate` then uses `gearfe.motion.exponential`)."""
+        """Leave the loops as they are: the same numbers, slowly (`gearfe.simulate` then uses `gearfe.motion.numpy_loop`)."""
         return lambda function: function
 
 
@@ -21,8 +21,9 @@ def _cubic(cells, place, count, at):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def lookup(flat, t, k, e, rate, weight, load):
-    """Fill in what acts at time t."""
+def lookup(flat, t, now):
+    """Fill in what acts at time t: stiffnesses, errors and their rates, weights of friction rows, loads."""
+    k, e, rate, weight, load = now
     for i in range(k.size):
         e[i] = rate[i] = 0.0
         if flat.twin[i] == i:
@@ -51,10 +52,7 @@ def lookup(flat, t, k, e, rate, weight, load):
         weight[j] = _cubic(flat.cells, flat.rub_place[j], flat.rub_count[j], (phase - np.floor(phase)) * flat.rub_count[j])
     for j in range(load.size):
         low, high = flat.knot_place[j], flat.knot_place[j + 1]
-        if high - low == 1:
-            load[j] = flat.knots[low, 1]
-        else:
-            load[j] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
+        load[j] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
 
 
 @njit(cache=True, error_model="numpy")

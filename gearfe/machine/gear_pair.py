@@ -1,0 +1,56 @@
+"""Two gears on elastic shafts."""
+
+import math
+
+from .gear_mesh import GearMesh
+from .layout import Layout
+from .tables import Load, Machine, Stage
+
+
+def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 0.0), zeta=0.02, helix=None, damage=(), **mesh):
+    """Two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
+
+    Gear 1 drives counter-clockwise; gear 2 stands on the x axis.
+
+    Parameters
+    ----------
+    pair : GearPair
+    bodies : (Body, Body)
+        Of the two gears, names and directions included.
+    stiffness
+        Of the mesh along its transverse line of action [N/m^power].
+    speed : float
+        Of gear 1 [rad/s].
+    torque : float, (ndarray, ndarray) or callable
+        On gear 1 [N m]; gear 2 carries it times the ratio of the base radii.
+    support : dict
+        Stiffness of both bearings by direction, ``{"x": k, "y": k, ...}`` [N/m, N m/rad].
+    torsion : (float, float)
+        Of the shafts to drive and load [N m/rad]; 0: free.
+    zeta : float
+        Damping ratio of the supports.
+    helix : float, optional
+        ``tan(beta_b)`` with the sign of the axial force on gear 2; default: from the gears, pushing it along +z.
+    damage : tuple of ToothDamage
+    **mesh
+        Further fields of `GearMesh`.
+    """
+    layout, (one, two) = Layout(bodies), bodies
+    radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
+    place = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
+    row = layout.mesh(one.name, two.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
+    frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
+    springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]
+    for body, k in zip(bodies, torsion, strict=True):
+        springs += layout.springs(body.name, None, {"theta": k}, zeta)
+    made = GearMesh("mesh", row, stiffness, frequency, teeth=(pair.gear_1.z, pair.gear_2.z), damage=damage, **mesh)
+    loads = (
+        Load("drive", layout.unit(one.name, "theta"), torque),
+        Load("load", row[layout.place[f"{two.name}.theta"]] / radii[0] * layout.unit(two.name, "theta"), torque),
+    )
+    notes = {
+        "mesh frequency [Hz]": frequency,
+        "turning frequencies [Hz]": tuple(frequency / g.z for g in (pair.gear_1, pair.gear_2)),
+    }
+    stage = Stage("pair", (one.name,), (two.name,), frequency, frequency / pair.gear_1.z)
+    return Machine(layout.dofs, layout.mass, tuple(springs), (made,), loads, notes, (stage,))

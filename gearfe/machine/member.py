@@ -1,0 +1,34 @@
+"""`Member`: a body of a stage with its springs, and that of a gear as a ring of steel."""
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A central member or a planet of a stage: its mass, inertia and springs to the ground, a planet's to the carrier.
+
+    Attributes
+    ----------
+    mass, inertia : float
+        [kg], [kg m2]
+    bearing : float
+        In x and y [N/m].
+    torsion : float
+        To the ground [N m/rad].
+    r_b : float
+        Base radius [m]; of the carrier: the radius to the planets' axes.
+    """
+
+    mass: float
+    inertia: float
+    bearing: float
+    r_b: float
+    torsion: float = 0.0
+
+
+def disc(gear, density, bearing, *, width=None):
+    """`Member` of a gear as a ring from its bore (or rim) to its reference circle; `width` in mm, default the gear's."""
+    low, high = sorted((gear.r_rim if gear.internal else gear.r_bore, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
+    mass = density * math.pi * (high**2 - low**2) * (width or gear.b) * 1e-9
+    return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)

@@ -1,0 +1,104 @@
+"""A planetary stage with any number of planets, and the phases of its meshes.
+
+What a source leaves out is an argument with a default, named in the docstring as an assumption. Stiffnesses are given by mesh
+name as anything `gearfe.machine.gear_mesh.GearMesh` takes; damage by mesh name as tuples of `ToothDamage`.
+"""
+
+import math
+
+import numpy as np
+
+from .gear_mesh import GearMesh, ToothDamage
+from .layout import Body, Layout, around, through
+from .tables import Load, Machine
+
+
+def planetary(sun, planet, ring, carrier, *, n_planets, alpha, stiffness, mesh=None, loads=None, zeta=0.0, places=None):
+    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier, without gyroscopic terms.
+
+    The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
+    its frequencies see ``tests/machine/test_models.py``.
+
+    Parameters
+    ----------
+    sun, planet, ring, carrier : Member
+    n_planets : int
+    alpha : (float, float)
+        Working pressure angles sun-planet and planet-ring [rad].
+    stiffness : dict
+        ``{"sun_planet": ..., "planet_ring": ...}`` along the line of action [N/m].
+    mesh : callable, optional
+        ``mesh(kind, i) -> dict`` of further fields of `GearMesh` for planet i.
+    loads : dict, optional
+        Torques ``{"sun": ..., "ring": ..., "carrier": ...}`` [N m]: numbers, histories or functions.
+    zeta : float
+        Damping ratio of the supports.
+    places : sequence of float, optional
+        Angles of the planets [rad]; default: equal spacing from 0.
+    """
+    names = [f"planet{i + 1}" for i in range(n_planets)]
+    angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
+    central = {"sun": sun, "ring": ring, "carrier": carrier}
+    bodies = [Body(name, m.mass, m.inertia) for name, m in central.items()] + [
+        Body(n, planet.mass, planet.inertia) for n in names
+    ]
+    layout, springs, meshes = Layout(bodies), [], []
+    for name, m in central.items():
+        springs += layout.springs(name, None, {"x": m.bearing, "y": m.bearing, "theta": m.torsion}, zeta)
+    for i, (name, angle) in enumerate(zip(names, angles, strict=True)):
+        arm = carrier.r_b * np.array([math.cos(angle), math.sin(angle)])
+        springs += layout.springs(name, "carrier", {"x": planet.bearing, "y": planet.bearing}, zeta, arm)
+        for kind, one, two, r, sense, inside in (
+            ("sun_planet", "sun", name, (sun.r_b, planet.r_b), 1, False),
+            ("planet_ring", name, "ring", (planet.r_b, ring.r_b), -1, True),
+        ):
+            own = layout.mesh(one, two, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
+            meshes.append(GearMesh(f"{kind}{i + 1}", own, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
+    torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques)
+
+
+def stage_phases(pairs, n_planets, *, start=0.0, frequency=1.0, places=None):
+    """Running phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
+
+    Parameters
+    ----------
+    pairs : (GearPair, GearPair)
+        Sun-planet and planet-ring.
+    n_planets : int
+    start : float
+        Phase of the first sun-planet mesh at t = 0.
+    frequency : float
+        Of all meshes [Hz].
+    places : sequence of float, optional
+        Angles of the planets [rad].
+
+    Returns
+    -------
+    dict
+        By mesh name: fields of `GearMesh` (``frequency, phase, teeth, first``). Sun teeth are numbered in the order in which they
+        enter at planet 1, the teeth of each planet in the order they meet the sun from the pair of sun tooth 0 on, ring teeth
+        as planet 1 meets them.
+    """
+    outer, inner = pairs
+    sun, planet, ring = outer.gear_1, outer.gear_2, inner.gear_2
+    out, angles = {}, 2 * math.pi * np.arange(n_planets) / n_planets if places is None else places
+    for i, angle in enumerate(angles):
+        phase = around(start, sun.z, 1, angle)
+        ahead = (sun.z + ring.z) * angle / (2 * math.pi)
+        if abs(ahead - round(ahead)) > 1e-9:
+            raise ValueError(
+                f"planet {i + 1} at {math.degrees(angle):.4g} degrees cannot be assembled: (z_s + z_r) / turn is not whole"
+            )
+        out[f"sun_planet{i + 1}"] = {"phase": phase, "teeth": (sun.z, planet.z)}
+        passed = through(phase, outer, inner, -1, -math.pi)
+        out[f"planet_ring{i + 1}"] = {"phase": passed, "teeth": (planet.z, ring.z), "first": (0, round(ahead))}
+    return {name: fields | {"frequency": frequency} for name, fields in out.items()}
+
+
+def damages(mesh, damage):
+    """Damage of a mesh ``sun_planet1`` or ``planet_ring1`` from damage by gear (see `pitted_planetary`)."""
+    kind, number = mesh.rstrip("0123456789"), mesh[len(mesh.rstrip("0123456789")) :]
+    names = [gear + (number if gear == "planet" else "") for gear in kind.split("_")]
+    found = ((body, *(damage or {}).get(name, (0, {}))) for body, name in enumerate(names))
+    return tuple(ToothDamage(body, tooth, curves[kind]) for body, tooth, curves in found if kind in curves)

@@ -1,0 +1,28 @@
+"""One mass on one mesh: the smallest machine."""
+
+import numpy as np
+
+from .gear_mesh import GearMesh
+from .tables import Load, Machine
+
+
+def single_mesh(mass, stiffness, frequency, *, force=0.0, **mesh):
+    """One mass on one mesh: a gear pair along its line of action, ``m x'' + c x' + k(t) f(x - e(t)) = F``.
+
+    Parameters
+    ----------
+    mass : float
+        Equivalent mass [kg], ``1 / (r_b1**2 / I_1 + r_b2**2 / I_2)``.
+    stiffness
+        Over one cycle [N/m].
+    frequency : float
+        Of the mesh [Hz].
+    force : float, (ndarray, ndarray) or callable
+        Force transmitted [N].
+    **mesh
+        Further fields of `GearMesh` (``damping``, ``zeta``, ``backlash``, ``error``, ``damage``...).
+    """
+    row = np.ones(1)
+    return Machine(
+        ("pair.x",), np.array([mass]), (), (GearMesh("mesh", row, stiffness, frequency, **mesh),), (Load("force", row, force),)
+    )

@@ -1,0 +1,148 @@
+"""The fast path on arrays: one exponential step after the other, halved about changes of contact and bends of the loads.
+
+A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe.motion.propagator.LEVELS` times about it.
+"""
+
+import numpy as np
+from numpy import add, multiply
+
+from ..machine.contact_law import force
+from . import excitation
+from .exponential import UNSTABLE, Step
+
+CHUNK = 1024  # steps whose stiffnesses are looked up at once
+
+
+def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
+    """Integrate `steps` steps from `z` at time `start`; states after each `every` steps, and counts.
+
+    Returns
+    -------
+    states : ndarray, shape (1 + steps // every, 2n)
+    stats : dict
+        ``steps`` done, ``rejected`` for a change of contact, ``losses`` of contact.
+    """
+    step, forces = Step(plan), (_AffineForces if plan.affine else _Forces)(plan, machine, flat)
+    fill, whole = forces.fill, len(plan.levels) == 1  # nothing opens or bends
+    states = np.empty((1 + steps // every, z.size))
+    states[0] = z
+    stats = {"steps": 0, "rejected": 0, "losses": 0}
+    sides = None if whole else _Sides(plan, machine, flat)
+    side = None if whole else sides(z, start)
+    for first in range(0, steps, CHUNK):
+        count = min(CHUNK, steps - first)
+        grid = start + plan.h * (first + np.arange(2 * count + 1) / 2)
+        forces.at(grid)
+        for i in range(count):
+            new = step(z, 0, fill, 2 * i)
+            if whole:
+                stats["steps"] += 1
+            else:
+                low, high = grid[2 * i], grid[2 * i + 2]
+                if sides.changed(side, step, new, *forces.e[2 * i + 1 : 2 * i + 3]) or _broken(breaks, low, high):
+                    new, side = _halve(step, plan, forces, sides, z, side, low, breaks, stats)
+                    forces.at(grid)
+                else:
+                    stats["steps"] += 1
+            z = new
+            if (first + i + 1) % every == 0:
+                states[(first + i + 1) // every] = z
+        if not np.isfinite(z).all():
+            raise RuntimeError(
+                f"the response grows beyond all bounds before t = {start + plan.h * (first + count):.4g} s: {UNSTABLE}"
+            )
+    return states, stats
+
+
+def _broken(breaks, low, high):
+    """Whether a load bends inside a step (ends excluded by a millionth of it)."""
+    edge = 1e-6 * (high - low)
+    return bool(len(breaks)) and np.searchsorted(breaks, low + edge) < np.searchsorted(breaks, high - edge)
+
+
+def _halve(step, plan, forces, sides, z, side, start, breaks, stats):
+    """One full step in halves, quarters... about the changes."""
+    last = len(plan.levels) - 1
+    whole, at, level = 1 << last, 0, 1
+    stats["rejected"] += 1
+    while at < whole:
+        while at % (whole >> level):
+            level += 1
+        low = start + plan.h * at / whole
+        high = low + plan.h / 2**level
+        forces.at(np.array([low, (low + high) / 2, high]))
+        new = step(z, level, forces.fill, 0)
+        if level < last and (sides.changed(side, step, new, *forces.e[1:]) or _broken(breaks, low, high)):
+            level += 1
+            stats["rejected"] += 1
+            continue
+        z, at = new, at + (whole >> level)
+        after = sides(z, high)
+        stats["losses"] += int(((after == 0) & (side != 0) & sides.opens).sum())
+        stats["steps"] += 1
+        side, level = after, max(1, level - 1)
+    return z, side
+
+
+class _Forces:
+    """Forces of meshes and friction rows beyond the linear part, and loads, by the contact law."""
+
+    def __init__(self, plan, machine, flat):
+        self.plan, self.flat, self.law, self.m = plan, flat, machine.law, len(machine.meshes)
+        self.rub, self.rates = len(flat.rub_mesh), len(plan.P) > len(machine.meshes)
+
+    def at(self, times):
+        """Look up all that acts at `times`."""
+        self.k, phase = excitation.stiffness(self.flat, times)
+        self.e, self.rate = excitation.errors(self.flat, times)
+        self.weight = excitation.rubbing(self.flat, phase) if self.rub else None
+        self.load = excitation.loads(self.flat, times)
+
+    def fill(self, x, out, i):
+        """Forces `out` at x, at the time of number i; for `gearfe.motion.exponential.Step`."""
+        m, plan, rub = self.m, self.plan, self.rub
+        v = x[m:] if self.rates else 0.0
+        total = force(x[:m] - self.e[i], v - self.rate[i], self.k[i], self.law)
+        out[:m] = total - plan.k * x[:m] - (plan.c * v if self.rates else 0.0)
+        if rub:
+            out[m : m + rub] = self.weight[i] * total[self.flat.rub_mesh]
+        out[m + rub :] = self.load[i]
+
+
+class _AffineForces(_Forces):
+    """The same where every mesh stays closed, ``f = slope x + shift``: two array calls for each force."""
+
+    def at(self, times):
+        super().at(times)
+        m, k = self.m, self.k
+        slope, shift = np.zeros((2, len(k), m + self.load.shape[1]))
+        slope[:, :m] = k - self.plan.k
+        shift[:, :m] = -k * self.e - (self.law["damping"] + self.law["beta"] * k) * self.rate
+        shift[:, m:] = self.load
+        self.slope, self.shift = list(slope), list(shift)  # rows of lists are found sooner than those of arrays
+
+    def fill(self, x, out, i):
+        multiply(self.slope[i], x, out)
+        add(out, self.shift[i], out)
+
+
+class _Sides:
+    """On which side each mesh touches: 1 its front flanks, -1 the back ones, 0 none."""
+
+    def __init__(self, plan, machine, flat):
+        self.m, self.flat, self.slack = len(machine.meshes), flat, machine.law["backlash"]
+        self.P, self.opens = plan.P[: self.m], self.slack > 0
+
+    def __call__(self, z, t):
+        return self._of(self.P @ z - excitation.errors(self.flat, t)[0])
+
+    def _of(self, x):
+        return (x > 0).astype(np.int8) - (x < -self.slack)
+
+    def changed(self, side, step, new, middle, end):
+        """Whether any mesh that can open changes side in the step just taken to `new`; errors in its middle and at its end."""
+        if not self.opens.any():
+            return False
+        x2, x3, x4 = (x[: self.m] for x in step.stages)
+        ends = ((x2, middle), (x3, middle), (x4, end), (self.P @ new, end))
+        return any(((self._of(x - e) != side) & self.opens).any() for x, e in ends)
