@@ -1,8 +1,12 @@
 """`Material`: linear isotropic elasticity, and what its constants become in a plane."""
 
 import math
+import warnings
 from dataclasses import dataclass
 from numbers import Real
+
+STIFFEST = 1.3e6  # MPa, above diamond
+SOFT = 500.0  # MPa, below nearly all gear materials (polyamide and POM: 1500 to 4000): 207 is more likely GPa
 
 
 @dataclass(frozen=True, slots=True)
@@ -12,7 +16,12 @@ class Material:
     Raises
     ------
     ValueError
-        If ``E <= 0`` or nu is outside ``0 <= nu < 0.5``.
+        If E is not positive or larger than that of any material, or nu is outside ``0 <= nu < 0.5``.
+
+    Warns
+    -----
+    UserWarning
+        If E is so small that GPa instead of MPa is likely.
 
     >>> Material(E=207e3, nu=0.25).shear_modulus
     82800.0
@@ -30,6 +39,12 @@ class Material:
             object.__setattr__(self, name, float(value))
         if not (math.isfinite(self.E) and self.E > 0):
             raise ValueError(f"E = {self.E} MPa, but Young's modulus must be positive and finite")
+        if self.E > STIFFEST:
+            raise ValueError(
+                f"E = {self.E:g} MPa, but no material is so stiff (diamond: 1.2e6 MPa): give E in MPa, not Pa; steel has 207e3"
+            )
+        if self.E < SOFT:
+            warnings.warn(f"E = {self.E:g} MPa is softer than any gear: give E in MPa, not GPa; steel has 207e3", stacklevel=4)
         if not 0 <= self.nu < 0.5:
             raise ValueError(f"nu = {self.nu}, but plane strain needs 0 <= nu < 0.5; use 0.4999 for rubber")
 

@@ -2,10 +2,9 @@
 
 import argparse
 import os
-import sys
-import warnings
 
 from ..stiffness.methods import NAMES, described, having
+from . import shell
 from . import verbs as run
 
 
@@ -86,15 +85,7 @@ def main(argv=None):
     _verb(verbs, "scenes", run.scenes, "list the built-in scenes with their assumptions")
     _verb(verbs, "info", run.info, "versions, and what this machine has")
     arguments = parser.parse_args(argv)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("always", UserWarning)
-            warnings.showwarning = lambda message, *_: print(f"gearfe: note: {message}", file=sys.stderr)
-            arguments.run(arguments)
-    except (ValueError, RuntimeError) as error:
-        print(f"gearfe: {error}", file=sys.stderr)
-        return 1
-    return 0
+    return shell.run(lambda: arguments.run(arguments))
 
 
 def _verb(verbs, name, function, text):

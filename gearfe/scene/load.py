@@ -12,9 +12,9 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
 from ..material import Material
-from . import machine_table
+from . import assumed, machine_table
 from .references import read_references
-from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, WHOLE, checked, known, placed
+from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
 TABLES = {
@@ -77,7 +77,7 @@ MACHINE = {
     "torque_Nm": (NUMBER, REQUIRED),
     "n_planets": (WHOLE, 3),
 } | machine_table.MACHINE
-ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, "")}
+ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, ""), "holds": (VALUES, {})}
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +112,8 @@ class ScenePair:
 class Scene:
     """A machine: `gears` and `pairs` by name, what had to be assumed, and what `gearfe.machine.of_scene` needs to run it.
 
-    `references` are what its sources print, `gearfe.scene.references.Reference`.
+    `references` are what its sources print, `gearfe.scene.references.Reference`; none in a copy whose given values were changed.
+    `changed` says which values are no longer those of the original (see `gearfe.scene.assumed`).
     """
 
     name: str
@@ -124,6 +125,7 @@ class Scene:
     later: tuple
     machine: dict = field(default_factory=dict)
     references: tuple = ()
+    changed: tuple = ()
 
     def pair(self, name=None):
         """The pair called `name`; the first one if None.
@@ -160,23 +162,26 @@ def load_scene(name_or_path):
         if not file.is_file():
             raise ValueError(f"no scene {str(name_or_path)!r}: built in are {', '.join(scene_names())}; or give a .toml file")
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8"))
+        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
     return _scene(file.name, data)
 
 
 def _scene(file, data):
-    tables = {name: data.pop(name, {}) for name in (*TABLES, "assumption")}
+    tables = {name: data.pop(name, {}) for name in TABLES}
+    told, given = data.pop("assumption", []), data.pop("given", {})
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
     run = _machine(file, data.pop("machine")) if "machine" in data else {}
     printed = data.pop("reference", [])
-    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "reference"))
+    top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "given", "reference"))
     for name in ("gear", "pair", "material"):
         if not isinstance(tables[name], dict) or not tables[name]:
             raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
-    if not isinstance(tables["assumption"], list):
+    if not isinstance(told, list):
         raise ValueError(f"{file}: assumptions are written as [[assumption]] tables")
+    if not isinstance(given, dict):
+        raise ValueError(f'{file}: [given] is a table of values by dotted key, such as "gear.sun.z" = 21')
     rows = {
         kind: {name: checked(file, f"{kind}.{name}", table, TABLES[kind]) for name, table in tables[kind].items()}
         for kind in TABLES
@@ -198,9 +203,22 @@ def _scene(file, data):
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
         found = _cases(file, damage, gears, name, rows["pair"])
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
-    notes = tuple(checked(file, f"assumption {i + 1}", a, ASSUMPTION) for i, a in enumerate(tables["assumption"]))
-    rows = read_references(file, printed, pairs)
-    return Scene(file.removesuffix(".toml"), top["title"], top["source"], gears, pairs, notes, tuple(top["later"]), run, rows)
+    notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
+    cases = {kind: _by_case(made) for kind, made in damage.items()}
+    kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})
+    title, source = top["title"], top["source"]
+    if own:
+        title, source = f"{title}, changed", f"own scene; changed from: {source}"
+    found = () if own else read_references(file, printed, pairs)
+    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, found, changed)
+
+
+def _by_case(tables):
+    """Damage tables by case."""
+    out = {}
+    for table in tables:
+        out.setdefault(table["case"], []).append(table)
+    return out
 
 
 def _machine(file, table):

@@ -4,7 +4,7 @@ import math
 
 REQUIRED = object()
 NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
-TWO, TRUTH, TABLES = "two numbers", "true or false", "a list of tables"
+TWO, TRUTH, TABLES, VALUES = "two numbers", "true or false", "a list of tables", "a table of values by dotted key"
 
 
 def checked(file, where, table, keys, extra=()):
@@ -40,6 +40,8 @@ def _fits(value, kind):
         return isinstance(value, bool)
     if kind == TWO:
         return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
+    if kind == VALUES:
+        return isinstance(value, dict)
     if kind == TABLES:
         return isinstance(value, list) and all(isinstance(v, dict) for v in value)
     if kind == TEXTS:
@@ -63,3 +65,24 @@ def placed(file, where, make):
         return make()
     except ValueError as error:
         raise ValueError(f"{file} [{where}]: {error}") from error
+
+
+def known_path(file, where, key, tables):
+    """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
+
+    Raises
+    ------
+    ValueError
+        If there is no such value; the message names what there is.
+    """
+    value = tables
+    for part in key.split("."):
+        if isinstance(value, list):
+            found = [one[part] for one in value if part in one]
+            value = None if not found else found[0] if all(one == found[0] for one in found) else found
+        elif isinstance(value, dict) and part in value:
+            value = value[part]
+        else:
+            there = ", ".join(value) if isinstance(value, dict) else "no table"
+            raise ValueError(f"{file} [{where}]: no value {key!r} in this scene; at {part!r} there is {there}")
+    return value

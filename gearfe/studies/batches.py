@@ -1,9 +1,13 @@
 """Many cases at once, over processes, each timed; a case that cannot be gives its error in place of its result."""
 
+import contextlib
 import multiprocessing
 import os
+import pickle
+import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 
 from ..stiffness.solve import mesh_stiffness
@@ -35,8 +39,8 @@ def batch(cases, *, work=None, workers=None, progress=None):
     work : callable, optional
         Default `mesh_stiffness`; for several processes a function that can be imported by name.
     workers : int, optional
-        Processes, one thread each; default one per core. 1: in this process. Scripts with more need the usual guard
-        ``if __name__ == "__main__":``.
+        Processes, one thread each; default one per core. 1: in this process. A plain script needs no guard, unless `work` or
+        something in the cases is defined in it: then it needs the usual ``if __name__ == "__main__":``.
     progress : callable, optional
         Called with (cases done, cases in all).
 
@@ -48,6 +52,8 @@ def batch(cases, *, work=None, workers=None, progress=None):
     ------
     ValueError
         If `workers` is not a whole number from 1 on, or `work` cannot be handed to other processes.
+    RuntimeError
+        If a process ended before its cases were done.
 
     Examples
     --------
@@ -59,6 +65,8 @@ def batch(cases, *, work=None, workers=None, progress=None):
     cases, work = list(cases), work or mesh_stiffness
     if workers is not None and not (isinstance(workers, int) and workers >= 1):
         raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        sys.exit(1)  # a worker that imports an unguarded script: `_spread` in the process that started it says what to do
     workers = min(workers or os.cpu_count() or 1, max(1, len(cases)))
     progress = progress or (lambda done, total: None)
     started = time.perf_counter()
@@ -70,19 +78,39 @@ def batch(cases, *, work=None, workers=None, progress=None):
 
 def _spread(jobs, workers, progress):
     """Over new processes of one thread each: what the libraries read at their start stands in the environment."""
+    try:
+        own = any(b"__main__" in pickle.dumps(job) for job in jobs)
+    except (AttributeError, TypeError, pickle.PicklingError) as error:
+        raise ValueError(f"{error}: processes need functions that can be imported by name; or use workers = 1") from error
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
-        with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        with (
+            contextlib.nullcontext() if own else _without_main(),
+            ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool,
+        ):
             size = max(1, min(16, len(jobs) // (4 * workers)))
             return _collect(pool.map(_timed, jobs, chunksize=size), len(jobs), progress)
-    except (AttributeError, TypeError) as error:
-        if "pickle" not in str(error).lower():
-            raise
-        raise ValueError(f"{error}: processes need functions that can be imported by name; or use workers = 1") from error
+    except BrokenProcessPool as error:
+        guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or ' if own else ""
+        raise RuntimeError(f"{guard}a worker process ended before its cases were done: killed, or out of memory") from error
     finally:
         for name, value in before.items():
-            os.environ.pop(name) if value is None else os.environ.update({name: value})
+            os.environ.pop(name, None) if value is None else os.environ.update({name: value})
+
+
+@contextlib.contextmanager
+def _without_main():
+    """Workers started here do not run the caller's script again: they find no file to import as their main module."""
+    main = sys.modules["__main__"]
+    hidden = {name: getattr(main, name) for name in ("__file__", "__spec__") if getattr(main, name, None) is not None}
+    for name in hidden:
+        setattr(main, name, None)
+    try:
+        yield
+    finally:
+        for name, value in hidden.items():
+            setattr(main, name, value)
 
 
 def _collect(results, total, progress):

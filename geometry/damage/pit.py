@@ -8,6 +8,8 @@ import numpy as np
 
 from ..tooth.profile import arc_at, flank, roll_at_arc
 
+MOST = 5000  # pits in a row
+
 
 @dataclass(frozen=True, slots=True)
 class Pit:
@@ -135,7 +137,15 @@ def check_pits(gear, pits):
 
 
 def pit_row(count, first, last, **numbers):
-    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `numbers` as of `Pit`."""
+    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `numbers` as of `Pit`.
+
+    Raises
+    ------
+    ValueError
+        If `count` is not a whole number from 1 to `MOST`: contact lines are cut at every pit.
+    """
+    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
+        raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
     return [Pit(z=float(z), **numbers) for z in np.linspace(first, last, count)]
 
 

@@ -82,3 +82,73 @@ def test_unknown_scene_and_pair():
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")
+
+
+PLAIN = """
+title = "mine"
+source = "own"
+[material.steel]
+E_MPa = 206000.0
+nu = 0.3
+[gear.one]
+z = 24
+m_n_mm = 2.0
+alpha_n_deg = 20.0
+b_mm = 20.0
+r_bore_mm = 9.0
+material = "steel"
+[pair.both]
+gear_1 = "one"
+gear_2 = "one"
+force_N = 1000.0
+"""
+HOLDS = """
+[given]
+"gear.one.z" = 24
+[[assumption]]
+what = "width 20 mm"
+why = "not printed"
+holds = { "gear.one.b_mm" = 20.0 }
+"""
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"], ids=["plain", "byte order mark"])
+def test_a_scene_needs_no_assumptions(tmp_path, mark):
+    file = tmp_path / "mine.toml"
+    file.write_text(mark + PLAIN, encoding="utf-8")
+    scene = gf.load_scene(file)
+    assert scene.assumptions == ()
+    assert scene.pair().pair.gear_1.z == 24
+
+
+def test_assumptions_belong_to_values(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(PLAIN + HOLDS)
+    scene = gf.load_scene(file)
+    assert [one["what"] for one in scene.assumptions] == ["width 20 mm"]
+    assert (scene.title, scene.changed) == ("mine", ())
+    file.write_text((PLAIN + HOLDS).replace("b_mm = 20.0\n", "b_mm = 25.0\n"))
+    scene = gf.load_scene(file)
+    assert scene.assumptions == ()
+    assert "gear.one.b_mm = 25.0" in scene.changed[0]
+    assert scene.title == "mine", "an assumption changed is still the machine of the source"
+    file.write_text((PLAIN + HOLDS).replace("z = 24\n", "z = 25\n"))
+    scene = gf.load_scene(file)
+    assert "changed" in scene.title
+    assert "changed from: own" in scene.source
+    assert [one["what"] for one in scene.assumptions] == ["width 20 mm"]
+
+
+def test_an_assumption_of_a_value_that_is_not_there_is_refused(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(PLAIN + HOLDS.replace("gear.one.b_mm", "gear.two.b_mm"))
+    with pytest.raises(ValueError, match=r"no value 'gear.two.b_mm'.*there is one"):
+        gf.load_scene(file)
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "10000000"])
+def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
+    file = tmp_path / "mine.toml"
+    file.write_text(TEXT.replace("count = 5", f"count = {count}"))
+    with pytest.raises(ValueError, match=f"count = {count} pits"):
+        gf.load_scene(file)

@@ -1,0 +1,69 @@
+"""Between a verb and the shell: one line for each way it can end, and an exit code; no traceback reaches a user.
+
+0: done. 1: something given cannot be, or cannot be written; standard error says what. 2: wrong options (argparse). 130:
+interrupted. 141: whoever read the output has gone (as of a program ended by SIGPIPE).
+"""
+
+import codecs
+import contextlib
+import errno
+import os
+import sys
+import warnings
+
+SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}  # for terminals that know only ASCII
+
+
+def spelled(error):
+    """Handler of characters that an output cannot show: spelled out, or a question mark."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return "".join(SPELLED.get(letter, "?") for letter in error.object[error.start : error.end]), error.end
+
+
+def tell(text):
+    """Print a line to standard error, if there is one."""
+    if sys.stderr is not None:
+        with contextlib.suppress(OSError, ValueError):  # closed, or full: nowhere left to say it
+            print(f"gearfe: {text}", file=sys.stderr, flush=True)
+
+
+def run(work):
+    """Do `work`, a function without arguments; returns the exit code."""
+    codecs.register_error("spelled", spelled)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="spelled")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", UserWarning)
+            warnings.showwarning = lambda message, *_: tell(f"note: {message}")
+            work()
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except KeyboardInterrupt:
+        tell("interrupted; nothing half-written is left")
+        return 130
+    except (ValueError, RuntimeError) as error:
+        tell(error)
+        return 1
+    except MemoryError as error:
+        tell(f"not enough memory{f': {error}' if str(error) else ''}; a smaller --refine or fewer --phases need less")
+        return 1
+    except OSError as error:
+        _forget_output()
+        if error.errno == errno.EPIPE:
+            return 141
+        place = f" {error.filename}" if error.filename else ""
+        tell(f"cannot read or write{place}: {error.strerror or error}")
+        return 1
+    return 0
+
+
+def _forget_output():
+    """What is still buffered can go nowhere: keep the interpreter from trying again at its end."""
+    if sys.stdout is not None:
+        with contextlib.suppress(OSError, ValueError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)

@@ -1,0 +1,62 @@
+"""Assumptions belong to values: which of a scene's assumptions still hold after a user has changed its numbers.
+
+An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those that the scene's source prints, both by dotted key::
+
+    [given]
+    "gear.sun.z" = 21
+
+    [[assumption]]
+    what = "face width b = 20 mm"
+    why = "the article gives none"
+    holds = { "gear.sun.b_mm" = 20.0 }
+
+In a copy in which the face width is another one, that assumption is no longer told; where a value of the source was changed, its
+printed results are no longer compared with.
+"""
+
+from .strict import known_path
+
+
+def split(file, assumptions, given, tables):
+    """Assumptions that hold, and what was changed.
+
+    Parameters
+    ----------
+    file : str
+        Name for messages.
+    assumptions : list of dict
+        Checked ``[[assumption]]`` tables.
+    given : dict
+        Values of the source by dotted key.
+    tables : dict
+        The scene's tables with their defaults filled in, as read.
+
+    Returns
+    -------
+    kept : tuple of dict
+        ``what``, ``why`` and ``depends`` of those that hold.
+    changed : tuple of str
+        One text for each value that is no longer the source's or the assumed one.
+    own : bool
+        Whether a value that the source gives was changed: the scene is not its machine any more.
+
+    Raises
+    ------
+    ValueError
+        If a key names no value of the scene.
+    """
+    kept, changed = [], {}
+    for i, one in enumerate(assumptions):
+        away = _away(file, f"assumption {i + 1}", one["holds"], tables)
+        changed |= {key: f"{key} = {found!r} (assumed in the original: {value!r})" for key, (found, value) in away.items()}
+        if not away:
+            kept.append({name: one[name] for name in ("what", "why", "depends")})
+    away = _away(file, "given", given, tables)
+    changed |= {key: f"{key} = {found!r} (its source: {value!r})" for key, (found, value) in away.items()}
+    return tuple(kept), tuple(changed.values()), bool(away)
+
+
+def _away(file, where, values, tables):
+    """Values that differ: key to (found, wanted)."""
+    found = {key: known_path(file, where, key, tables) for key in values}
+    return {key: (found[key], value) for key, value in values.items() if found[key] != value}

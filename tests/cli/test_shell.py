@@ -1,0 +1,85 @@
+"""Every way a verb can end: one line, an exit code, no traceback."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import gearfe
+from gearfe.cli import shell
+
+ENVIRONMENT = os.environ | {"PYTHONPATH": str(Path(gearfe.__file__).parents[1]), "PYTHONUNBUFFERED": "1"}
+COMMAND = [sys.executable, "-m", "gearfe"]
+
+
+def failing(error):
+    def work():
+        raise error
+
+    return work
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [
+        (ValueError("z = 4, but"), 1, "gearfe: z = 4, but\n"),
+        (RuntimeError("no contact"), 1, "gearfe: no contact\n"),
+        (KeyboardInterrupt(), 130, "gearfe: interrupted; nothing half-written is left\n"),
+        (MemoryError(), 1, "gearfe: not enough memory; a smaller --refine or fewer --phases need less\n"),
+        (PermissionError(13, "Permission denied", "x.csv"), 1, "gearfe: cannot read or write x.csv: Permission denied\n"),
+    ],
+)
+def test_one_line_and_a_code(error, code, said, capfd):
+    if isinstance(error, OSError):  # standard output is given up then: in a process of its own
+        text = "from gearfe.cli import shell\ndef work():\n    raise PermissionError(13, 'Permission denied', 'x.csv')\n"
+        done = subprocess.run(
+            [sys.executable, "-c", f"{text}raise SystemExit(shell.run(work))"], capture_output=True, text=True, env=ENVIRONMENT,
+            check=False,
+        )  # fmt: skip
+        assert (done.returncode, done.stderr) == (code, said)
+        return
+    assert shell.run(failing(error)) == code
+    assert capfd.readouterr().err == said
+
+
+def test_a_mistake_of_ours_stays_a_traceback():
+    with pytest.raises(AttributeError):
+        shell.run(failing(AttributeError("a bug")))
+
+
+def test_characters_an_output_does_not_know_are_spelled_out():
+    code = "from gearfe.cli import shell; raise SystemExit(shell.run(lambda: print('1 ± 2 µm, ∂')))"
+    environment = ENVIRONMENT | {"PYTHONIOENCODING": "ascii"}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=True)
+    assert done.stdout == "1 +- 2 um, ?\n"
+
+
+def test_a_reader_that_has_gone_is_no_error():
+    with subprocess.Popen([*COMMAND, "scenes"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=ENVIRONMENT) as process:
+        process.stdout.close()
+        said = process.stderr.read()
+    assert (process.returncode, said) == (141, b"")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+def test_a_full_disk_is_said():
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*COMMAND, "scenes"], stdout=full, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT, check=False)
+    assert (done.returncode, done.stderr) == (1, "gearfe: cannot read or write: No space left on device\n")
+
+
+def test_interrupted_work_leaves_one_line_and_no_file(tmp_path):
+    target = tmp_path / "k.csv"
+    command = [*COMMAND, "stiffness", "planetary_pitting", "--method", "fe", "--refine", "8", "-o", str(target)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
+        process.stdout.readline()  # it has begun
+        time.sleep(1.0)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said == "gearfe: interrupted; nothing half-written is left\n"
+    assert list(tmp_path.iterdir()) == []
