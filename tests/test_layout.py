@@ -158,4 +158,4 @@ def test_every_room_has_quick_tests():
     for start in (start for starts in QUICK.values() for start in starts):
         file, _, name = start.partition("::")
         text = (ROOT / "tests" / file).read_text(encoding="utf-8")
-        assert not name or f"def {name.partition('[')[0]}(" in text, start
+        assert not name or f"def {name.partition('[')[0]}" in text, start

@@ -1,4 +1,4 @@
-"""A pytest plugin that appends one line of JSON per finished test to a file: ``pytest -p validation.shared.recorder --record F``."""
+"""A pytest plugin: one line of JSON per finished test (``pytest -p validation.shared.recorder --record FILE``)."""
 
 import json
 import time
