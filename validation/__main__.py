@@ -43,7 +43,7 @@ LONG = {
     "three": "brute-force finite elements of whole gears",
     "speed_three": "brute-force finite elements of whole gears",
 }  # left out of "everything": minutes to an hour each
-TIMED = ("speed", "hard", "hard_three", "dynamics", "hard_dynamics", "readme")  # they print seconds
+TIMED = ("speed", "readme")  # they print seconds of the clock; other pages print CPU seconds, which hardly depend on company
 SECONDS = places.TABLES / "seconds.csv"  # of the last run of everything
 
 
@@ -90,7 +90,7 @@ def known_seconds():
 def everything():
     """Rebuild all pages but the long ones, each in a fresh process as alone; returns the number of pages that failed.
 
-    Pages that print seconds run one at a time, at the end, the others two at a time, the longest first.
+    Pages that print seconds of the clock run one at a time, at the end, the others two at a time, the longest first.
     """
     took = known_seconds()
     wanted = sorted((page for page in PAGES if page not in LONG), key=lambda page: -took.get(page, 0.0))
