@@ -125,8 +125,15 @@ def test_finite_elements_on_file_are_of_the_scene_as_it_is():
         assert_allclose(float(rows[pair, case or "healthy"]["mean [N/m]"]), stored[pair, case][1].mean(), rtol=1e-5)
 
 
-@pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
-@pytest.mark.parametrize("method", ["published", "textbook"])
+@pytest.mark.parametrize(
+    ("pair", "method"),
+    [
+        ("sun_planet", "published"),
+        ("planet_ring", "textbook"),
+        pytest.param("sun_planet", "textbook", marks=pytest.mark.slow),
+        pytest.param("planet_ring", "published", marks=pytest.mark.slow),
+    ],
+)
 def test_closed_forms_of_the_ten_rows(pair, method):
     scene = gf.load_scene("herringbone")
     chosen = scene.pairs[pair]

@@ -177,6 +177,7 @@ def test_cells_that_cannot_touch_are_as_good_as_absent():
         )
 
 
+@pytest.mark.slow
 def test_moving_pits_by_parts_of_a_cell():
     """A row on a spur gear's line; on a helical gear, where moving means another phase, the drop by cell size."""
     run = {"order": 2, "axial": 8, "phases": np.array([0.7])}
@@ -283,6 +284,7 @@ def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
     assert (solid.k < 0.85 * healthy.k).any() == (side == "loaded")
 
 
+@pytest.mark.slow
 def test_crack_in_one_half_of_a_herringbone_pair():
     """Each half bears its share at one approach: k is the sum of a healthy and a cracked half's at their own loads."""
     pair, run = pair_of(24.0), {"order": 2, "axial": 6, "face": "herringbone", "phases": np.array([0.9])}
