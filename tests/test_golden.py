@@ -19,14 +19,6 @@ from validation.shared import herringbone_page, places, speed_page, table_rows
 PAGES = list(machines.PAGES)
 
 
-def simulated():
-    """Page and id of every reference that takes a simulation; slow but for a few."""
-    for page in PAGES:
-        for name in machines.module(page).SIMULATED:
-            marks = [] if name in machines.ordinary(page) else [pytest.mark.slow]
-            yield pytest.param(page, name, marks=marks, id=f"{page}-{name}")
-
-
 @pytest.mark.parametrize("page", PAGES)
 def test_every_printed_number_has_a_function_and_rows(page):
     asked, rows = machines.references(page), table_rows.read(page)
@@ -77,17 +69,6 @@ def test_pages_are_not_stale(page):
 def test_references_computed_elsewhere_exist():
     ids = {one.id for page in PAGES for one in machines.gf.load_scene(machines.PAGES[page]).references}
     assert set(machines.ELSEWHERE) <= ids
-
-
-@pytest.mark.parametrize(("page", "name"), list(simulated()))
-def test_simulated_rows_are_what_the_table_says(page, name):
-    known = {row[:3]: row for row in table_rows.read(page)}
-    for row in machines.computed(page, {name}):
-        old = known[row[:3]]
-        assert row.verdict == old.verdict, f"{row.id}, {row.case}"
-        assert math.isnan(row.ours) == math.isnan(old.ours)
-        if "not reproduc" not in row.verdict:
-            assert_allclose(row.ours, old.ours, rtol=1e-2, atol=1e-9, err_msg=f"{row.id}, {row.case}")
 
 
 def test_assumptions_page_is_not_stale():

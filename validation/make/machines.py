@@ -114,7 +114,9 @@ def rebuild(page):
     print(f"wrote {page}.md: {verdicts.counts(rows)}", flush=True)
 
 
-def run():
-    """Rebuild all pages."""
-    for page in PAGES:
+def run(pages=()):
+    """Rebuild some pages, or all."""
+    for page in pages or PAGES:
+        if page not in PAGES:
+            raise ValueError(f"{page} is no page of a machine; there is {', '.join(PAGES)}")
         rebuild(page)

@@ -21,8 +21,8 @@ HEAD = """# Slow tests: the record
 
 Made by `python -m validation slow` from [tables/slow.jsonl](tables/slow.jsonl), one line per test, written as each ends. A result
 counts for the code it ran on: both packages with their scenes, the libraries and the file of the test. What has none on the code
-of this page is *{not_run}*; `python -m validation slow` runs just these, `python -m validation slow tests/FILE ...` those of some
-files.
+of this page is *{not_run}*; `python -m validation slow` runs just these, `python -m validation slow tests/FILE ...`
+those of some files.
 
 {total}.
 
