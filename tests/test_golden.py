@@ -125,7 +125,8 @@ def test_closed_forms_of_the_ten_rows(pair, method):
             assert_allclose([found.mean, found.largest], [float(row["mean [N/m]"]), float(row["max [N/m]"])], rtol=1e-4)
 
 
-@pytest.mark.parametrize("pair", ["sun_planet", pytest.param("planet_ring", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
 def test_energy_model_of_the_ten_rows(pair):
     """Healthy, recomputed; and below 3 % of the finite elements in all rows, in mean and maximum."""
     chosen = gf.load_scene("herringbone").pairs[pair]

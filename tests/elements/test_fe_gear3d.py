@@ -201,6 +201,7 @@ def test_a_mesh_too_coarse_for_its_patches_is_refused(steel):
         solid_flexibility(SMALL, steel, refine=0.4, degree=12)
 
 
+@pytest.mark.slow
 def test_degrees_the_layers_do_not_carry_are_dropped(steel):
     """The rest is what it would be without them, also of a cracked gear."""
     whole = solid_flexibility(SMALL, steel, refine=0.36, degree=8)

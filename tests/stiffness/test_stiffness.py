@@ -104,7 +104,7 @@ def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_
     assert_allclose(fast.share[0], [share[k] for k in fast.order], atol=2e-3)
 
 
-@pytest.mark.parametrize(("line_load", "phase"), ordinary([(100.0, 0.62), (300.0, 0.97)], CORNERS))
+@pytest.mark.parametrize(("line_load", "phase"), ordinary([(300.0, 0.62)], CORNERS))
 def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel, phase, line_load):
     fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
     full = full_contact(pair, line_load, phase, (steel, steel), per_width=12)
