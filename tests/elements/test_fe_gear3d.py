@@ -196,6 +196,7 @@ def test_what_does_not_fit_is_refused_before_it_is_solved(steel, monkeypatch):
         curve_of(steel, cache=False)
 
 
+@pytest.mark.slow
 def test_a_mesh_too_coarse_for_its_patches_is_refused(steel):
     with pytest.raises(RuntimeError, match="too coarse for patches of degree 10 along the width"):
         solid_flexibility(SMALL, steel, refine=0.4, degree=12)

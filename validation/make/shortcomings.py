@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 from typing import NamedTuple
 
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from ..shared.places import PAGES, ROOT
 
