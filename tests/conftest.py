@@ -1,4 +1,5 @@
 import math
+from pathlib import Path
 
 import validation  # noqa: F401 first: one thread, which suits small matrices
 
@@ -7,6 +8,50 @@ import pytest  # isort: skip
 import gearfe as gf  # isort: skip
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+ROOT = Path(__file__).parents[1]  # of the repository
+QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose failure says that the room is broken
+    "geometry": ("geometry/tooth/test_gear.py", "geometry/pair/test_pair.py", "geometry/damage/test_pit.py"),
+    "flexibility": ("flexibility/test_hertz.py", "flexibility/test_halfspace.py"),
+    "elements": ("elements/test_elasticity.py", "elements/test_fe3d.py::test_plane_strain_is_the_two_dimensional_fe"),
+    "energy": (
+        "energy/test_energy.py",
+        "test_literature.py::test_healthy_curves",
+        "test_literature.py::test_beam_code_with_its_conventions",
+        "test_literature.py::test_iso_stiffness",
+    ),
+    "contact": (
+        "contact/test_sharing.py",
+        "stiffness/test_stiffness.py::test_load_stiffens",
+    ),
+    "stiffness": ("stiffness/test_export.py",),
+    "machine": ("machine/test_contact_law.py", "machine/test_models.py"),
+    "motion": ("motion/test_response.py",),
+    "signal": ("signal/test_signals.py", "signal/test_spectral_lines.py", "signal/test_demodulation.py"),
+    "scene": ("scene/test_scene.py", "scene/test_references.py", "test_golden.py::test_verdicts_follow_from_the_numbers"),
+    "studies": ("studies/test_case_table.py",),
+    "cli": ("cli/test_cli.py::test_stiffness_writes_curve_and_plot",),
+    "literature": (
+        "test_literature.py::test_verdict_on_a_printed_number[planetary_pitting-hertz_coefficient",
+        "test_literature.py::test_verdict_on_a_printed_number[compound_planetary-mean_stiffness",
+        "test_literature.py::test_verdict_on_a_printed_number[helical_pitting-contact_ratios",
+        "test_literature.py::test_verdict_on_a_printed_number[herringbone_machine-mesh_frequency",
+    ),
+    "layout": ("test_layout.py",),
+}
+
+
+def pytest_collection_modifyitems(items):
+    """Mark the quick tests."""
+    quick = tuple(f"tests/{start}" for starts in QUICK.values() for start in starts)
+    for item in items:
+        if item.nodeid.startswith(quick) and not item.get_closest_marker("slow"):
+            item.add_marker(pytest.mark.quick)
+
+
+@pytest.fixture(scope="session")
+def root():
+    """The repository."""
+    return ROOT
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
 from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as pages
-from validation.make import assumptions, machines
+from validation.make import assumptions, machines, shortcomings, slow
 from validation.shared import herringbone_page, places, speed_page, table_rows
 
 PAGES = list(machines.PAGES)
@@ -71,18 +71,6 @@ def test_references_computed_elsewhere_exist():
     assert set(machines.ELSEWHERE) <= ids
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", PAGES)
-def test_simulated_rows_are_what_the_table_says(page):
-    known = {row[:3]: row for row in table_rows.read(page)}
-    simulated = set(machines.functions(page)) - set(machines.functions(page, quick=True))
-    for row in machines.computed(page, simulated):
-        old = known[row[:3]]
-        assert row.verdict == old.verdict, f"{row.id}, {row.case}"
-        if "not reproduc" not in row.verdict:
-            assert_allclose(row.ours, old.ours, rtol=1e-2, atol=1e-9, err_msg=f"{row.id}, {row.case}")
-
-
 def test_assumptions_page_is_not_stale():
     assert assumptions.PAGE.read_text(encoding="utf-8") == assumptions.text(), "run python -m validation assumptions"
     (name, pair, _, base) = assumptions.read()[0]
@@ -118,8 +106,15 @@ def test_finite_elements_on_file_are_of_the_scene_as_it_is():
         assert_allclose(float(rows[pair, case or "healthy"]["mean [N/m]"]), stored[pair, case][1].mean(), rtol=1e-5)
 
 
-@pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
-@pytest.mark.parametrize("method", ["published", "textbook"])
+@pytest.mark.parametrize(
+    ("pair", "method"),
+    [
+        ("sun_planet", "published"),
+        ("planet_ring", "textbook"),
+        pytest.param("sun_planet", "textbook", marks=pytest.mark.slow),
+        pytest.param("planet_ring", "published", marks=pytest.mark.slow),
+    ],
+)
 def test_closed_forms_of_the_ten_rows(pair, method):
     scene = gf.load_scene("herringbone")
     chosen = scene.pairs[pair]
@@ -130,7 +125,8 @@ def test_closed_forms_of_the_ten_rows(pair, method):
             assert_allclose([found.mean, found.largest], [float(row["mean [N/m]"]), float(row["max [N/m]"])], rtol=1e-4)
 
 
-@pytest.mark.parametrize("pair", ["sun_planet", pytest.param("planet_ring", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
 def test_energy_model_of_the_ten_rows(pair):
     """Healthy, recomputed; and below 3 % of the finite elements in all rows, in mean and maximum."""
     chosen = gf.load_scene("herringbone").pairs[pair]
@@ -145,3 +141,15 @@ def test_energy_model_of_the_ten_rows(pair):
 
 def test_speed_page_is_not_stale():
     assert speed_page.PAGE.read_text(encoding="utf-8") == speed_page.page(), "run python -m validation speed"
+
+
+def test_slow_record_says_what_its_table_says():
+    assert slow.PAGE.read_text(encoding="utf-8") == slow.page(), "run python -m validation slow"
+
+
+def test_shortcomings_are_few_and_have_reasons():
+    known = shortcomings.found()
+    assert len(known) < 5
+    assert len(known) == shortcomings.mentions(), "every expected failure is a decorator of one test, with a reason in words"
+    assert all(one.strict and one.asks and len(one.reason) > 80 and "not known" not in one.reason for one in known)
+    assert shortcomings.PAGE.read_text(encoding="utf-8") == shortcomings.page(), "run python -m validation shortcomings"

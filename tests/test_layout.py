@@ -4,14 +4,13 @@ import ast
 import subprocess
 import sys
 from functools import cache
-from pathlib import Path
 
 import pytest
+from conftest import QUICK, ROOT
 
 import gearfe
 from gearfe.stiffness.methods import ROWS
 
-ROOT = Path(__file__).parents[1]
 FLOORS = (  # from the ground: a room imports only from floors below its own
     ("geometry/tooth",),
     ("geometry/damage",),
@@ -150,3 +149,13 @@ def test_command_line_starts_without_heavy_imports():
     heavy = "{'numpy', 'scipy', 'skfem', 'gmsh', 'pyvista', 'matplotlib'}"
     code = f"import sys, gearfe.cli; print(sorted({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
+
+
+def test_every_room_has_quick_tests():
+    """A test that `-m quick` names exists, and no room is without one."""
+    rooms = {path.name for path in (ROOT / "tests").iterdir() if any(path.glob("**/test_*.py"))}
+    assert rooms <= set(QUICK)
+    for start in (start for starts in QUICK.values() for start in starts):
+        file, _, name = start.partition("::")
+        text = (ROOT / "tests" / file).read_text(encoding="utf-8")
+        assert not name or f"def {name.partition('[')[0]}" in text, start

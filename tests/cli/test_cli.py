@@ -75,6 +75,7 @@ def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
     assert np.isfinite(found.point_data["stress [MPa]"]).all()
 
 
+@pytest.mark.slow
 def test_render_shows_contact_lines(tmp_path, capsys):
     path = tmp_path / "contact.png"
     assert main(["render", "planetary_pitting", "--case", "mild", "--what", "contact", "--phase", "0.7", "-o", str(path)]) == 0

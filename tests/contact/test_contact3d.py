@@ -21,7 +21,6 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 BETA = math.radians(16)
 RING = gf.Gear(z=72, r_rim=90.0, b=12.0, beta=BETA, tip_radius=0.3, addendum=0.85, **RACK)
-NARROW = "-3.3 and -2.1 % here; -4.0 and -2.6 % are the gears' own flexibility by hexahedra, without the contact"
 
 
 def pair_of(width=12.0, beta=BETA):
@@ -178,6 +177,7 @@ def test_cells_that_cannot_touch_are_as_good_as_absent():
         )
 
 
+@pytest.mark.slow
 def test_moving_pits_by_parts_of_a_cell():
     """A row on a spur gear's line; on a helical gear, where moving means another phase, the drop by cell size."""
     run = {"order": 2, "axial": 8, "phases": np.array([0.7])}
@@ -220,20 +220,21 @@ def test_pits_over_a_whole_line_are_refused():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("ratio", "want"),
-    [
-        pytest.param(5, -0.040, marks=pytest.mark.xfail(strict=True, reason=NARROW)),
-        pytest.param(10, -0.025, marks=pytest.mark.xfail(strict=True, reason=NARROW)),
-        (20, -0.014),
-    ],
+    ("ratio", "printed", "found"),
+    [(5, -0.040, -0.033), (10, -0.025, -0.021), (20, -0.014, -0.013)],
 )
-def test_plane_strain_is_too_stiff_by(ratio, want):
-    """Away from tip corners, against an earlier study whose pair and load are not stated."""
+def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
+    """Away from tip corners, against an earlier study whose pair and load are not stated: found at b/m 20, not at 5 and 10.
+
+    -4.0 and -2.6 % are the gears' own flexibility by hexahedra, without the contact, which the study may have meant.
+    """
     pair, phase = pair_of(2.0 * ratio, 0.0), np.linspace(0.1, 0.9, 9)
     plane = gf.mesh_stiffness(pair, 400.0 * ratio, STEEL, phases=phase, extended=False, order=6).k
     solid = pair_stiffness3d(pair, 400.0 * ratio, STEEL, phase, face="spur", extended=False).k
     print(f"b/m = {ratio}: {100 * (solid.mean() / plane.mean() - 1):.2f} %")
-    assert_allclose(solid.mean() / plane.mean() - 1, want, atol=0.002)
+    ours = solid.mean() / plane.mean() - 1
+    assert (abs(ours - printed) < 0.002) == (ratio == 20)
+    assert_allclose(ours, found, atol=0.001)
 
 
 @pytest.mark.slow
@@ -283,6 +284,7 @@ def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
     assert (solid.k < 0.85 * healthy.k).any() == (side == "loaded")
 
 
+@pytest.mark.slow
 def test_crack_in_one_half_of_a_herringbone_pair():
     """Each half bears its share at one approach: k is the sum of a healthy and a cracked half's at their own loads."""
     pair, run = pair_of(24.0), {"order": 2, "axial": 6, "face": "herringbone", "phases": np.array([0.9])}

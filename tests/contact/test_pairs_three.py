@@ -1,5 +1,7 @@
 """The stored finite elements of pairs in three dimensions: plausible by themselves, and the energy model against them."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -37,22 +39,19 @@ def test_coarser_meshes_are_stiffer(key):
     assert np.abs(away).max() < 0.01
 
 
-SHORT = {
-    ("18/27", "crack 60 %"): "1.03 % at one phase beside those at which the crack closes",
-    ("12/20", "crack 60 %"): "1.16 % at one phase beside those at which the crack closes",
-    ("17/ring 42", "healthy"): "0.61 % in the mean, cause not known",
-    ("17/ring 42", "crack 30 %"): "0.53 % in the mean, 1.11 % at one phase",
-    ("17/ring 42", "crack 60 %"): "0.57 % in the mean, 1.55 % at one phase",
-    ("17/ring 42", "7 pits"): "0.60 % in the mean",
-    **{("20/ring 45", case): "0.60 to 0.63 % in the mean: hexahedra of resolution 0.55 only" for case in pairs_three.CASES},
+# mean and largest difference of those that miss a target, recorded; the other cases of `KNOWN` meet both
+MISSED = {
+    ("18/27", "crack 60 %"): (-0.0029, 0.0103),
+    ("12/20", "crack 60 %"): (-0.0037, 0.0116),
+    ("17/ring 42", "healthy"): (-0.0061, 0.0095),
+    ("17/ring 42", "crack 30 %"): (-0.0053, 0.0111),
+    ("17/ring 42", "crack 60 %"): (-0.0057, 0.0155),
+    ("17/ring 42", "7 pits"): (-0.0060, 0.0095),
+    ("20/ring 45", "healthy"): (-0.0060, 0.0080),
+    ("20/ring 45", "crack 30 %"): (-0.0063, 0.0097),
+    ("20/ring 45", "crack 60 %"): (-0.0061, 0.0109),
+    ("20/ring 45", "7 pits"): (-0.0062, 0.0088),
 }
-
-
-def targets():
-    """Pairs and cases; those that miss a target are expected to."""
-    for name, case in sorted({key[:2] for key in KNOWN}):
-        mark = [pytest.mark.xfail(strict=True, reason=SHORT[name, case])] if (name, case) in SHORT else []
-        yield pytest.param(name, case, marks=mark)
 
 
 def finest(name, case):
@@ -61,16 +60,48 @@ def finest(name, case):
     return KNOWN[name, case, refine]["k"], KNOWN[name, "healthy", refine]["k"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "case"), list(targets()))
-def test_the_energy_model_is_within_half_a_percent_of_the_hexahedra(name, case):
-    """The targets: 0.5 % in the mean, 1 % at every phase."""
+@functools.cache
+def differences(name, case):
+    """Mean and largest difference of the energy model from the hexahedra, where the hexahedra are to be trusted."""
     k, apart = pairs_three.model_curve(pairs_three.pairs()[name][1], case)
+    assert apart.sum() > 10
     away = (k / finest(name, case)[0] - 1)[apart]
     print("mean", away.mean(), "largest", np.abs(away).max())
-    assert apart.sum() > 10
-    assert abs(away.mean()) < 5e-3
-    assert np.abs(away).max() < 1e-2
+    return away.mean(), np.abs(away).max()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "case"), sorted({key[:2] for key in KNOWN}))
+def test_verdict_on_the_energy_model_against_the_hexahedra(name, case):
+    """The targets, 0.5 % in the mean and 1 % at every phase, are met but by the cases recorded, and these by as much."""
+    mean, largest = differences(name, case)
+    assert (abs(mean) < 5e-3 and largest < 1e-2) == ((name, case) not in MISSED)
+    if (name, case) in MISSED:
+        np.testing.assert_allclose((mean, largest), MISSED[name, case], atol=2e-4)
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True,
+    reason="The energy model is 0.53 to 0.63 % softer than the hexahedra of pairs with a ring. Both are too stiff by what they "
+    "do not resolve, so the softer one is nearer; one refinement of the hexahedra takes away 0.09 % only, and finer ones do not "
+    "fit into memory: validation/pages/pairs_three.md.",
+)
+def test_rings_are_within_half_a_percent_of_the_hexahedra():
+    """Mean k of the energy model within 0.5 % of the hexahedra, for pairs with a ring as for others."""
+    assert max(abs(differences(*key[:2])[0]) for key in KNOWN if "ring" in key[0]) < 5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.xfail(
+    strict=True,
+    reason="Beside the phases at which the faces of a deep crack meet, one phase of 18/27 and one of 12/20 are 1.03 and 1.16 % "
+    "away: the hexahedra let the faces pass through each other, the energy model keeps them apart, and the phases to leave out "
+    "are those of the energy model: validation/pages/pairs_three.md.",
+)
+def test_deep_cracks_are_within_a_percent_at_every_phase():
+    """k of external pairs with a crack of 60 % within 1 % of the hexahedra at every phase."""
+    assert max(differences(name, "crack 60 %")[1] for name in ("18/27", "12/20")) < 1e-2
 
 
 @pytest.mark.slow

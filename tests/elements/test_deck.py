@@ -43,7 +43,7 @@ needs_ccx = pytest.mark.skipif(
 
 
 @needs_ccx
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", ["healthy", "cracked", pytest.param("ring", marks=pytest.mark.slow)])
 def test_calculix_gives_the_same_displacements(name, tmp_path):
     gear, radius, cracks = CASES[name]
     body, load = gf.write_inp(tmp_path / f"{name}.inp", gear, radius, 100.0, STEEL, cracks=cracks, refine=0.6)
@@ -79,11 +79,6 @@ def contact_difference(folder, phase, line_load, *, ring=False):
 
 
 @needs_ccx
-def test_nonlinear_contact_at_a_tip_corner(tmp_path):
-    assert abs(contact_difference(tmp_path, 0.63, 100.0)) < 0.01
-
-
-@needs_ccx
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("phase", "line_load", "tolerance"),
@@ -91,6 +86,7 @@ def test_nonlinear_contact_at_a_tip_corner(tmp_path):
         (0.3, 100.0, 0.005),
         (0.8, 100.0, 0.005),
         (0.8, 300.0, 0.005),
+        (0.63, 100.0, 0.01),
         (0.65, 100.0, 0.01),
         (0.63, 300.0, 0.01),
         (0.98, 100.0, 0.01),

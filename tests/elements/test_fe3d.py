@@ -203,6 +203,7 @@ def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):
     assert_allclose(got, want, rtol=4e-3)
 
 
+@pytest.mark.slow
 def test_crack_extents_lie_between_none_and_all(steel):
     found, sizes = patches(GEAR, count=1), COARSE | {"crack tip": 0.15}
     values = []

@@ -209,34 +209,36 @@ def test_below_three_percent_of_finite_elements(name):
     assert largest < 0.03
 
 
-LIMITS = {
-    "many teeth": thin(60, 0.5),
-    "alpha 25": thin(30, 0.5, alpha_n=math.radians(25), tip_radius=0.3),
-    "sharp fillet": thin(30, 0.5, tip_radius=0.2),
-    "thin rim": thin(18, 0.85),
+LIMITS = {  # gear, and the largest error there: wide roots are hardly beams, and a rim thinner than a tooth is no ring
+    "many teeth": (thin(60, 0.5), 0.036),
+    "alpha 25": (thin(30, 0.5, alpha_n=math.radians(25), tip_radius=0.3), 0.062),
+    "sharp fillet": (thin(30, 0.5, tip_radius=0.2), 0.042),
+    "thin rim": (thin(18, 0.85), 0.049),
 }
 
 
-@pytest.mark.xfail(strict=True, reason="outside the range of validity: wide roots are hardly beams; rims thinner than a tooth")
 @pytest.mark.parametrize("name", LIMITS)
 def test_beyond_its_range(name):
-    *_, coupled_, reference = ladder(gf.GearPair(LIMITS[name], LIMITS[name]), 150 * WIDTH, STEEL, phases=8)
+    """A recorded verdict: this closed form is not within 3 % there, and is wrong by this much."""
+    gear, recorded = LIMITS[name]
+    *_, coupled_, reference = ladder(gf.GearPair(gear, gear), 150 * WIDTH, STEEL, phases=8)
     error = coupled_.error(reference)
     print(name, *(f"{100 * e:+7.2f} %" for e in error))
-    assert error[-1] < 0.03
+    assert error[-1] > 0.03
+    assert_allclose(error[-1], recorded, atol=2e-3)
 
 
-@pytest.mark.parametrize(
-    "ratio", [0.4, pytest.param(0.9, marks=pytest.mark.xfail(strict=True, reason="coupling too small in thin rims: -26 %"))]
-)
-def test_coupling_to_the_next_tooth(ratio):
+@pytest.mark.parametrize(("ratio", "least", "most"), [(0.4, -0.03, 0.03), (0.9, -0.27, -0.22)])
+def test_coupling_to_the_next_tooth(ratio, least, most):
+    """Within 3 % of finite elements on thick bodies; in a rim thinner than a tooth a recorded verdict, far too small."""
     gear = thin(20, ratio)
     ours, reference = (made.flexibility(gear, STEEL).far[0, 1] for made in (coupled, fe))
     low, high = gear.roll_f**2 / (2 * gear.r_b), gear.roll_a**2 / (2 * gear.r_b)
     arc = np.linspace(low, high, 7)[1:-1]
     error = ours.ev(arc, arc[::-1]) / reference.ev(arc, arc[::-1]) - 1
     print(ratio, np.round(100 * error, 1))
-    assert np.abs(error).max() < 0.03
+    assert error.min() > least
+    assert error.max() < most
 
 
 @pytest.mark.parametrize("line_load", [30.0, 500.0])

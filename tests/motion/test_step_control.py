@@ -26,8 +26,11 @@ def stiffer(machine):
     return replace(machine, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in machine.springs))
 
 
+SLOW = [pytest.param(case, marks=pytest.mark.slow) for case in ("healthy", "supports 100 times stiffer")]
+
+
 @pytest.mark.parametrize("numba", RUNS)
-@pytest.mark.parametrize("case", ["healthy", "damaged", "supports 100 times stiffer"])
+@pytest.mark.parametrize("case", ["damaged", *SLOW])
 def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage, case, numba):
     machine = spur(spur_stage, case == "damaged")
     machine = stiffer(machine) if case.startswith("supports") else machine

@@ -69,9 +69,8 @@ def covered(seed, pair, force, damage):
 
 
 def test_error_estimate_covers_the_true_error_in_a_few_cases():
-    results = [r for r in (covered(*case) for case in admissible(range(4))) if r is not None]
-    assert len(results) == 4
-    assert all(results)
+    """The other random cases are slow."""
+    assert [covered(*case) for case in admissible([1])] == [True]
 
 
 @pytest.mark.slow
@@ -117,15 +116,19 @@ def fuzz(seeds, method="ritz", refine=1.0):
     return curves, refused
 
 
-@pytest.mark.parametrize(("method", "seeds"), [("fe", range(1000, 1004)), ("ritz", [*range(1000, 1006), *range(2000, 2006)])])
+@pytest.mark.parametrize(
+    ("method", "seeds"),
+    [pytest.param("fe", range(1000, 1004), marks=pytest.mark.slow), ("ritz", [*range(1000, 1006), *range(2000, 2006)])],
+)
 def test_fuzz_a_few(method, seeds):
     curves, _ = fuzz(seeds, method, 0.6 if method == "fe" else 1.0)
-    assert curves >= 2
+    assert curves >= len(seeds) / 2
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("first", range(2000, 2300, 50))
 @pytest.mark.parametrize(("method", "refine"), [("fe", 0.6), ("ritz", 1.0)])
-def test_fuzz(method, refine):
-    curves, refused = fuzz(range(2000, 2300), method, refine)
+def test_fuzz(method, refine, first):
+    curves, refused = fuzz(range(first, first + 50), method, refine)
     print(f"{curves} curves, {refused} refused")
-    assert curves >= 150
+    assert curves >= 25

@@ -104,6 +104,7 @@ def turns(response, channel="pinion.y acceleration", count=8):
     return np.abs(np.fft.rfft(squared))[1 : count + 1]
 
 
+@pytest.mark.slow
 def test_several_pitted_teeth_show_twice_the_turning_frequency_only_half_a_turn_apart(pitted_responses):
     """The claim of S3, that 2 f_r dominates with several pits, is a statement on where they are, not on how many.
 
@@ -123,6 +124,7 @@ def test_several_pitted_teeth_show_twice_the_turning_frequency_only_half_a_turn_
         assert_allclose(found[teeth][:4] / found[(0,)][:4], [pattern(teeth, n) for n in (1, 2, 3, 4)], atol=0.15)
 
 
+@pytest.mark.slow
 def test_twice_the_turning_frequency_in_the_mesh_force(pitted_responses):
     """Lines of the force itself: they grow up to the 13th, where the pair resonates; f_r and 2 f_r are below 1 % of it.
 

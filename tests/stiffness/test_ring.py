@@ -88,16 +88,19 @@ def test_27_72_ring_pair(method):
     assert_allclose(got[:2], table["value"][:2], rtol=table["tolerance"], err_msg=table["source"])
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the source does not give its ring fillet; a sharper one (cutter 40, radius 0.1) gives 17.17"
-)
 @pytest.mark.parametrize("method", ["fe", "ritz"])
-def test_27_72_ring_pair_minimum(method):
+def test_verdict_on_the_minimum_of_the_27_72_ring_pair(method):
+    """Not found: the source does not give its ring's fillet. A sharper one (cutter 40, radius 0.1) gives 17.17."""
     table = reference.load()["healthy_ring"]
-    assert_allclose(reference.healthy_ring(method)[2], table["value"][2], rtol=table["tolerance"])
+    ours, printed = reference.healthy_ring(method)[2], table["value"][2]
+    assert abs(ours / printed - 1) > table["tolerance"], "found now: a tolerance was widened, or the ring has changed"
+    assert_allclose(ours, 17.36, atol=0.02)
 
 
-@pytest.mark.parametrize("phase", [0.1, 0.5, 0.9, 0.82, 0.97])
+SLOW = [pytest.param(phase, marks=pytest.mark.slow) for phase in (0.1, 0.5, 0.9, 0.82)]
+
+
+@pytest.mark.parametrize("phase", [0.97, *SLOW])
 def test_ring_pair_equals_full_contact(pair, phase):
     fast = gf.mesh_stiffness(pair, 2000.0, STEEL, phases=[phase])
     full = full_contact(pair, 100.0, phase, (STEEL, STEEL), per_width=10)

@@ -161,6 +161,7 @@ def test_compare_gives_the_textbooks_error_row():
     assert result.table().splitlines()[0].endswith("| file [N/m] | error | total [N/m] | error | pairs [N/m] | error |")
 
 
+@pytest.mark.slow
 def test_own_models_of_a_ring():
     chosen = SCENE.pair("planet_ring")
     result = gf.compare(SCENE, "planet_ring", models=[gf.PairModel(lambda r, s: np.full(r.size, 2e8))], phases=8, refine=0.5)

@@ -48,6 +48,7 @@ def test_mesh_forces_carry_the_torque(found):
     assert_allclose(mean, drive.value, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_the_reference_integrator_agrees(found):
     short = responses(SCENE, duration=0.02, phases=32)["healthy"]
     slow = responses(SCENE, duration=0.02, phases=32, method="DOP853")["healthy"]

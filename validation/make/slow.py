@@ -1,47 +1,152 @@
-"""Run the slow tests and keep what they printed."""
+"""Run the slow tests that have no result on this code, and write what is known of all of them."""
 
+import json
 import subprocess
 import sys
 import time
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
 from gearfe.files import written
 
-from ..shared import machine
-from ..shared.places import PAGES, ROOT
+from ..shared import code
+from ..shared.places import PAGES, ROOT, TABLES
 
-PAGE = PAGES / "slow.md"
-TELLING = (" inside", "curves,", "N/mm:", "ring, phase", "passed", "failed", "skipped")
+PAGE, RECORD = PAGES / "slow.md", TABLES / "slow.jsonl"
+NOT_RUN = "not run on this code"
+DONE = ("passed", "expected failure")
+WORKERS = 2
+HEAD = """# Slow tests: the record
+
+Made by `python -m validation slow` from [tables/slow.jsonl](tables/slow.jsonl), one line per test, written as each ends. A result
+counts for the code it ran on: both packages with their scenes, the libraries and the file of the test. What has none on the code
+of this page is *{not_run}*; `python -m validation slow` runs just these, `python -m validation slow tests/FILE ...`
+those of some files.
+
+{total}.
+
+| file | tests | {columns} | seconds |
+|---|---|{rule}---|
+"""
 
 
-def run():
-    """Write `slow.md`; raise RuntimeError if a slow test failed."""
-    started = time.perf_counter()
-    command = [sys.executable, "-m", "pytest", "-m", "slow", "-s", "-q"]
+def run(files=()):
+    """Run the tests without a result on this code, of all files or of some; write the page; raise RuntimeError if one failed."""
+    tests, known = collected(), latest(read())
+    wrong = [one for one in files if not any(file_of(test) == one for test in tests)]
+    if wrong:
+        there = ", ".join(sorted({file_of(test) for test in tests}))
+        raise ValueError(f"no slow test in {', '.join(wrong)}: give files among {there}")
+    waiting = [test for test in tests if (not files or file_of(test) in files) and not current(known.get(test), DONE)]
+    try:
+        execute(waiting, {test: row["seconds"] for test, row in known.items()})
+    finally:
+        keep(tests)
+    bad = [row["test"] for row in judged() if row["outcome"] not in (*DONE, NOT_RUN)]
+    if bad:
+        raise RuntimeError(f"slow tests that did not pass: {', '.join(bad)}")
+
+
+def collected():
+    """All slow tests, as pytest names them."""
+    command = [sys.executable, "-m", "pytest", "-m", "slow", "--collect-only", "-q", "tests"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    text = page(done.stdout, time.perf_counter() - started)
-    with written(PAGE) as name:
-        Path(name).write_text(text, encoding="utf-8")
-    print(text)
     if done.returncode:
-        raise RuntimeError(f"slow tests failed:\n{done.stdout[-3000:]}")
+        raise RuntimeError(f"pytest could not collect the slow tests:\n{done.stdout[-2000:]}")
+    return [line for line in done.stdout.splitlines() if "::" in line]
 
 
-def page(printed, seconds):
-    """The page from what the tests printed."""
-    told = [line.lstrip(".") for line in printed.splitlines() if any(word in line for word in TELLING)]
-    return "\n".join(
-        [
-            "# Slow tests: last result",
-            "",
-            f"Made by `python -m validation slow` (`pytest -m slow`) on {machine.describe()},",
-            f"{seconds:.0f} s: error estimate against the true error on 48 random pairs at every phase, `ritz` against refined",
-            "finite elements on 24 random pairs, fuzzing of 300 random pairs and cracks by both, nonlinear contact in CalculiX",
-            "(difference of k), three dimensions.",
-            "",
-            "```text",
-            *told,
-            "```",
-            "",
-        ]
-    )
+def execute(tests, seconds):
+    """Run tests file by file, two files at a time, and tell how far it is; `seconds` of earlier runs by test."""
+    files, started, done = Counter(map(file_of, tests)), time.perf_counter(), 0
+    longest = sorted(files, key=lambda one: -sum(seconds.get(test, 60.0) for test in tests if file_of(test) == one))
+    left = sum(seconds.get(test, 60.0) for test in tests)
+    with ThreadPoolExecutor(WORKERS) as pool:
+        jobs = {pool.submit(_of_file, [test for test in tests if file_of(test) == one]): one for one in longest}
+        for job in as_completed(jobs):
+            done += 1
+            left -= sum(seconds.get(test, 60.0) for test in tests if file_of(test) == jobs[job])
+            at = time.perf_counter() - started
+            print(f"[{done}/{len(files)}, {at:.0f} s, about {left / WORKERS:.0f} s left] {jobs[job]}: {job.result()}", flush=True)
+
+
+def _of_file(tests):
+    """Run the tests of one file; the last line of pytest."""
+    plugin = ["-p", "validation.shared.recorder", "--record", str(RECORD)]
+    command = [sys.executable, "-m", "pytest", "-q", "-m", "slow", *plugin, *tests]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout.rstrip().splitlines()[-1]
+
+
+def file_of(test):
+    """File of a test."""
+    return test.partition("::")[0]
+
+
+def read():
+    """Rows on file, in the order they were written."""
+    return [json.loads(line) for line in RECORD.read_text(encoding="utf-8").splitlines()] if RECORD.is_file() else []
+
+
+def latest(rows):
+    """The last row of each test."""
+    return {row["test"]: row for row in rows}
+
+
+def current(row, outcomes):
+    """Whether a row is one of the outcomes, on this code."""
+    return row is not None and row["outcome"] in outcomes and row["code"] == code.fingerprint(file_of(row["test"]))
+
+
+def keep(tests):
+    """Leave one row per test that exists, and write the page; a test without a result on this code says so."""
+    known, rows = latest(read()), []
+    for test in tests:
+        row = known.get(test, {"test": test, "outcome": NOT_RUN, "seconds": 0.0, "printed": []})
+        rows.append(row | {"on": "this code" if current(row, (row["outcome"],)) else ""} if "code" in row else row)
+    with written(RECORD) as name:
+        Path(name).write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
+    with written(PAGE) as name:
+        Path(name).write_text(page(), encoding="utf-8")
+    print(f"wrote {PAGE.name}: {total(judged())}")
+
+
+def judged():
+    """Rows on file with the outcome on the code of the page."""
+    return [row | ({} if row.get("on") else {"outcome": NOT_RUN, "printed": []}) for row in read()]
+
+
+def total(rows):
+    """How many have which outcome."""
+    count = Counter(row["outcome"] for row in rows)
+    return f"{len(rows)} slow tests: " + ", ".join(f"{many} {word}" for word, many in sorted(count.items(), key=_rank))
+
+
+def _rank(item):
+    order = (*DONE, "failed", "unexpected pass", "skipped", NOT_RUN)
+    return order.index(item[0])
+
+
+def page():
+    """The page, from the table alone."""
+    rows = judged()
+    words = [word for word, _ in sorted(Counter(row["outcome"] for row in rows).items(), key=_rank)]
+    head = HEAD.format(not_run=NOT_RUN, total=total(rows), columns=" | ".join(words), rule="---|" * len(words))
+    lines = [head.rstrip("\n")]
+    for file in dict.fromkeys(file_of(row["test"]) for row in rows):
+        own = [row for row in rows if file_of(row["test"]) == file]
+        counts = [str(sum(row["outcome"] == word for row in own) or "") for word in words]
+        seconds = sum(row["seconds"] for row in own if row["outcome"] != NOT_RUN)
+        lines.append(f"| `{file}` | {len(own)} | {' | '.join(counts)} | {seconds:.0f} |")
+    lines += ["", "## Which code", "", *_codes(rows), "", "## What they printed", ""]
+    for row in rows:
+        if row["outcome"] != NOT_RUN:
+            printed = ["", "```text", *row["printed"], "```", ""] if row["printed"] else [""]
+            lines += [f"`{row['test']}`: {row['outcome']}, {row['seconds']:.0f} s", *printed]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _codes(rows):
+    """Commit, date and machine of the results that count."""
+    found = Counter((row["commit"] or "no commit", row["date"], row["machine"]) for row in rows if row["outcome"] != NOT_RUN)
+    return [f"- commit {commit}, {date}, on {on}: {many} tests" for (commit, date, on), many in found.items()] or ["- none yet"]
