@@ -16,14 +16,13 @@ from .deck import element_nodes, held_nodes
 from .elasticity import edge_nodes
 from .fe import EDGES
 
-
-TIP = 0.005  # edge length at a tip corner that may touch [m_n], and the least of it: pressure ends there steeply
+TIP = 0.005  # longest edge at a tip corner that may touch [m_n]: pressure ends there steeply
 PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
 
 
 @dataclass(frozen=True, slots=True)
 class ContactDeck:
-    """What is needed to read the result: of both gears the held nodes (numbers), their places from the gear's centre [mm], r_b."""
+    """What is needed to read the result, of both gears: held nodes (numbers), their places from the centre [mm], r_b [mm]."""
 
     held: tuple
     place: tuple

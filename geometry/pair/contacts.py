@@ -1,21 +1,21 @@
 """Where the tooth pairs of a gear pair touch, and how far they are from touching: one function for every contact model.
 
 **Pose.** An approach delta of the gears along the line of action is a turn of both: unless said otherwise the pinion turns
-forward by ``delta / (2 r_b1)`` and the wheel backward by ``delta / (2 r_b2)``, from the unloaded position that a phase names. In
-this *mean pose* no gear is preferred and, by symmetry, the contact of conjugate flanks stays where it is without load.
+forward by ``delta / (2 r_b1)`` and the wheel backward by ``delta / (2 r_b2)``, from the unloaded position that a phase names.
+In this *mean pose* no gear is preferred and, by symmetry, the contact of conjugate flanks stays where it is without load.
 
-**Gap.** Let the pinion's flank cross the line of action at the abscissa n1 and the wheel's at n2; unloaded conjugate flanks have
-``n1 = n2 = n``, the nominal abscissa of their pair, and after an approach ``n1 = n + delta / 2``, ``n2 = n - delta / 2``. A point
-of the pinion (its tip corner, after the end of the path) lies D(n1) from the wheel's flank: the turn of the wheel that closes it,
-times r_b2. It touches when ``n1 - n2 = D(n1)``, so its gap is the approach that solves::
+**Gap.** Let the pinion's flank cross the line of action at the abscissa n1 and the wheel's at n2; unloaded conjugate flanks
+have ``n1 = n2 = n``, the nominal abscissa of their pair, and after an approach ``n1 = n + delta / 2``, ``n2 = n - delta / 2``.
+A point of the pinion (its tip corner, after the end of the path) lies D(n1) from the wheel's flank: the turn of the wheel that
+closes it, times r_b2. It touches when ``n1 - n2 = D(n1)``, so its gap is the approach that solves::
 
     delta = D(n + delta / 2)
 
 and for a point of the wheel (its tip corner, before the start), which the pinion's turn E(n2) closes, ``delta = E(n - delta / 2)``.
 With ``delta = D(n)`` the wheel would have turned alone, with ``delta = E(n)`` the pinion: neither is the other's convention.
 
-**Force.** Off the line of action the contact normal is the met flank's: tangent to that gear's base circle, it passes the centre of
-the gear whose tip touches at ``q r_b`` instead of r_b (q is 0.96 at a gap of 6 um). That gear feels less torque from the same
+**Force.** Off the line of action the contact normal is the met flank's: tangent to that gear's base circle, it passes the centre
+of the gear whose tip touches at ``q r_b`` instead of r_b (q is 0.96 at a gap of 6 um). That gear feels less torque from the same
 normal force, ``T1 / r_b1`` and ``T2 / r_b2`` differ, and a shared approach closes the pair by ``rate = (1 + q) / 2`` of itself
 (Newton's method for delta divides by it). The work of the tooth forces in a shared approach is ``F d delta`` with
 ``F = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force meant. A tooth bends by torque: its deflection as a turn of the flank times
@@ -155,6 +155,6 @@ def _facing(pair, roll, nominal, driver):
     mate = gears[other]
     met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
     behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
-    across = pushes[other] * (mate.r_b * y + met * x) / away**2  # of the met flank's unit normal, at right angles to the centres
+    across = pushes[other] * (mate.r_b * y + met * x) / away**2  # the met flank's unit normal, at right angles to the centres
     arm = pushes[own] * (pushes[other] * mate.r_b + (centres[other] - centres[own]) * across) / gears[own].r_b
     return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm
