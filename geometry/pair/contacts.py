@@ -11,8 +11,9 @@ closes it, times r_b2. It touches when ``n1 - n2 = D(n1)``, so its gap is the ap
 
     delta = D(n + delta / 2)
 
-and for a point of the wheel (its tip corner, before the start), which the pinion's turn E(n2) closes, ``delta = E(n - delta / 2)``.
-With ``delta = D(n)`` the wheel would have turned alone, with ``delta = E(n)`` the pinion: neither is the other's convention.
+and for a point of the wheel (its tip corner, before the start), which the pinion's turn E(n2) closes,
+``delta = E(n - delta / 2)``. With ``delta = D(n)`` the wheel would have turned alone, with ``delta = E(n)`` the pinion: two
+conventions, one at each end.
 
 **Force.** Off the line of action the contact normal is the met flank's: tangent to that gear's base circle, it passes the centre
 of the gear whose tip touches at ``q r_b`` instead of r_b (q is 0.96 at a gap of 6 um). That gear feels less torque from the same
@@ -23,8 +24,8 @@ r_b is that of a force along its own involute normal with the same torque. Conta
 carries on both flanks along their own involute normals, without rate; what this neglects is of the order of ``1 - rate`` of the
 local, not the bending deflection of the pair at the corner (see ``tests/contact/test_pose.py`` for its size against CalculiX).
 
-**Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the mean
-pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
+**Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
+mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
 """
 
 import math
@@ -36,6 +37,7 @@ from numpy.typing import NDArray
 from ..tooth.profile import cartesian, flank
 
 STEPS = 3  # of Newton's method: each doubles the correct digits, and D bends little over a gap
+SETTLED = 1e-6  # last step, in base pitches
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,16 +115,18 @@ def approach(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
     Returns
     -------
     gap, met : ndarray
-        The approach [mm] and the roll length of the point met on the other flank [mm]; nan where the point lies inside the other's
-        base circle.
+        The approach [mm] and the roll length of the point met on the other flank [mm]; nan where the two never touch (more than a
+        base pitch apart, or inside the base circle).
     """
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
     gap = np.zeros(nominal.shape)
     for _ in range(STEPS):
         distance, met, arm = _facing(pair, roll, nominal + sense * gap / 2, driver)
-        gap = gap + (distance - gap) / ((1 + arm) / 2)
-    return gap, met
+        step = (distance - gap) / ((1 + arm) / 2)
+        gap = gap + np.where((np.abs(distance) < pair.p_bt) & (arm > 0), step, np.nan)  # else the flanks face away: no contact
+    there = np.abs(step) < SETTLED * pair.p_bt
+    return np.where(there, gap, np.nan), np.where(there, met, np.nan)
 
 
 def opposite(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
@@ -155,6 +159,6 @@ def _facing(pair, roll, nominal, driver):
     mate = gears[other]
     met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
     behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
-    across = pushes[other] * (mate.r_b * y + met * x) / away**2  # the met flank's unit normal, at right angles to the centres
+    across = pushes[other] * (mate.r_b * y + met * x) / away**2  # of the met flank's unit normal, across the centre line
     arm = pushes[own] * (pushes[other] * mate.r_b + (centres[other] - centres[own]) * across) / gears[own].r_b
     return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm

@@ -88,6 +88,16 @@ def test_gap_before_the_path_closes_when_both_gears_turn(pair):
         assert_allclose(corner, met, atol=1e-9)
 
 
+def test_pairs_far_away_do_not_touch_whatever_phases_are_asked_with_them(pair):
+    phase = np.arange(-48, 96) / 16
+    found = pair.contacts(phase)
+    touching = np.isfinite(found.gap)
+    far = (found.nominal < pair.path[0] - pair.p_bt) | (found.nominal > pair.path[1] + pair.p_bt)
+    assert (found.gap[touching & far] > 0.05 * pair.p_bt).all()
+    alone = np.array([np.sort(pair.contacts([p]).gap[0])[:3] for p in phase])
+    assert_allclose(np.sort(found.gap, axis=1)[:, :3], alone, atol=1e-12)
+
+
 def test_nothing_touches_outside_when_not_extended(pair):
     found = pair.contacts(np.linspace(0, 0.99, 50), extended=False)
     counts = np.isfinite(found.gap).sum(axis=1)
