@@ -184,7 +184,8 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self.flexibility[tip].tip_of(tooth[tip])
         roll = roll_at_arc(gears[tip], hats.arc)
-        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1)
+        start = found.gap[i, column]
+        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1, start=start)
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)

@@ -36,8 +36,8 @@ from numpy.typing import NDArray
 
 from ..tooth.profile import cartesian, flank
 
-STEPS = 3  # of Newton's method: each doubles the correct digits, and D bends little over a gap
-SETTLED = 1e-6  # last step, in base pitches
+STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
+SETTLED = 1e-7  # last step, in base pitches
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ def contacts(pair, phase, *, extended=True) -> Contacts:
     return Contacts(order, nominal, roll_1, roll_2, gap, np.where(np.isfinite(gap) & (radius > 0), radius, 1.0))
 
 
-def approach(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
+def approach(pair, roll, nominal, *, driver=True, start=0.0) -> tuple[NDArray, NDArray]:
     """Approach, shared by both gears, at which a flank point touches the other flank (see the module).
 
     Parameters
@@ -111,6 +111,8 @@ def approach(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
+    start : float
+        First guess of the approach [mm].
 
     Returns
     -------
@@ -120,11 +122,13 @@ def approach(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
     """
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
-    gap = np.zeros(nominal.shape)
+    gap, facing = np.full(nominal.shape, float(start)), _facing(pair, roll, nominal, driver)
     for _ in range(STEPS):
-        distance, met, arm = _facing(pair, roll, nominal + sense * gap / 2, driver)
+        distance, met, arm = facing(sense * gap / 2)
         step = (distance - gap) / ((1 + arm) / 2)
         gap = gap + np.where((np.abs(distance) < pair.p_bt) & (arm > 0), step, np.nan)  # else the flanks face away: no contact
+        if not (np.abs(step) >= SETTLED * pair.p_bt).any():
+            break
     there = np.abs(step) < SETTLED * pair.p_bt
     return np.where(there, gap, np.nan), np.where(there, met, np.nan)
 
@@ -143,22 +147,30 @@ def opposite(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
         Distance to the other flank along the line of action, i.e. the turn of the *other gear alone* that closes it times its
         base radius [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
     """
-    return _facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)[:2]
+    return _facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 
 
 def _facing(pair, roll, nominal, driver):
-    """`opposite`, and the distance at which the met normal passes the point's own centre, over its base radius."""
+    """What flank points face with both gears moved on from `nominal` by a length on the line of action [mm].
+
+    Gives `opposite`, and the distance at which the met normal passes the point's own centre, over its base radius.
+    """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
     own, other = (0, 1) if driver else (1, 0)
-    turns = pair.turn(nominal)
+    turns, mate = pair.turn(nominal), gears[other]
     radius, angle = flank(gears[own], roll)
-    x, y = cartesian(radius, turns[own] + mirror[own] * angle)
-    y = y + centres[own] - centres[other]
-    away, seen = np.hypot(x, y), np.arctan2(x, y)
-    mate = gears[other]
-    met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
-    behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
-    across = pushes[other] * (mate.r_b * y + met * x) / away**2  # of the met flank's unit normal, across the centre line
-    arm = pushes[own] * (pushes[other] * mate.r_b + (centres[other] - centres[own]) * across) / gears[own].r_b
-    return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm
+    ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
+    r_b, base = gears[own].r_b, mate.r_b
+
+    def facing(moved):
+        x, y = cartesian(radius, ahead + pushes[own] * moved / r_b)
+        y = y + apart
+        away, seen = np.hypot(x, y), np.arctan2(x, y)
+        met = np.sqrt(np.where(away >= base, away**2 - base**2, np.nan))
+        behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - flank(mate, met)[1]
+        across = pushes[other] * (base * y + met * x) / away**2  # of the met flank's unit normal, across the centre line
+        arm = pushes[own] * (pushes[other] * base - apart * across) / r_b
+        return base * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm
+
+    return facing

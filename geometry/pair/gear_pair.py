@@ -249,9 +249,9 @@ class GearPair:
         """What a flank point faces when its pair is at `nominal` [mm], see `geometry.pair.contacts.opposite`."""
         return opposite(self, roll, nominal, driver=driver)
 
-    def approach(self, roll, nominal, *, driver=True):
+    def approach(self, roll, nominal, *, driver=True, start=0.0):
         """Approach at which a flank point touches the other flank, see `geometry.pair.contacts.approach`."""
-        return approach(self, roll, nominal, driver=driver)
+        return approach(self, roll, nominal, driver=driver, start=start)
 
 
 def free_centre_distance(one, two):
