@@ -14,6 +14,7 @@ from .shared import places
 PAGES = {
     "machines": "every printed number of the four machines beside ours, with verdicts",
     "herringbone": "article S4: ten rows of stiffness against finite elements, and what moves them",
+    "sample": "finite elements against the energy model, and both error estimates, on random pairs (resumable)",
     "cracks": "crack reductions and their conventions",
     "assumptions": "what the assumptions of the scenes do to the stiffness",
     "truth": "independent values of others, and CalculiX, beside ours",
@@ -38,6 +39,7 @@ PAGES = {
 
 LONG_RUNS = ("pairs_three", "herringbone")  # pages whose finite elements --reference computes
 LONG = {
+    "sample": "a new sample of random pairs",
     "slow": "runs the slow tests",
     "map": "thousands of gears",
     "three": "brute-force finite elements of whole gears",

@@ -55,8 +55,7 @@ class PairContact:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        radius = pair.relative_radius(found.roll_1, found.roll_2)
-        self.radius = np.where(np.isfinite(found.gap) & (radius > 0), radius, 1.0)  # pairs far off their path have none
+        self.radius = found.radius
         self.opening = self._opening(found.roll_1, found.roll_2, found.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
@@ -185,7 +184,8 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self.flexibility[tip].tip_of(tooth[tip])
         roll = roll_at_arc(gears[tip], hats.arc)
-        gap, met = self.pair.opposite(roll, np.full(roll.shape, found.nominal[i, column]), driver=corner == 1)
+        start = found.gap[i, column]
+        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1, start=start)
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)

@@ -16,29 +16,38 @@ from .deck import element_nodes, held_nodes
 from .elasticity import edge_nodes
 from .fe import EDGES
 
+TIP = 0.005  # longest edge at a tip corner that may touch [m_n]: pressure ends there steeply
+PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
+
 
 @dataclass(frozen=True, slots=True)
 class ContactDeck:
-    """What is needed to read the result: the pinion's held nodes (numbers and places [mm]) and its base radius [mm]."""
+    """What is needed to read the result, of both gears: held nodes (numbers), their places from the centre [mm], r_b [mm]."""
 
-    held: np.ndarray
-    place: np.ndarray
-    r_b: float
+    held: tuple
+    place: tuple
+    r_b: tuple
 
-    def force(self, path):
-        """Force along the line of action per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
-        rows = [line.split() for line in Path(path).read_text().splitlines()]
+    def forces(self, path) -> tuple[float, float]:
+        """``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
+        rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines()]
         reaction = {int(r[0]): (float(r[1]), float(r[2])) for r in rows if len(r) == 4 and r[0].isdigit()}
-        pushed = np.array([reaction[n] for n in self.held.tolist()]).T
-        return float((pushed[0] * self.place[1] - pushed[1] * self.place[0]).sum() / self.r_b)
+        pushed = [np.array([reaction[n] for n in held.tolist()]).T for held in self.held]
+        moment = [float((f[0] * p[1] - f[1] * p[0]).sum()) for f, p in zip(pushed, self.place, strict=True)]
+        return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
+
+    def force(self, path) -> float:
+        """Force along the line of action per width [N/mm], the mean of `forces` (see `geometry.pair.contacts`)."""
+        return sum(self.forces(path)) / 2
 
 
-def write_contact_inp(path, pair, phase, approach, line_load, materials, *, per_width=8, penalty=500.0, refine=1.0):
-    """Write a deck that turns the pinion's bore by ``approach / r_b1`` against the held wheel.
+def write_contact_inp(path, pair, phase, approach, line_load, materials, *, pose="mean", per_width=8, penalty=500.0, refine=1.0):
+    """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
 
     Frictionless surface-to-surface contact of all flanks that may touch, with a linear pressure-overclosure of `penalty` times
-    E (50 is 0.8 % too soft, 500 is not distinguishable from more); small displacements. ``ccx -i NAME`` prints the reactions of
-    the pinion's bore, from which `ContactDeck.force` gives the load.
+    E (50 is 0.8 % too soft, 500 is not distinguishable from more); large displacements, so that the flanks touch where the
+    turned gears have them. The gear whose tip corner touches is the slave side of its pair, with edges of `TIP` there: other
+    choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from which `ContactDeck.force` gives the load.
 
     Parameters
     ----------
@@ -46,10 +55,12 @@ def write_contact_inp(path, pair, phase, approach, line_load, materials, *, per_
     pair : GearPair
     phase : float
     approach : float
-        Rotation of the pinion as a length on the line of action [mm].
+        Turn of the pinion forward and of the wheel backward, together, as a length on the line of action [mm].
     line_load : float
         Expected load [N/mm]; decides where the flanks are refined.
     materials : (Material, Material)
+    pose : {"mean", "pinion", "wheel"}
+        Whether both gears turn by half the approach, or one of them against the held other.
     per_width : int
         Edges per Hertz half width in the contact zones.
     penalty : float
@@ -59,60 +70,81 @@ def write_contact_inp(path, pair, phase, approach, line_load, materials, *, per_
     Returns
     -------
     ContactDeck
+
+    Raises
+    ------
+    ValueError
+        If `pose` is unknown.
     """
+    if pose not in PINION:
+        raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(PINION)}")
+    gears = pair.gear_1, pair.gear_2
     found = pair.contacts([phase])
     near = np.flatnonzero(found.gap[0] < 1.5 * approach)
     order = found.order[near]
+    rolls = found.roll_1[0, near], found.roll_2[0, near]
+    widths = half_width(line_load, found.radius[0, near], contact_modulus(materials))
+    bodies = [
+        _meshed(gear, sense * order, arc_at(gear, roll), widths, per_width, refine)
+        for gear, roll, sense in zip(gears, rolls, (1, -1), strict=True)
+    ]
+    part = PINION[pose]
+    turned = [part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b]
     turns = pair.turn(found.nominal[0, near[0]] - order[0] * pair.p_bt)
-    radius = pair.relative_radius(found.roll_1[0, near], found.roll_2[0, near])
-    widths = half_width(line_load, radius, contact_modulus(materials))
-    bodies = []
-    for gear, roll, sense in ((pair.gear_1, found.roll_1[0, near], 1), (pair.gear_2, found.roll_2[0, near], -1)):
-        edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-        rolls = {}
-        for tooth, arc, a in zip(sense * order, arc_at(gear, roll), widths, strict=True):
-            patch = (arc - 3 * a, arc + 3 * a, a / per_width)
-            rolls[int(tooth)] = stations(gear, edge["flank"], tip=a / per_width / 2, low=edge["low"], patches=[patch])
-        sizes = {"fillet_size": edge["fillet"], "size": edge["near"], "far_size": edge["far"]}
-        bodies.append(section(gear, rolls, **sizes))
     lines = ["** gearfe: gear pair in contact, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
-    ends, held, first, element = ["*STEP, INC=200\n*STATIC\n1., 1.", "*BOUNDARY"], None, 0, 0
-    blocks = []
-    for number, (body, turn, centre, mirror, material) in enumerate(
-        zip(bodies, turns, (0.0, pair.centre_2), (1, pair.outward), materials, strict=True), 1
-    ):
-        x, y = _posed(body.mesh.doflocs, turn, centre, mirror)
-        lines += [f"{first + i}, {u:.12e}, {v:.12e}, 0." for i, (u, v) in enumerate(zip(x, y, strict=True), 1)]
+    blocks, ends, held, place, first, element = [], [], [], [], 0, 0
+    for number, (body, material, angle) in enumerate(zip(bodies, materials, turned, strict=True), 1):
+        x, y = _posed(body.mesh.doflocs, turns[number - 1], (1, pair.outward)[number - 1])
+        centre = (0.0, pair.centre_2)[number - 1]
+        lines += [f"{first + i}, {u:.12e}, {v:.12e}, 0." for i, (u, v) in enumerate(zip(x, y + centre, strict=True), 1)]
         nodes = element_nodes(body.mesh, np.array([x, y]))
         blocks += [f"*ELEMENT, TYPE=CPE6, ELSET=G{number}"]
         blocks += [f"{element + j}, {', '.join(map(str, row))}" for j, row in enumerate((nodes + first + 1).T.tolist(), 1)]
         blocks += [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
-        blocks += [f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}\n1.", f"*SURFACE, NAME=C{number}, TYPE=ELEMENT"]
-        blocks += [f"{element + j}, S{face}" for j, face in _flank_faces(body, nodes)]
+        blocks += [f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}\n1."]
+        for k, tooth in enumerate(((1, -1)[number - 1] * order % body.gear.z).tolist()):
+            blocks += [f"*SURFACE, NAME=C{number}P{k}, TYPE=ELEMENT"]
+            blocks += [f"{element + j}, S{face}" for j, face in _flank_faces(body, nodes, tooth)]
         fixed = held_nodes(body.mesh)
-        blocks += [f"*NSET, NSET=H{number}", *(f"{n}," for n in (fixed + first + 1).tolist())]
-        if number == 1:
-            held, turned = ContactDeck(fixed + 1, np.array([x[fixed], y[fixed]]), pair.gear_1.r_b), approach / pair.gear_1.r_b
-            for n, u, v in zip(held.held, *held.place, strict=True):
-                ends += [f"{n}, 1, 1, {turned * v:.10e}", f"{n}, 2, 2, {-turned * u:.10e}"]
+        held.append(fixed + first + 1)
+        place.append(np.array([x[fixed], y[fixed]]))
+        blocks += [f"*NSET, NSET=H{number}", *(f"{n}," for n in held[-1].tolist())]
+        moved = np.array(_posed(place[-1], angle, 1)) - place[-1]
+        for n, u, v in zip(held[-1], *moved, strict=True):
+            ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}"]
         first, element = first + x.size, element + nodes.shape[1]
     stiff = penalty * max(m.E for m in materials)
-    contact = f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiff:.6e}"
-    pairing = "*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nC1, C2"
-    text = [*lines, *blocks, contact, pairing, *ends, "H2, 1, 2", "*NODE PRINT, NSET=H1\nRF\n*END STEP\n"]
+    contact = [f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiff:.6e}"]
+    for k in range(order.size):
+        pinion_slave = abs(rolls[1][k] - pair.gear_2.roll_a) > 1e-9
+        sides = (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[not pinion_slave]
+        contact += ["*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", sides]
+    step = ["*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends]
+    text = [*lines, *blocks, *contact, *step, "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF\n*END STEP\n"]
     with written(path) as name:
         Path(name).write_text("\n".join(text), encoding="ascii")
-    return held
+    return ContactDeck(tuple(held), tuple(place), (pair.gear_1.r_b, pair.gear_2.r_b))
 
 
-def _posed(points, turn, centre, mirror):
+def _meshed(gear, teeth, arcs, widths, per_width, refine):
+    """Section of `gear` with its flanks refined around the contacts at `arcs` [mm] of half `widths` [mm]."""
+    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    top, rolls = arc_at(gear, gear.roll_a), {}
+    for tooth, arc, a in zip(teeth, arcs, widths, strict=True):
+        patch = (arc - 3 * a, arc + 3 * a, a / per_width)
+        tip = min(a / per_width / 2, TIP * gear.m_n) if top - arc < 2 * a else a / per_width / 2
+        rolls[int(tooth)] = stations(gear, edge["flank"], tip=tip, low=edge["low"], patches=[patch])
+    return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
+
+
+def _posed(points, turn, mirror):
     x, y = mirror * points[0], points[1]
-    return math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x + centre
+    return math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x
 
 
-def _flank_faces(body, nodes):
-    """(element, face) of the loaded flanks, numbered from 1; CalculiX counts the faces 1-2, 2-3, 3-1."""
-    middles = np.concatenate([edge_nodes(body.mesh, chain)[2] for chain in body.flank.values()])
+def _flank_faces(body, nodes, tooth):
+    """(element, face) of the loaded flank of `tooth`, numbered from 1; CalculiX counts the faces 1-2, 2-3, 3-1."""
+    middles = edge_nodes(body.mesh, body.flank[tooth])[2]
     for face in range(3):
         for j in np.flatnonzero(np.isin(nodes[3 + face], middles)).tolist():
             yield j + 1, face + 1

@@ -27,6 +27,7 @@ from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
 # three next teeth, all other teeth
 EDGES = FLANK_EDGES | {"read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
+CRACKED_LOW = 0.01  # at the lower end of the flanks of a cracked gear, where the deflection then changes faster [m_n]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +107,8 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    if cracks:
+        edge["low"] = CRACKED_LOW * gear.m_n / refine
     longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
     fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], span=SPAN)
     coarse = stations(gear, min(edge["read"], longest), tip=0.025 * gear.m_n / refine, span=SPAN)

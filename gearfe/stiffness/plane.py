@@ -5,10 +5,12 @@ import time
 import warnings
 from dataclasses import asdict, replace
 
+import numpy as np
+
 from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from .curve import StiffnessCurve
-from .estimate import coarser, estimate
+from .estimate import coarser, estimate, fixed_phases
 from .own_flexibility import flexibility_of
 
 
@@ -110,12 +112,15 @@ def curve(pair, phase, force, solve, meta, damage=None):
 
 def with_error(row, curves, case, options):
     """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
+    pair, materials, phase = case
     less = coarser(options["refine"], _numeric(row, options).get("order"))
-    solvers = [section_solver(row, None, *case, **(options | one))[0] for one in less]
+    periodic = not any(options["cracks"])
+    where = np.append(phase, fixed_phases(phase, periodic))
+    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in ({}, *less)]
     out = []
     for one in curves:
-        others = [curve(*case[:1], one.phase, one.meta["force_N"], solve, {}).k for solve in solvers]
-        out.append(replace(one, error=estimate(one.k, *others)))
+        k, *coarse = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)
+        out.append(replace(one, error=estimate(phase, periodic, k, coarse)))
     return out
 
 

@@ -9,27 +9,11 @@ import numpy as np
 
 from ..tooth.gear import Gear
 from ..tooth.involute import inv, inverse_inv
-from ..tooth.profile import cartesian, flank
+from ..tooth.profile import flank
+from .contacts import approach, contacts, opposite
 from .interference import overlap, radial_assembly
 
 OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
-
-
-@dataclass(frozen=True, slots=True)
-class Contacts:
-    """The tooth pairs that touch, or nearly do, at some phases (arrays of shape (phases, pairs)).
-
-    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points, `gap` the unloaded distance along the line of
-    action [mm] (inf: the flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters at phase 0 and pair k
-    is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm]. Pair k is formed by the
-    pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th on the other.
-    """
-
-    order: np.ndarray
-    nominal: np.ndarray
-    roll_1: np.ndarray
-    roll_2: np.ndarray
-    gap: np.ndarray
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,63 +242,16 @@ class GearPair:
         return turn_1, turn_2
 
     def contacts(self, phase, *, extended=True):
-        """Contacts of all tooth pairs at `phase` (array), see `Contacts`.
-
-        On the path of contact the gap is zero. Beyond it one tip corner slides on the other flank, and the gap is exact
-        kinematics: the rotation that closes it, times the base radius. With ``extended=False`` such pairs never touch.
-        Phases may be any numbers: at phase 1.3 pair 0 is 1.3 base pitches into its engagement.
-        """
-        phase = np.atleast_1d(np.asarray(phase, dtype=float))
-        start, end = self.path
-        first, last = -1 - math.floor(phase.max()), math.ceil((end - start) / self.p_bt) - math.floor(phase.min())
-        order = np.arange(first, last + 1)
-        nominal = start + (phase[:, None] + order) * self.p_bt
-        slack = 1e-9 * self.p_bt
-        inside = (nominal >= start - slack) & (nominal < end + slack)
-        roll_1, roll_2 = nominal.copy(), self.mate_roll(nominal)
-        gap = np.where(inside, 0.0, np.inf)
-        if extended:
-            self._corner(nominal, nominal > end + slack, roll_1, roll_2, gap, driver=True)
-            self._corner(nominal, nominal < start - slack, roll_2, roll_1, gap, driver=False)
-        return Contacts(order, nominal, roll_1, roll_2, gap)
-
-    def _corner(self, nominal, where, roll_tip, roll_flank, gap, *, driver):
-        """Fill in the pairs `where` a tip corner touches: the pinion's after the end, the wheel's before the start."""
-        tip, other = (self.gear_1, self.gear_2) if driver else (self.gear_2, self.gear_1)
-        distance, roll = self.opposite(np.full(nominal.shape, tip.roll_a), nominal, driver=driver)
-        low, high = sorted((other.roll_f, other.roll_a))
-        meets = where & (roll >= low) & (roll <= high)
-        roll_tip[meets] = tip.roll_a
-        roll_flank[meets] = roll[meets]
-        gap[meets] = np.maximum(distance[meets], 0.0)
+        """Contacts of all tooth pairs at `phase` (array), see `geometry.pair.contacts`."""
+        return contacts(self, phase, extended=extended)
 
     def opposite(self, roll, nominal, *, driver=True):
-        """What a flank point faces when its pair is at `nominal` on the line of action.
+        """What a flank point faces when its pair is at `nominal` [mm], see `geometry.pair.contacts.opposite`."""
+        return opposite(self, roll, nominal, driver=driver)
 
-        Parameters
-        ----------
-        roll : ndarray
-            Roll length of a point on the pinion's flank (``driver=True``) or the wheel's [mm].
-        nominal : ndarray
-            Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
-
-        Returns
-        -------
-        gap, roll : ndarray
-            Distance to the other flank along the line of action, i.e. the rotation that closes it times the base radius
-            [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
-        """
-        gears, centres, mirror = (self.gear_1, self.gear_2), (0.0, self.centre_2), (1, self.outward)
-        own, other = (0, 1) if driver else (1, 0)
-        turns = self.turn(nominal)
-        radius, angle = flank(gears[own], roll)
-        x, y = cartesian(radius, turns[own] + mirror[own] * angle)
-        y = y + centres[own] - centres[other]
-        away, seen = np.hypot(x, y), np.arctan2(x, y)
-        mate = gears[other]
-        met = np.sqrt(np.where(away >= mate.r_b, away**2 - mate.r_b**2, np.nan))
-        behind = mirror[other] * (seen - turns[other]) - flank(mate, met)[1]
-        return mate.r_b * ((behind + math.pi) % (2 * math.pi) - math.pi), met
+    def approach(self, roll, nominal, *, driver=True, start=0.0):
+        """Approach at which a flank point touches the other flank, see `geometry.pair.contacts.approach`."""
+        return approach(self, roll, nominal, driver=driver, start=start)
 
 
 def free_centre_distance(one, two):

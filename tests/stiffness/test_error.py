@@ -73,6 +73,19 @@ def test_error_estimate_covers_the_true_error_in_a_few_cases():
     assert [covered(*case) for case in admissible([1])] == [True]
 
 
+@pytest.mark.parametrize("damage", [None, {"pinion": [gf.Crack(level=0.4)]}])
+def test_the_estimate_of_a_phase_is_the_same_in_any_company(damage):
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    run = {"method": "ritz", "damage": damage, "error": True}
+    alone, few, many = (
+        gf.mesh_stiffness(pair, 3000.0, gf.Material(), phases=p, **run) for p in ([0.3], [0.9, 0.3, 0.1], np.arange(-20, 90) / 50)
+    )
+    assert few.error[1] == pytest.approx(alone.error[0], rel=1e-6)
+    assert many.error[35] == pytest.approx(alone.error[0], rel=1e-6)
+    assert alone.error[0] > 0
+
+
 @pytest.mark.slow
 def test_error_estimate_covers_the_true_error():
     results = []
