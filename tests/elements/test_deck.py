@@ -63,7 +63,7 @@ def test_deck_is_complete(tmp_path):
     pushed = [line.split(", ") for line in text.split("*CLOAD\n")[1].split("*NODE PRINT")[0].splitlines()]
     total = np.array([sum(float(v) for _, d, v in pushed if d == k) for k in ("1", "2")])
     assert abs(np.hypot(*total) - 100) < 0.1
-    with pytest.raises(ValueError, match=r"ends in \.inp"):
+    with pytest.raises(ValueError, match=r"use one of \.inp"):
         gf.write_inp(tmp_path / "gear.txt", gear, radius, 100.0, STEEL)
 
 
