@@ -14,7 +14,7 @@ def test_every_simulated_row_names_its_run(page):
     told = table_rows.read_runs(page)
     home = machines.module(page)
     for row in table_rows.read(page):
-        assert row.run == home.RUN_OF.get(row.id, ""), f"{row.id}: run python -m validation machines --only {page}"
+        assert row.run == home.RUN_OF.get(row.id, ""), f"{row.id}: run python -m validation machines {page}"
         if row.id in home.SIMULATED and row.id != "degrees":
             assert row.run in told, f"{row.id}, {row.case}: {row.run!r} is not among {', '.join(told)}"
 

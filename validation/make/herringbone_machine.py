@@ -219,7 +219,12 @@ def more():
     """Lines of the page beside the verdicts."""
     with open(MOVED, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
-    lines = ["What each assumed error does to the healthy sun along x:", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
+    lines = [
+        "What each assumed error does to the healthy sun along x (from rest; of the transient some is left):",
+        "",
+        f"| {' | '.join(head)} |",
+        "|---" * len(head) + "|",
+    ]
     lines += [f"| {row[0]} | {' | '.join(f'{float(value):.3g}' for value in row[1:])} |" for row in rows]
     return [*lines, "", *tables("herringbone_machine", BOTH, ERRING, PERFECT)]
 

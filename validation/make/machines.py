@@ -83,7 +83,7 @@ def text(page):
         "",
         f"{scene.source}.",
         "",
-        f"Made by `python -m validation machines --only {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
+        f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
         f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",

@@ -127,7 +127,7 @@ def statements(law=OWN):
     calm = [_values(case, False, law=law)["SC (S1)"] for case in CASES]
     out = {
         "pits raise sidebands 40 Hz beside 280 Hz": min(side[case] for case in CASES) > 10 * side["healthy"],
-        "they grow with severity": side["mild"] < side["moderate"] < side["severe"],
+        "they grow with severity": side["healthy"] < side["mild"] < side["moderate"] < side["severe"],
         "impacts raise the force": knocked_peak[True] > 1.1 * knocked_peak[False],
         "impacts bring close sidebands of the mesh line": beside[1] > 10 * beside[0],
         "SC by S0's formula rises with severity": bool((np.diff(s0) > 0.1).all()),
@@ -196,7 +196,7 @@ def draw(folder):
     np.savetxt(folder / "tables" / "planetary_pitting_lines.csv", columns, "%.6g", ",", header=",".join(names), comments="")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
-    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=70)
+    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=60)
     carrier, turn = speeds()[1] / 60, speeds()[3] / scene(NAME).machine["n_planets"]
     lines = {"f_m": speeds()[2], "f_m + f_1 + f_c": speeds()[2] + turn + carrier, "f_m + f_1 - f_c": speeds()[2] + turn - carrier}
     heard = {case: _housing(case) for case in ("healthy", *CASES)}

@@ -10,9 +10,8 @@ def planetary_pitting(found):
         "that the sideband centroid SC grows with the number of pits on a sun tooth, 285 to 350 Hz simulated and 290 to "
         "353 Hz measured, "
         "and hardly depends on impacts, while RMS (1.2, 1.3, 1.5 m/s^2), kurtosis and shape factor tell the levels less well",
-        f"under the articles' own contact law RMS {many} and peaks {high} m/s^2, of the printed order and size, but an SC "
-        "that stays "
-        f"between {min(found.all('sc_simulated')):.0f} and {max(found.all('sc_simulated')):.0f} Hz ({found.counted()})",
+        f"under the articles' own contact law RMS {many} and peaks {high} m/s^2, of the printed order and size, but an SC of "
+        f"{', '.join(f'{x:.1f}' for x in found.all('sc_simulated'))} Hz, the same for all levels ({found.counted()})",
         "the definition of SC: it averages frequencies from 240 to 320 Hz, so that 349.8 and 352.9 Hz cannot come out "
         "whatever the "
         "machine, while levels hang on load, masses and the path to the sensor, which are not printed",
