@@ -48,6 +48,7 @@ _HOME = {
     "expected_lines": "gearfe.signal.spectral_lines",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
+    "housing_signal": "gearfe.signal.housing",
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",

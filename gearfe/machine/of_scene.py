@@ -59,16 +59,17 @@ def build_machine(scene, case=None, *, phases=64, method="auto"):
     if scene.machine.get("bodies") and model not in STATED:
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
     if contact == "impact":
-        return _erring(scene, MACHINES[model][contact](scene, case))
+        return with_scene_errors(scene, MACHINES[model][contact](scene, case))
     out, play = MACHINES[model][contact](scene, case, phases=phases, method=method), scene.machine.get("backlash_um")
-    return _erring(scene, out.with_meshes(backlash=1e-6 * play) if play else out)
+    return with_scene_errors(scene, out.with_meshes(backlash=1e-6 * play) if play else out)
 
 
-def _erring(scene, machine):
+def with_scene_errors(scene, machine):
     """The machine with the errors that its scene states: of the driven stage, the last one."""
-    profile, runout, shift = (1e-6 * scene.machine.get(key, 0.0) for key in ("profile_error_um", "runout_um", "misplaced_um"))
-    if not (profile or runout or shift):
+    keys = ("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um")
+    profile, runout, *shift = (1e-6 * scene.machine.get(key, 0.0) for key in keys)
+    if not (profile or runout or any(shift)):
         return machine
     stage = machine.stages[-1]
-    place = dict.fromkeys(stage.follower, (shift, 0.0)) if shift else None
+    place = dict.fromkeys(stage.follower, tuple(shift)) if any(shift) else None
     return with_errors(machine, profile=profile, runout=dict.fromkeys(stage.driver, (runout, stage.turning, 0.0)), place=place)

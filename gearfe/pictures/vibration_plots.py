@@ -38,6 +38,22 @@ def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
     return save_figure(figure, path, dpi=dpi)
 
 
+def plot_waves(signals, path, seconds=0.25, *, dpi=60):
+    """Draw the first `seconds` of signals by name below each other, with one scale."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
+    for axes, (name, one) in zip(
+        np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
+    ):
+        values = one.values[: round(seconds * one.rate)]
+        axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7)
+        axes.set_title(name, fontsize=9)
+        axes.set_ylabel(one.unit)
+    axes.set_xlabel("time [s]")
+    figure.savefig(path, dpi=dpi)
+
+
 def plot_kurtogram(kurtogram, path=None):
     """Draw a `gearfe.signal.kurtogram.Kurtogram`, the best band framed; save to `path` if given."""
     from matplotlib import colormaps

@@ -6,7 +6,8 @@
   STEP damping, pits as lost contact line; planetary and helical_pair).
 - ``backlash_um``: play along the line of action; default: none, the mesh never opens (impact law: 100).
 - ``profile_error_um``: amplitude of a profile error at mesh frequency in all meshes.
-- ``runout_um``: eccentricity of the driving gear. ``misplaced_um``: shift of planet 1 (or the wheel) along x, away from the sun.
+- ``runout_um``: eccentricity of the driving gear. ``misplaced_um``: shift of planet 1 (or the wheel) along x, away from the sun,
+  which a planet takes up by turning; ``misplaced_y_um``: along the circle of the planets, which makes their loads unequal.
 
 ``[machine.bodies.NAME]``, of sun, planet, ring and carrier of a herringbone stage; default: from the gears
 
@@ -29,6 +30,7 @@ MACHINE = {
     "profile_error_um": (NUMBER, 0.0),
     "runout_um": (NUMBER, 0.0),
     "misplaced_um": (NUMBER, 0.0),
+    "misplaced_y_um": (NUMBER, 0.0),
 }
 IMPACT = {
     "damping_Ns_per_mm": (NUMBER, None),

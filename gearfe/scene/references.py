@@ -4,8 +4,10 @@ from dataclasses import dataclass
 
 from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known
 
+KINDS = ("input", "arithmetic", "model")
 REFERENCE = {
     "id": (TEXT, REQUIRED),
+    "kind": (TEXT, "model"),
     "quantity": (TEXT, REQUIRED),
     "unit": (TEXT, REQUIRED),
     "source": (TEXT, REQUIRED),
@@ -20,6 +22,7 @@ REFERENCE = {
 }
 ROW = {
     "case": (TEXT, REQUIRED),
+    "kind": (TEXT, None),
     "pair": (TEXT, None),
     "printed": (NUMBER, None),
     "claim": (TRUTH, None),
@@ -47,6 +50,11 @@ class Printed:
         What is changed in the printed value, or in the conditions ours is computed for.
     reason : str
         Why it cannot be reproduced.
+    kind : str
+        ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without a
+        model of the machine; ``"model"``: a result that could have come out otherwise.
+    target : float
+        What ours is compared with: the corrected value if there is one, else the printed one.
     """
 
     case: str
@@ -55,6 +63,12 @@ class Printed:
     corrected: float | None
     correction: str
     reason: str
+    kind: str = "model"
+
+    @property
+    def target(self):
+        """Corrected value if there is one, else the printed one."""
+        return self.value if self.corrected is None else self.corrected
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +160,10 @@ def _row(file, where, table, reference, pairs):
     reason, correction = one["reason"] or reference["reason"], one["correction"]
     if corrected is not None:
         correction = correction or reference["correction"]
-    return Printed(one["case"], one["pair"], value, corrected, correction, reason)
+    kind = one["kind"] or reference["kind"]
+    if kind not in KINDS:
+        raise ValueError(f"{file} [{where}]: kind = {kind!r}, but it must be one of {', '.join(KINDS)}")
+    return Printed(one["case"], one["pair"], value, corrected, correction, reason, kind)
 
 
 def printed_stiffness(scene, pair, case=None):

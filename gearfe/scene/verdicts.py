@@ -6,11 +6,15 @@ from typing import NamedTuple
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
-COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict")
+COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
 
 class Row(NamedTuple):
-    """A printed value and ours; `difference` in percent of the printed (corrected) value, of tolerances in the unit: in it."""
+    """A printed value and ours.
+
+    `difference` is taken from the corrected value if there is one: in percent, or in the unit where the tolerance is. `kind`
+    is that of `gearfe.scene.references.Printed`; `run` names the simulation behind ours, empty if there is none.
+    """
 
     id: str
     case: str
@@ -20,31 +24,36 @@ class Row(NamedTuple):
     ours: float
     difference: float
     verdict: str
+    kind: str = "model"
+    run: str = ""
 
 
-def judge(reference, found):
+def judge(reference, found, run=""):
     """Rows of a reference.
+
+    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced.
 
     Parameters
     ----------
     reference : gearfe.scene.references.Reference
     found : dict
         Our value by case, or by (case, pair) where the row names a pair; None where there is none (a measured value).
+    run : str
+        Name of the simulation behind them.
 
     Returns
     -------
     list of Row
     """
     ours = [_of(found, row) for row in reference.rows]
-    ordered = reference.trend and _ordered([row.value for row in reference.rows], ours)
+    ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
     out = []
     for row, value in zip(reference.rows, ours, strict=True):
         word = _verdict(reference, row, value, ordered)
-        target = row.corrected if word == CORRECTED and row.corrected is not None else row.value
         corrected = math.nan if row.corrected is None else row.corrected
-        difference = _rounded(math.nan if value is None else _difference(reference, value, target))
+        difference = _rounded(math.nan if value is None else _difference(reference, value, row.target))
         numbers = [_rounded(x) for x in (row.value, corrected, math.nan if value is None else value)]
-        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word))
+        out.append(Row(reference.id, row.case, row.pair or "", *numbers, difference, word, row.kind, run))
     return out
 
 
@@ -60,10 +69,8 @@ def _verdict(reference, row, ours, ordered):
         return FORMULA
     if ours is None:
         return NEVER
-    if reference.within(ours, row.value):
-        return CORRECTED if row.correction and row.corrected is None else REPRODUCED
-    if row.corrected is not None and reference.within(ours, row.corrected):
-        return CORRECTED
+    if reference.within(ours, row.target):
+        return CORRECTED if row.correction else REPRODUCED
     return TREND if ordered else NOT
 
 
@@ -96,20 +103,38 @@ def reason(reference, row):
     printed = next(one for one in reference.rows if (one.case, one.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         return printed.correction
+    if printed.corrected is not None and row.verdict in (TREND, NOT):
+        return "; ".join(one for one in (f"judged by the corrected value ({printed.correction})", printed.reason) if one)
     return printed.reason if row.verdict in (TREND, NOT, NEVER) else ""
 
 
 def counts(rows):
-    """One line: how many rows have which verdict."""
-    words = (REPRODUCED, CORRECTED, TREND, NOT, NEVER, FORMULA)
+    """One line: verdicts of what a model computes, and apart from them inputs, arithmetic and formulas without a number."""
+    printed = [row for row in rows if row.verdict != FORMULA]
+    model = [row for row in printed if row.kind == "model"]
+    rest = [row for row in printed if row.kind != "model"]
+    parts = [f"{_count(model, 'result')} of a model: {_words(model)}"] if model else []
+    if rest:
+        parts.append(f"{_count(rest, 'input')} and arithmetic on printed numbers: {_words(rest)}")
+    if len(rows) > len(printed):
+        parts.append(f"{_count(rows[len(printed) :], 'value')} without a printed number")
+    return "; apart from them ".join(parts[:2]) + "".join(f"; {one}" for one in parts[2:])
+
+
+def _count(rows, noun):
+    return f"{len(rows)} {noun}{'' if len(rows) == 1 else 's'}"
+
+
+def _words(rows):
+    words = (REPRODUCED, CORRECTED, TREND, NOT, NEVER)
     many = {word: sum(row.verdict == word for row in rows) for word in words}
-    return f"{len(rows)} rows: " + ", ".join(f"{n} {word}" for word, n in many.items() if n)
+    return ", ".join(f"{n} {word}" for word, n in many.items() if n)
 
 
 def text(references, rows):
     """Rows as Markdown: one table for each quantity that has its own tolerance and source."""
     lines = [f"{counts(rows)}.", ""]
-    lines += ["| quantity | case | printed | gearfe | difference | verdict |", "|---|---|---|---|---|---|"]
+    lines += ["| quantity | case | kind | printed | gearfe | difference | verdict |", "|---|---|---|---|---|---|---|"]
     notes = []
     for reference in references:
         mark = ""
@@ -124,7 +149,7 @@ def text(references, rows):
             printed = _shown(reference, row.printed)
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
-            cells = (name, case, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
+            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
             lines.append(f"| {' | '.join(cells)} |")
     return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
 

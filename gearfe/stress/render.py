@@ -91,7 +91,8 @@ def render_contact(scene_pair, path, *, case=None, phase=None):
     Returns
     -------
     dict
-        ``phase``, ``k`` [N/m], ``pressure`` (the largest) [MPa].
+        ``phase``, ``k`` [N/m], ``pressure`` (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the
+        pressure is unbounded, and the largest is that of the rest; nan if nothing else touches.
     """
     cracks, pits = by_gear(scene_pair.pair, scene_pair.case(case).get("damage"))
     order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
@@ -100,7 +101,10 @@ def render_contact(scene_pair, path, *, case=None, phase=None):
     run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
     found = contact_of(*run, order)
     plot_contact(scene_pair.pair, found, path=path, pits=pits[0])
-    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": float(found.cells[0].pressure.max())}
+    pressure = found.cells[0].pressure
+    corner = np.isnan(pressure)
+    largest = math.nan if corner.all() else float(pressure[~corner].max())
+    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": largest, "corner": bool(corner.any())}
 
 
 def _gears(scene_pair, damage, phase, refine):

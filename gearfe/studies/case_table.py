@@ -121,11 +121,11 @@ def printed_beside(scene, published, reference, drops):
     Returns
     -------
     dict of str to dict
-        For `gearfe.scene.verdicts.judge`; the printed errors are recomputed from the printed stiffnesses. Empty without such
-        rows.
+        For `gearfe.scene.verdicts.judge`; the printed errors are recomputed from the printed (corrected) stiffnesses. Empty
+        without such rows.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
-    said = {one.id: {(row.case, row.pair): row.value for row in one.rows} for one in scene.references}
+    said = {one.id: {(row.case, row.pair): row.target for row in one.rows} for one in scene.references}
     if not all(name in said for name in (*ids, "stiffness_error")):
         return {}
     own, other = said["stiffness_analytical"], said["stiffness_fe"]

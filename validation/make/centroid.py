@@ -8,6 +8,7 @@ import gearfe as gf
 from gearfe.files import written
 from gearfe.signal import indicators as ind
 
+from ..shared import table_rows
 from ..shared.places import PAGES
 
 PAGE = PAGES / "centroid.md"
@@ -41,25 +42,34 @@ def study():
 
 
 def verdicts(found):
-    """(claim, whether it holds, numbers) for what the articles say of SC."""
+    """(claim, whether it holds, numbers) for what the formulas do on these synthetic lines."""
     s0, s1 = found[..., 0], found[..., 1]
     rises = [bool((np.diff(s0[i], axis=0) > 0.1).all()) for i in range(len(LEAN))]
     fault = (s1[:, -1] / s1[:, 0]).mean(axis=1)[0] - 1
     impact = (s1[:, :, -1] / s1[:, :, 0]).mean(axis=1)[0] - 1
     edge = F_M + F_FAULT
     beyond = sorted(value for row in PRINTED.values() for value in row if value > edge)
-    yield "S0: SC rises with severity", all(rises), f"only {sum(rises)} of {len(LEAN)}: it follows the lean of the sidebands"
     yield (
-        "S0: its printed values follow from its definition",
+        "S0's formula rises with the sidebands",
+        all(rises),
+        f"only {sum(rises)} of {len(LEAN)}: it follows the lean of the sidebands",
+    )
+    yield (
+        "S0's printed values follow from its definition",
         not beyond,
         f"{beyond} Hz lie beyond {edge:g} Hz, the end of the sum",
     )
-    yield "S1: SC rises with severity", bool((np.diff(s1, axis=1) > 0).all()), f"mild to severe {100 * fault:+.0f} %"
+    yield "S1's formula rises with the sidebands", bool((np.diff(s1, axis=1) > 0).all()), f"mild to severe {100 * fault:+.0f} %"
     yield (
-        "S1: impacts hardly matter",
+        "S1's formula hardly follows impacts",
         bool(abs(impact) < 0.1 * fault),
         f"none to strong {100 * impact:+.0f} %: their sidebands lie inside the sum",
     )
+
+
+def judged():
+    """Rows of the simulated machine on the articles' claims about SC: there they are judged, see `planetary_pitting.md`."""
+    return [row for row in table_rows.read("planetary_pitting") if row.id == "statements" and row.case.startswith("SC by")]
 
 
 def page():
@@ -83,8 +93,17 @@ def page():
             lines.append(f"| {lean} | {severity} | {' | '.join(cells)} |")
     lines += ["", "| printed | mild | moderate | severe |", "|---|---|---|---|"]
     lines += [f"| {name} [Hz] | {' | '.join(map(str, row))} |" for name, row in PRINTED.items()]
-    lines += ["", "| claim | verdict | why |", "|---|---|---|"]
+    lines += ["", "What the formulas do where sidebands of a given size are all that changes:", ""]
+    lines += ["| property | verdict | why |", "|---|---|---|"]
     lines += [f"| {claim} | {'holds' if holds else 'does not hold'} | {why} |" for claim, holds, why in verdicts(found)]
+    lines += [
+        "",
+        "What the articles claim is of a machine with pits and impacts, and is judged there ([page](planetary_pitting.md)):",
+        "",
+    ]
+    lines += ["| claim | printed | gearfe | verdict |", "|---|---|---|---|"]
+    said = {1.0: "yes", 0.0: "no"}
+    lines += [f"| {row.case} | {said[row.printed]} | {said[row.ours]} | {row.verdict} |" for row in judged()]
     return "\n".join(lines) + "\n"
 
 

@@ -1,5 +1,6 @@
 """The printed numbers of article S2 (two-stage compound planetary gearbox with a cracked sun tooth), computed."""
 
+import csv
 import math
 from fractions import Fraction
 from functools import cache
@@ -8,130 +9,19 @@ import numpy as np
 from scipy.signal import resample_poly
 
 import gearfe as gf
+from gearfe.files import written
 from gearfe.machine.compound_planetary import compound_planetary
 
-from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum
+from ..shared.places import TABLES
+from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
+from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies  # noqa: F401
 
-NAME = "compound_planetary"
-LEVELS = {"10 %": "crack10", "30 %": "crack30", "50 %": "crack50", "70 %": "crack70", "80 %": "crack80"}
-BEAMS = {"root": "prism", "foundation": "none"}  # S2: Hertz, bending, shear and axial terms after Liang; no foundation
-PAIRS = {
-    "s1_sun_planet": "sun_planet",
-    "s1_ring_planet": "planet_ring_1",
-    "s2_sun_planet": "sun_planet",
-    "s2_planet_planet": "planet_planet",
-    "s2_ring_planet": "planet_ring_2",
-}
+PHASES, PARTS = TABLES / "compound_planetary_phases.csv", TABLES / "compound_planetary_parts.csv"
+HEARD = "linear stiffness"
 RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
 SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
 NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
 SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
-
-
-@cache
-def beams(pair, phases=400, span="cycle"):
-    """Stiffness curve of a pair with the article's four components."""
-    return gf.mesh_stiffness(**scene(NAME).pairs[pair].case(), method="textbook", variants=BEAMS, phases=phases, span=span)
-
-
-def mean_stiffness():
-    """Mean over the cycle [N/m]."""
-    return {(name, pair): float(beams(pair).k.mean()) for name, pair in PAIRS.items()}
-
-
-def stiffness_ratio():
-    """Means over that of sun and planet."""
-    k = {name: float(beams(pair).k.mean()) for name, pair in PAIRS.items()}
-    return {name: k[name] / k["s2_sun_planet"] for name in ("s2_planet_planet", "s1_ring_planet", "s2_ring_planet")}
-
-
-def broken_tooth():
-    """What is left of the mean over the broken tooth's engagement, if it carries nothing."""
-    curve = beams("sun_planet", span="tooth")
-    own = curve.force[:, np.flatnonzero(curve.order == 0)[0]]
-    engaged = own > 0
-    return {"sudden break": float((curve.k * (1 - own / curve.force.sum(axis=1)))[engaged].mean() / curve.k[engaged].mean())}
-
-
-def frequencies():
-    """Mesh frequencies and fault frequencies of both stages [Hz]."""
-    one, two = scene(NAME).pairs["planet_ring_1"].pair, scene(NAME).pairs["planet_ring_2"].pair
-    sun, run = scene(NAME).gears["sun"].z, scene(NAME).machine
-    ratios = sun / one.gear_2.z, sun / two.gear_2.z
-    carrier = run["speed_rpm"] * ratios[1] / sum(ratios)  # (n2 - nc) z_s2 / z_r2 = nc z_s1 / z_r1
-    mesh = carrier / 60 * sun, (run["speed_rpm"] - carrier) / 60 * sun
-    return mesh, tuple(run["n_planets"] * f / sun for f in mesh)
-
-
-def mating_time():
-    """Contact ratio over the mesh frequency of stage 2 [s]."""
-    return {"sun 2": scene(NAME).pairs["sun_planet"].pair.eps_alpha / frequencies()[0][1]}
-
-
-def crack_step():
-    """Length of 20 % of a crack that reaches the centre-line with 50 % [mm], by where it starts."""
-    from geometry.damage.crack import crack_path
-
-    sun = scene(NAME).gears["sun"]
-    half = sun.r_b * math.sin(sun.base_half_angle)  # the source's tooth below the base circle is a prism
-    start, tip = crack_path(sun, gf.Crack(level=0.5)).T
-    return {
-        "from the foot of the article's tooth": 0.4 * half / math.sin(math.radians(45)),
-        "from the 30-degree tangent": 0.4 * float(np.hypot(*(tip - start))),
-    }
-
-
-def input_speed():
-    """Speed of sun 2 from the two printed fault frequencies [rpm]."""
-    n = scene(NAME).machine["n_planets"]
-    return {"from 16.8 and 18.2 Hz": 60 * (16.8 + 18.2) / n}
-
-
-def pulse_intervals():
-    """Mesh periods [s]."""
-    return {f"stage {i + 1}": 1 / f for i, f in enumerate(frequencies()[0])}
-
-
-def fault_frequencies():
-    """N f_m / z_s."""
-    return {f"sun {i + 1}": f for i, f in enumerate(frequencies()[1])}
-
-
-def fault_period():
-    """Its inverse."""
-    return {"sun 1": 1 / frequencies()[1][0]}
-
-
-def measured_mesh():
-    """At 700 rpm."""
-    return {f"stage {i + 1}": f for i, f in enumerate(frequencies()[0])}
-
-
-def measured_fault():
-    """At 700 rpm."""
-    return fault_frequencies()
-
-
-def measured_period():
-    """At 700 rpm."""
-    return {f"sun {i + 1}": 1 / f for i, f in enumerate(frequencies()[1])}
-
-
-def measured_speed():
-    """Input speed that the measured lines stand for over 700 rpm: of one record the mesh and the fault lines must agree."""
-    mesh, fault = frequencies()
-    return {
-        "mesh lines of both stages": (180.6 / mesh[1]) / (167.3 / mesh[0]),
-        "fault lines": (17.67 / fault[1]) / (16.23 / fault[0]),
-    }
-
-
-def same_instant():
-    """Whether planet i meets sun 1 and the ring at their pitch points at the same time."""
-    phases = machine(NAME, None, "auto").notes["phases"]
-    sun, ring = (scene(NAME).pairs[name].pair.pitch_phase for name in ("sun_planet", "planet_ring_1"))
-    apart = (phases["p1_ring"] - ring - phases["sun1_p1"] + sun) % 1.0
-    return {"stage 1": min(apart, 1 - apart) < 1e-6}
 
 
 @cache
@@ -150,9 +40,14 @@ def _made(case):
 
 
 @cache
+def _response(case):
+    return record(_made(case), SECONDS, SAMPLED, SETTLE)
+
+
+@cache
 def _whole(case):
     """Angular acceleration of the ring as simulated."""
-    return signal(record(_made(case), SECONDS, SAMPLED, SETTLE), SENSOR)
+    return signal(_response(case), SENSOR)
 
 
 @cache
@@ -195,10 +90,10 @@ def kurtogram_centre():
     return {name: _kurtogram(case)[1] for name, case in (("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))}
 
 
-def _stands_out(found, frequency, low=5.0, high=60.0):
-    """Whether the line at a frequency is three times the median of its neighbourhood."""
-    around = found.within(low, high)[1]
-    return amplitude(found, frequency) > 3 * np.median(around)
+def _stands_out(found, frequency, near=3.0):
+    """Whether the line at a frequency is three times the median of what is less than `near` [Hz] beside it."""
+    beside = found.within(frequency - near, frequency + near)[1]
+    return amplitude(found, frequency) > 3 * np.median(beside)
 
 
 def _sideband(case, mesh, fault):
@@ -229,28 +124,59 @@ def statements():
     }
 
 
-def crack_levels():
-    """Least stiffness over the engagement of a cracked tooth over the healthy one, by level and method."""
-    chosen = scene(NAME).pairs["sun_planet"]
-    out = {}
-    for level, case in LEVELS.items():
-        for method, options in (("ritz", {}), ("textbook", {"variants": BEAMS | {"crack_model": "straight"}})):
-            run = {"method": method, "phases": 64, "span": "tooth"} | options
-            whole = gf.mesh_stiffness(**chosen.case(), **run).k
-            out[f"{level}, {method}"] = float((gf.mesh_stiffness(**chosen.case(case), **run).k / whole).min())
-    return out
+def write_more():
+    """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
+    made = _made(None)
+    with written(PHASES) as target, open(target, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("mesh", "against planet 1", "in its planet's chain"))
+        for name, pair in made.notes["relative phases"].items():
+            out.writerow((name, *(f"{value:.6g}" for value in pair)))
+    chosen = scene(NAME).pairs["sun_planet"].case()
+    with written(PARTS) as target, open(target, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("model", "mean k [N/m]"))
+        with_ground = gf.mesh_stiffness(**chosen, method="textbook", variants={"root": "prism"}, phases=400).k.mean()
+        out.writerow(("the article's beams: Hertz, bending, shear, axial", f"{beams('sun_planet').k.mean():.6g}"))
+        out.writerow(("with the foundation after Sainsot", f"{with_ground:.6g}"))
+        out.writerow(("converged energy model", f"{converged('sun_planet'):.6g}"))
+
+
+def more():
+    """Lines of the page beside the verdicts."""
+    with open(PARTS, encoding="utf-8", newline="") as file:
+        parts = list(csv.reader(file))[1:]
+    first = float(parts[0][1])
+    lines = [
+        "What the foundation is worth, sun and planet, the same inferred gears:",
+        "",
+        "| model | mean k [N/m] | of the first |",
+    ]
+    lines += ["|---|---|---|", *(f"| {name} | {float(k):.4g} | {float(k) / first:.2f} |" for name, k in parts), ""]
+    with open(PHASES, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
+    return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in rows), ""]
+
+
+def runs():
+    """What the simulations were made with."""
+    return {HEARD: told(_response(None)) + f"; then an anti-aliasing filter and {RATE:g} samples per second"}
 
 
 PICTURES = {
     "compound_planetary_k": "Stiffness of sun and planet over the engagement of a cracked tooth, converged energy model",
     "compound_planetary_spectra": "Angular acceleration of the ring",
+    "compound_planetary_waves": "Angular acceleration of the ring with noise, as S2 shows its signals",
+    "compound_planetary_envelopes": "Squared envelope spectra of the bands with the largest kurtosis",
+    "compound_planetary_kurtogram": "Kurtogram, sun 2 with a tooth of 80 %",
 }
 
 
 def draw(folder):
     """Pictures of the page."""
     from gearfe.pictures.stiffness_plots import plot_curves
-    from gearfe.pictures.vibration_plots import plot_spectra
+    from gearfe.pictures.vibration_plots import plot_spectra, plot_waves
 
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
     curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}
@@ -261,28 +187,20 @@ def draw(folder):
     cases = {"healthy": None, "sun 1, 80 %": "sun 1", "sun 2, 30 %": "crack30", "sun 2, 80 %": "crack80"}
     spectra = {name: spectrum(_whole(case)) for name, case in cases.items()}
     plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70)
+    broken = {"sun 1, 80 %": "sun 1", "sun 2, 80 %": "crack80"}
+    plot_waves(
+        {"healthy": _noisy(None)} | {name: _noisy(case) for name, case in broken.items()}, folder / "compound_planetary_waves.png"
+    )
+    envelopes = {name: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for name, case in broken.items()}
+    faults = {"f_1": slow, "2 f_1": 2 * slow, "f_2": quick, "2 f_2": 2 * quick}
+    plot_spectra(envelopes, faults, folder / "compound_planetary_envelopes.png", 60.0, dpi=70)
+    gf.plot_kurtogram(gf.fast_kurtogram(_noisy("crack80"), levels=7), folder / "compound_planetary_kurtogram.png")
 
 
-QUICK = {
-    "mean_stiffness": mean_stiffness,
-    "stiffness_ratio": stiffness_ratio,
-    "broken_tooth": broken_tooth,
-    "mating_time": mating_time,
-    "crack_step": crack_step,
-    "input_speed": input_speed,
-    "pulse_intervals": pulse_intervals,
-    "fault_frequencies": fault_frequencies,
-    "fault_period": fault_period,
-    "measured_mesh": measured_mesh,
-    "measured_fault": measured_fault,
-    "measured_period": measured_period,
-    "measured_speed": measured_speed,
-    "same_instant": same_instant,
-    "crack_levels": crack_levels,
-}
 SIMULATED = {
     "kurtosis": kurtosis,
     "kurtogram_level": kurtogram_level,
     "kurtogram_centre": kurtogram_centre,
     "statements": statements,
 }
+RUN_OF = dict.fromkeys(SIMULATED, HEARD)

@@ -9,13 +9,15 @@ import gearfe as gf
 from gearfe.machine.contact_law import hertz_coefficient
 from geometry.pair.lines import total_length
 
-from ..shared.simulated import amplitude, machine, periodic, record, scene, signal, spectrum
+from ..shared.laws import beside, tables
+from ..shared.simulated import amplitude, machine, own_law, periodic, record, scene, signal, spectrum, told
 
 NAME = "helical_pitting"
 CASES = ("minor", "severe", "multi")
 SECONDS, SETTLE = 0.48, 0.24  # 20 turns of the pinion, after 10
 RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
 FORCE = "force mesh"
+OWN, LINEAR = "impact law", "linear stiffness"
 
 
 def pair():
@@ -35,14 +37,17 @@ def theory():
 
 
 @cache
-def _found(case):
+def _found(case, law=OWN):
     """Spectrum of the simulated mesh force."""
-    return spectrum(signal(_record(case), FORCE))
+    return spectrum(signal(_record(case, law), FORCE))
 
 
 @cache
-def _record(case):
+def _record(case, law=OWN):
+    """Response of a case under S3's law, its load shared by contact lines, or with linear stiffness curves."""
     name = None if case == "healthy" else case
+    if law == OWN:
+        return record(own_law(NAME, name, pulsed=False), SECONDS, RATE, SETTLE)
     return record(machine(NAME, name), SECONDS, RATE, SETTLE, periodic(NAME, name))
 
 
@@ -102,25 +107,26 @@ def line_length():
     return {name: float(value) for name, value in out.items()}
 
 
-def _low(case, n):
+def _low(case, n, law=OWN):
     """Amplitude at n f_r [N]."""
-    return amplitude(_found(case), n * frequencies()["f_r"])
+    return amplitude(_found(case, law), n * frequencies()["f_r"])
 
 
-def _largest(case):
+def _largest(case, law=OWN):
     """Which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
-    return 1 + int(np.argmax([_low(case, n) for n in (1, 2, 3)]))
+    return 1 + int(np.argmax([_low(case, n, law) for n in (1, 2, 3)]))
 
 
-def _side(case, n, m):
+def _side(case, n, m, law=OWN):
     """Mean amplitude at n f_m +- m f_r [N]."""
     turn, mesh = frequencies().values()
-    return (amplitude(_found(case), n * mesh - m * turn) + amplitude(_found(case), n * mesh + m * turn)) / 2
+    found = _found(case, law)
+    return (amplitude(found, n * mesh - m * turn) + amplitude(found, n * mesh + m * turn)) / 2
 
 
-def _impacts(case):
+def _impacts(case, law=OWN):
     """Largest force within a turn over the median of the others' largest, folded by tooth: one tooth must stand out."""
-    force = signal(_record(case), FORCE).values
+    force = signal(_record(case, law), FORCE).values
     turn = round(RATE / frequencies()["f_r"])
     own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)
     by_tooth = own[: turn // 17 * 17].reshape(17, -1).max(axis=1)
@@ -136,33 +142,80 @@ def _lines_of_lost_length(teeth):
     return 2 * np.abs(np.fft.rfft(lost))[1:3] / lost.size
 
 
-def statements():
+def statements(law=OWN):
     """What S3 says of its spectra; see the scene for the words."""
     mesh = frequencies()["f_m"]
-    healthy = _found("healthy")
+    healthy = _found("healthy", law)
     main = amplitude(healthy, mesh) ** 2 + amplitude(healthy, 2 * mesh) ** 2
-    power = signal(_record("healthy"), FORCE).values.var()
-    minor, severe = ([_low(case, n) for n in (1, 2, 3)] for case in ("minor", "severe"))
-    sides = {case: [_side(case, n, m) for n in (1, 2) for m in (1, 2)] for case in ("healthy", *CASES)}
-    same, opposite = _lines_of_lost_length((0, 0, 0)), _lines_of_lost_length((0, 0, 8))
-    return {
+    power = signal(_record("healthy", law), FORCE).values.var()
+    minor, severe = ([_low(case, n, law) for n in (1, 2, 3)] for case in ("minor", "severe"))
+    sides = {case: [_side(case, n, m, law) for n in (1, 2) for m in (1, 2)] for case in ("healthy", *CASES)}
+    out = {
         "healthy: f_m and 2 f_m dominate": main / 2 > 0.5 * power,
         "healthy: no sidebands": max(sides["healthy"]) < 0.01 * min(sides["severe"]),
-        "minor and severe: f_r, 2 f_r, 3 f_r appear": min(minor + severe) > 10 * max(_low("healthy", n) for n in (1, 2, 3)),
+        "minor and severe: f_r, 2 f_r, 3 f_r appear": min(minor + severe) > 10 * max(_low("healthy", n, law) for n in (1, 2, 3)),
         "they grow from minor to severe": all(a < b for a, b in zip(minor, severe, strict=True)),
         "sidebands grow from minor to severe": all(a < b for a, b in zip(sides["minor"], sides["severe"], strict=True)),
-        "severe: impacts once a turn stand out": _impacts("severe") > 1.5,
-        "minor: no such impacts": _impacts("minor") < 1.5,
-        "multi: 2 f_r is the largest low line": _largest("multi") == 2,
-        "severe: f_r is the largest low line": _largest("severe") == 1,
+        "severe: impacts once a turn stand out": _impacts("severe", law) > 1.5,
+        "minor: no such impacts": _impacts("minor", law) < 1.5,
+        "multi: 2 f_r is the largest low line": _largest("multi", law) == 2,
+        "severe: f_r is the largest low line": _largest("severe", law) == 1,
         "multi: sidebands at 2 f_r above those at f_r": sides["multi"][1] > sides["multi"][0],
         "severe: sidebands at f_r above those at 2 f_r": sides["severe"][0] > sides["severe"][1],
-        "multi, all pits on one tooth: lost contact line has most at 2 f_r": bool(same[1] > same[0]),
-        "multi, two pits on tooth 0 and one on tooth 8: the same": bool(opposite[1] > opposite[0]),
     }
+    if law == OWN:
+        same, opposite = _lines_of_lost_length((0, 0, 0)), _lines_of_lost_length((0, 0, 8))
+        out["multi, all pits on one tooth: lost contact line has most at 2 f_r"] = bool(same[1] > same[0])
+        out["multi, two pits on tooth 0 and one on tooth 8: the same"] = bool(opposite[1] > opposite[0])
+    return out
 
 
-PICTURES = {"helical_pitting_spectra": "Mesh force, low lines and those about the mesh frequency"}
+def _by_turn(law=OWN):
+    """Lines of the force at f_r, 2 f_r, 3 f_r [N] by case."""
+    return {f"{case}, {n} f_r": _low(case, n, law) for case in CASES for n in (1, 2, 3)}
+
+
+def _about_mesh(law=OWN):
+    """Mean sidebands [N] at f_m +- f_r and +- 2 f_r by case, and the healthy mesh lines."""
+    out = {f"{case}, f_m +- {m} f_r": _side(case, 1, m, law) for case in CASES for m in (1, 2)}
+    mesh = frequencies()["f_m"]
+    return out | {f"healthy, {n} f_m": amplitude(_found("healthy", law), n * mesh) for n in (1, 2, 3)}
+
+
+def _standing_out(law=OWN):
+    """How far the damaged tooth's largest force stands out."""
+    return {case: _impacts(case, law) for case in CASES}
+
+
+BESIDE = {
+    "low lines [N]": _by_turn,
+    "lines about f_m [N]": _about_mesh,
+    "largest force of the damaged tooth over the others'": _standing_out,
+    "the article says": statements,
+}
+BOTH = (
+    "The same under S3's own law (impact force, load shared by the lengths of the contact lines), which is judged above, "
+    "and with the "
+    "linear stiffness curves of the pitted teeth"
+)
+
+
+def runs():
+    """What the simulations were made with."""
+    return {OWN: told(_record("healthy")), LINEAR: told(_record("healthy", LINEAR))}
+
+
+def write_more():
+    """Table of both laws."""
+    beside("helical_pitting", BESIDE, OWN, LINEAR)
+
+
+def more():
+    """Lines of the page beside the verdicts."""
+    return tables("helical_pitting", BOTH, OWN, LINEAR)
+
+
+PICTURES = {"helical_pitting_spectra": "Mesh force under the article's own law, low lines and those about the mesh frequency"}
 
 
 def draw(folder):
@@ -186,3 +239,4 @@ QUICK = {
     "line_length": line_length,
 }
 SIMULATED = {"simulated": simulated, "statements": statements}
+RUN_OF = {"simulated": OWN, "statements": OWN}

@@ -1,17 +1,21 @@
 """The printed numbers of article S4 but its stiffness table (herringbone stage with crack and pits in the sun), computed."""
 
-import math
+import csv
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.energy.closed.beam import SAINSOT
+from gearfe.files import written
+from gearfe.machine.of_scene import with_scene_errors
 
-from ..shared.simulated import PHASES, amplitude, machine, periodic, record, scene, signal, spectrum
+from ..shared.laws import beside, tables
+from ..shared.places import TABLES
+from ..shared.simulated import PHASES, amplitude, machine, periodic, record, scene, signal, spectrum, told
+from .herringbone_numbers import NAME, QUICK, speeds  # noqa: F401
 
-NAME = "herringbone"
+MOVED = TABLES / "herringbone_machine_errors.csv"
 SECONDS, SETTLE = 0.3, 0.075  # 8 turns of the sun relative to the carrier, after 2
 RATE = 64 * 480.0
 STATES = {"healthy": None, "crack 30 %": "crack30", "6 pits": "pits6", "case 2": "case2", "case 3": "case3", "case 4": "case4"}
@@ -20,58 +24,9 @@ CRACKS = (0.1, 0.6)
 GROWN = {("case1", 0.1): "case1", ("case2", 0.6): "case3"}  # pits of a case and crack: a case of the scene
 SUN, TURNING = "sunL.x", "sunL.theta acceleration"
 UM = 1e6
+ERRING, PERFECT = "with errors", "without errors"
+ERRORS = ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um")
 ROUNDING = 1e-9  # um: what cancels leaves 1e-13
-
-
-def speeds():
-    """Frequencies [Hz] of sun, carrier, mesh and fault."""
-    sun, ring, run = scene(NAME).gears["sun"].z, scene(NAME).gears["ring"].z, scene(NAME).machine
-    turn = run["speed_rpm"] / 60
-    carrier = turn / (1 + ring / sun)
-    mesh = (turn - carrier) * sun
-    return turn, carrier, mesh, run["n_planets"] * mesh / sun
-
-
-def mesh_frequency():
-    """By the relative speed of the sun, and by the printed form with the planet's teeth."""
-    turn, carrier, mesh, _ = speeds()
-    planet = scene(NAME).gears["planet"].z
-    return {
-        "(f_s - f_c) z_s": mesh,
-        "(f_s - f_c) z_p as printed": (turn - carrier) * planet,
-        "f_c z_r": carrier * scene(NAME).gears["ring"].z,
-    }
-
-
-def fault_frequency():
-    """As printed, and how often the damaged tooth meshes."""
-    _, _, mesh, fault = speeds()
-    run, sun = scene(NAME).machine, scene(NAME).gears["sun"].z
-    return {"f_m / (z_s N) as printed": mesh / (sun * run["n_planets"]), "N f_m / z_s": fault}
-
-
-def periods():
-    """Of sun and fault [s]."""
-    turn, _, _, fault = speeds()
-    return {"sun": 1 / turn, "fault": 1 / fault}
-
-
-def mesh_period():
-    """Printed 60 / (n_1 z_1) over the period of the mesh."""
-    turn, _, mesh, _ = speeds()
-    return {"60 / (n_1 z_1) as printed": mesh / (turn * scene(NAME).gears["sun"].z)}
-
-
-def impulses():
-    """Of one damaged sun tooth: in a turn of the sun, and in a turn relative to the carrier."""
-    turn, carrier, _, fault = speeds()
-    return {"turn of the sun": fault / turn, "turn relative to the carrier": fault / (turn - carrier)}
-
-
-def sainsot():
-    """Coefficients of the foundation polynomials."""
-    names = [f"{row} {column}" for row in ("L", "M", "P", "Q") for column in "ABCDEF"]
-    return dict(zip(names, map(float, SAINSOT.ravel()), strict=True))
 
 
 def degrees():
@@ -79,44 +34,18 @@ def degrees():
     return {"whole machine": float(len(machine(NAME).dofs))}
 
 
-def masses():
-    """Of discs up to the reference circle, without bore, 60 mm wide [kg]."""
-    out = {}
-    for name in ("sun", "planet"):
-        gear = scene(NAME).gears[name]
-        out[name] = 7850e-9 * math.pi * gear.r**2 * gear.b
-    return out
-
-
-def inertias():
-    """Of discs of the printed mass up to the reference circle, of the ring as a hoop of that radius [kg m2]."""
-    out = {}
-    for name, part in (("sun", 0.5), ("planet", 0.5), ("ring", 1.0)):
-        out[name] = part * scene(NAME).machine["bodies"][name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2
-    return out
-
-
-def pit_counts():
-    """Pits of the cases in the table of stiffness, from the scene."""
-    found = scene(NAME).pairs["sun_planet"].damage
-    count = {case: sum(isinstance(one, gf.Pit) for one in found[case]["pinion"]) for case in ("case2", "case4")}
-    return {
-        "simulated, moderate": count["case2"],
-        "measured, moderate": count["case2"],
-        "measured, severe": count["case4"],
-    }
+@cache
+def _record(case, errors=ERRING):
+    """Response of a case with the errors that the scene assumes, or without any."""
+    if errors == ERRING:
+        return record(machine(NAME, case), SECONDS, RATE, SETTLE, periodic(NAME, case))
+    return record(machine(NAME, case).with_meshes(error=(), backlash=0.0), SECONDS, RATE, 4 * SETTLE)
 
 
 @cache
-def _record(case):
-    made, start = machine(NAME, case), periodic(NAME, case)
-    return record(made, SECONDS, RATE, SETTLE, start)
-
-
-@cache
-def _range(case):
+def _range(case, errors=ERRING):
     """Least and largest sun displacement along x [um]."""
-    x = UM * signal(_record(case), SUN).values
+    x = UM * signal(_record(case, errors), SUN).values
     return tuple(float(end) if abs(end) > ROUNDING else 0.0 for end in (x.min(), x.max()))
 
 
@@ -133,11 +62,6 @@ def displacement_lower():
 def displacement_span():
     """Upper less lower end [um]."""
     return {name: _range(case)[1] - _range(case)[0] for name, case in STATES.items()}
-
-
-def measured_range():
-    """Not computed: the housing is not modelled."""
-    return {"healthy, lower": None, "healthy, upper": None}
 
 
 def healthy_spectrum():
@@ -265,6 +189,79 @@ def statements():
     }
 
 
+@cache
+def _moved(**changes):
+    """Healthy sun's mean place, range along x and line at f_m [um] with errors of the scene changed."""
+    own = scene(NAME)
+    made = machine(NAME).with_meshes(error=(), backlash=1e-6 * own.machine["backlash_um"])
+    table = own.machine | changes
+    erred = with_scene_errors(replace(own, machine=table), made)
+    x = signal(record(erred, SECONDS, RATE, 4 * SETTLE), SUN)
+    line = UM * amplitude(spectrum(x), speeds()[2])
+    return UM * float(x.values.mean()), UM * float(np.ptp(x.values)), line
+
+
+def write_more():
+    """Tables: with and without errors, and what each error does."""
+    beside("herringbone_machine", BESIDE, ERRING, PERFECT)
+    own = scene(NAME).machine
+    with written(MOVED) as target, open(target, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("errors", "mean x [um]", "range of x [um]", "line at f_m [um]"))
+        rows = {"as assumed": {}} | {
+            f"{key} = {factor * own[key]:g}": {key: factor * own[key]} for key in ERRORS[:3] for factor in (0, 2)
+        }
+        for name, changes in rows.items():
+            out.writerow((name, *(f"{value:.6g}" for value in _moved(**changes))))
+
+
+def more():
+    """Lines of the page beside the verdicts."""
+    with open(MOVED, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    lines = [
+        "What each assumed error does to the healthy sun along x (from rest; of the transient some is left):",
+        "",
+        f"| {' | '.join(head)} |",
+        "|---" * len(head) + "|",
+    ]
+    lines += [f"| {row[0]} | {' | '.join(f'{float(value):.3g}' for value in row[1:])} |" for row in rows]
+    return [*lines, "", *tables("herringbone_machine", BOTH, ERRING, PERFECT)]
+
+
+def _ranges(errors=ERRING):
+    """Range of the sun along x [um] by state."""
+    return {name: _range(case, errors)[1] - _range(case, errors)[0] for name, case in STATES.items()}
+
+
+def _means(errors=ERRING):
+    """Mean place of the sun along x [um] by state."""
+    return {name: UM * float(signal(_record(case, errors), SUN).values.mean()) for name, case in STATES.items()}
+
+
+def _of_turning(indicator):
+    """Function of the errors: an indicator of the sun's angular acceleration by state."""
+    mesh, fault = speeds()[2:]
+    return lambda errors=ERRING: {
+        name: signal(_record(case, errors), TURNING).indicators(mesh, fault)[indicator] for name, case in STATES.items()
+    }
+
+
+BESIDE = {
+    "sun x, mean [um]": _means,
+    "sun x, range [um]": _ranges,
+    "sun's angular acceleration, crest factor": lambda errors: _of_turning("crest factor")(errors),
+    "its kurtosis": lambda errors: _of_turning("kurtosis")(errors),
+    "its sideband index [rad/s^2]": lambda errors: _of_turning("sideband index")(errors),
+}
+BOTH = "With the errors that the scene assumes, which is judged above, and without any"
+
+
+def runs():
+    """What the simulations were made with."""
+    return {ERRING: told(_record(None)), PERFECT: told(_record(None, PERFECT))}
+
+
 PICTURES = {
     "herringbone_machine_spectra": "Angular acceleration of the sun",
     "herringbone_machine_phase": "Phase portraits of the sun's rotation, with its Poincare points once a mesh cycle",
@@ -285,18 +282,6 @@ def draw(folder):
     plot_phases(portraits, "rad", folder / "herringbone_machine_phase.png")
 
 
-QUICK = {
-    "mesh_frequency": mesh_frequency,
-    "fault_frequency": fault_frequency,
-    "periods": periods,
-    "mesh_period": mesh_period,
-    "impulses": impulses,
-    "sainsot": sainsot,
-    "masses": masses,
-    "inertias": inertias,
-    "pit_counts": pit_counts,
-    "measured_range": measured_range,
-}
 SIMULATED = {
     "degrees": degrees,
     "displacement_upper": displacement_upper,
@@ -314,3 +299,4 @@ SIMULATED = {
     "poincare_points": poincare,
     "statements": statements,
 }
+RUN_OF = dict.fromkeys(set(SIMULATED) - {"degrees"}, ERRING)

@@ -11,6 +11,7 @@ from gearfe.files import written
 from gearfe.scene import verdicts
 
 from ..shared import places, table_rows
+from ..shared.openings import OPENINGS
 
 FOLDER = places.PAGES
 PAGES = {  # page and its module: scene
@@ -49,10 +50,14 @@ def functions(page, *, quick=False):
 
 def computed(page, names):
     """Rows of some references of a page, computed now."""
-    found = functions(page)
+    found, runs = functions(page), getattr(module(page), "RUN_OF", {})
+    out = []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        return [row for one in references(page) if one.id in names for row in verdicts.judge(one, found[one.id]())]
+        for one in references(page):
+            if one.id in names:
+                out += verdicts.judge(one, found[one.id](), runs.get(one.id, ""))
+    return out
 
 
 def ordinary(page):
@@ -68,23 +73,31 @@ def cheap(page):
 
 def text(page):
     """The page as Markdown, from its committed rows and its scene."""
-    scene = gf.load_scene(PAGES[page])
+    scene, home = gf.load_scene(PAGES[page]), module(page)
     rows = table_rows.read(page)
+    claim, find, decide = OPENINGS[page](Found(rows))
     lines = [
         f"# {scene.title}: printed and found",
         "",
+        f"**The article claims** {claim}. **gearfe finds** {find}. **What decides it**: {decide}.",
+        "",
         f"{scene.source}.",
         "",
-        f"Made by `python -m validation machines` from [tables/{page}.csv](tables/{page}.csv); the printed values",
+        f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
         f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`.",
-        "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*; *trend only*: all cases have",
-        "the printed order, each 0.1 % from the next; *not reproduced*; *not reproducible*: nothing computed is that quantity.",
-        "Reasons: below.",
+        "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
+        "which alone",
+        "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
+        "*not reproducible*: nothing computed is that quantity. Kinds: *input*: put in, or found from this very value; "
+        "*arithmetic*:",
+        "follows from printed numbers; *model*: could have come out otherwise. Reasons: below.",
         "",
         verdicts.text(references(page), rows),
         "",
+        *runs_of(page, rows),
+        *(home.more() if hasattr(home, "more") else ()),
     ]
-    for name, caption in module(page).PICTURES.items():
+    for name, caption in home.PICTURES.items():
         lines += [f"![{caption}]({name}.png)", "", f"{caption}.", ""]
     lines += [
         "What the scene assumes, and how much depends on it:",
@@ -94,6 +107,46 @@ def text(page):
     ]
     lines += [f"| {one['what']} | {one['why']} | {one['depends']} |" for one in scene.assumptions]
     return "\n".join(lines) + "\n"
+
+
+class Found:
+    """Committed rows by id, case and pair."""
+
+    def __init__(self, rows):
+        """Of `verdicts.Row`."""
+        self.rows = {row[:3]: row for row in rows}
+
+    def ours(self, name, case, pair=""):
+        """Our value."""
+        return self.rows[name, case, pair].ours
+
+    def all(self, name):
+        """Our values of a reference in the order of its rows."""
+        return [row.ours for row in self.rows.values() if row.id == name]
+
+    def counted(self):
+        """Counts of the verdicts."""
+        return verdicts.counts(list(self.rows.values()))
+
+
+def runs_of(page, rows):
+    """Lines with the simulations behind the rows: what each was made with, and which rows come from it."""
+    by_run = {}
+    for row in rows:
+        if row.run:
+            by_run.setdefault(row.run, []).append(row.id)
+    if not by_run:
+        return []
+    told = table_rows.read_runs(page)
+    lines = [
+        "Simulations behind the rows, as read from the machines that ran:",
+        "",
+        "| run | what it was made with | rows |",
+        "|---|---|---|",
+    ]
+    named = {name: by_run.get(name, []) for name in told}
+    lines += [f"| {name} | {told[name]} | {', '.join(dict.fromkeys(ids)) or 'beside'} |" for name, ids in named.items()]
+    return [*lines, ""]
 
 
 def write_page(page):
@@ -109,7 +162,12 @@ def rebuild(page):
         rows += computed(page, {one.id})
         print(f"  {page}, {one.id}: {time.perf_counter() - started:.0f} s", flush=True)
     table_rows.write(page, rows)
-    module(page).draw(FOLDER)
+    home = module(page)
+    if hasattr(home, "runs"):
+        table_rows.write_runs(page, home.runs())
+    if hasattr(home, "write_more"):
+        home.write_more()
+    home.draw(FOLDER)
     write_page(page)
     print(f"wrote {page}.md: {verdicts.counts(rows)}", flush=True)
 

@@ -34,6 +34,12 @@ def caption(case, damage, told):
     return f"`{case}`: {' and '.join(what)}; phase {told['phase']:.3g}, {told['load']:.0f} N {told['where']}{opened}."
 
 
+def pressure(told):
+    """The largest pressure in words: a tip corner that touches has none of Hertz's."""
+    elsewhere = " away from the tip corner, which touches too" if told["corner"] else ""
+    return f"largest pressure of Hertz {told['pressure']:.0f} MPa{elsewhere}"
+
+
 def tasks():
     """Scene, case and kind of every picture."""
     out = []
@@ -57,7 +63,7 @@ def picture(task):
     else:
         path = FOLDER / f"{name}_{case}_contact.png"
         told = render_contact(pair, path, case=case)
-        numbers = f"phase {told['phase']:.3g}, k {told['k']:.4g} N/m, largest pressure of Hertz {told['pressure']:.0f} MPa."
+        numbers = f"phase {told['phase']:.3g}, k {told['k']:.4g} N/m, {pressure(told)}."
         text = f"`{case}`: contact lines on the unrolled flank and load over the width; {numbers}"
     _small(path)
     return [f"![{name} {case}](pictures/{path.name})", "", text, ""]

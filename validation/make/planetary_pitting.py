@@ -5,226 +5,182 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.contact_law import hertz_coefficient
-from geometry.damage.pit import Pit
-from geometry.pair.lines import total_length
 
-from ..shared.simulated import amplitude, knocked, machine, periodic, record, scene, signal, spectrum
+from ..shared.laws import beside, tables
+from ..shared.simulated import amplitude, knocked, machine, own_law, record, scene, signal, spectrum, told
+from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 
-NAME = "planetary_pitting"
-CASES = ("mild", "moderate", "severe")
-SECONDS, SETTLE = 0.45, 0.15  # 6 turns of the sun relative to the carrier
-RATE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
-IMPACT = {"height": 0.5, "period": 0.15, "width": 0.02}  # of the carrier's load; assumed, the articles print none
-BINS = 61440 / 307200  # Hz, of the measured spectra
+SECONDS, SETTLE = 2.0, 0.25
+RATE = 10000.0  # S0: 100 000 steps in 10 s
+FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
+OWN, LINEAR = "impact law", "linear stiffness"
+STEADY = ", no pulses"
 FORCE, SENSOR = "force sun_planet1", "ring.y acceleration"
 
 
-def stage():
-    """Pairs sun-planet and planet-ring."""
-    return scene(NAME).pairs["sun_planet"], scene(NAME).pairs["planet_ring"]
-
-
-def speeds():
-    """Sun, carrier [rpm], mesh and fault frequency [Hz]."""
-    outer, inner = stage()
-    sun, ring = outer.pair.gear_1.z, inner.pair.gear_2.z
-    run = scene(NAME).machine
-    carrier = run["speed_rpm"] * sun / (sun + ring)
-    mesh = (run["speed_rpm"] - carrier) / 60 * sun
-    return run["speed_rpm"], carrier, mesh, run["n_planets"] * mesh / sun
-
-
-def hertz():
-    """K at the pitch point."""
-    outer, _ = stage()
-    radii = outer.pair.curvature_radii(outer.pair.pitch_phase)
-    return {"sun and planet": hertz_coefficient(float(radii[0]), float(radii[1]), outer.materials)}
-
-
-def base_radii():
-    """Base radii."""
-    return {name: scene(NAME).gears[name].r_b for name in ("sun", "planet")}
-
-
-def carrier_speed():
-    """Ring held."""
-    return {"sun at 1000 rpm": speeds()[1]}
-
-
-def mesh_frequency():
-    """Of all meshes."""
-    return {"simulated": speeds()[2]}
-
-
-def mesh_period():
-    """Its inverse."""
-    return {"simulated": 1 / speeds()[2]}
-
-
-def fault_frequency():
-    """A damaged sun tooth meets every planet once a turn relative to the carrier."""
-    return {"simulated": speeds()[3]}
-
-
-def fault_interval():
-    """Its inverse."""
-    return {"simulated": 1 / speeds()[3]}
-
-
-def measured_lines():
-    """The nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
-    return {name: round(value / BINS) * BINS for name, value in (("carrier", speeds()[1] / 60), ("fault", speeds()[3]))}
-
-
-def ring_shift():
-    """Profile shift with which planet and ring mesh at the centre distance of sun and planet without backlash."""
-    outer, inner = stage()
-    run = scene(NAME).machine
-    made = gf.PlanetarySet(outer.pair.gear_1, outer.pair.gear_2, inner.pair.gear_2, run["n_planets"], outer.pair.a)
-    return {"ring": made.closing_shift()}
-
-
-def contact_ratio():
-    """By the involute geometry; S0's formula is the same for equal shifts."""
-    outer, inner = stage()
-    return {"sun and planet": outer.pair.eps_alpha, "planet and ring": inner.pair.eps_alpha}
-
-
-def lengths(count=400):
-    """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same rows.
-
-    S0: a pit takes the chord ``l = sqrt((D/2)**2 - (D/2 - d)**2)`` (half of a circle's chord), d the distance of the contact
-    from the pit's edge; N pits take N l.
-    """
-    outer, _ = stage()
-    pair = outer.pair
-    phase = (np.arange(count) + 0.5) / count * (pair.eps_alpha + 0.5) - 0.25
-    out = {"healthy": total_length(pair, phase)}
-    printed = {}
-    for case in CASES:
-        pits = outer.damage[case]["pinion"]
-        out[case] = total_length(pair, phase, pits=(pits, ()))
-        printed[case] = out["healthy"] - sum(_printed_chord(pair, phase, pit) for pit in pits)
-    return phase, out, printed
-
-
-def _printed_chord(pair, phase, pit: Pit):
-    """S0's l(t) [mm] of one pit; d is the distance along the profile from the pit's edge to the contact."""
-    roll = pair.path[0] + phase * pair.p_bt
-    arc = (roll**2 + pair.gear_1.r_b**2 - pit.radius**2) / (2 * pair.gear_1.r_b)
-    half = pit.axes[0]
-    touching = (phase >= 0) & (phase < pair.eps_alpha)
-    return np.where(touching, np.sqrt(np.maximum(half**2 - np.minimum(abs(arc), half) ** 2, 0.0)), 0.0)
-
-
-def line_length():
-    """Shortest and longest total contact line; with pits the shortest."""
-    _, ours, _ = lengths()
-    out = {"double contact, no pits": ours["healthy"].max(), "single contact, no pits": ours["healthy"].min()}
-    return out | {f"{case}, least": ours[case].min() for case in CASES}
+@cache
+def _record(case, impact, law=OWN):
+    """Response of a case with or without pulses on the carrier, under S0's law or with linear stiffness curves."""
+    name, options = None if case == "healthy" else case, scene(NAME).machine["impact"]
+    if law == OWN:
+        made = own_law(NAME, name, pulsed=impact)
+    else:
+        made = machine(NAME, name)
+        made = knocked(made, "carrier torque", options, SECONDS + SETTLE) if impact else made
+    return record(made, SECONDS, RATE, SETTLE)
 
 
 @cache
-def _record(case, impact):
-    name = None if case == "healthy" else case
-    made = machine(NAME, name)
-    start = periodic(NAME, name)
-    if impact:
-        made = knocked(made, "carrier torque", seconds=SECONDS + SETTLE, **IMPACT)
-    return record(made, SECONDS, RATE, SETTLE, start)
-
-
-@cache
-def _values(case, impact, channel=FORCE):
+def _values(case, impact, channel=FORCE, law=OWN):
     """Indicators of a channel."""
-    return signal(_record(case, impact), channel).indicators(*speeds()[2:])
+    return signal(_record(case, impact, law), channel).indicators(*speeds()[2:])
 
 
 @cache
-def _spectrum(case, impact, channel=FORCE):
-    return spectrum(signal(_record(case, impact), channel))
+def _spectrum(case, impact, channel=FORCE, law=OWN):
+    return spectrum(signal(_record(case, impact, law), channel))
 
 
-def sc_simulated():
+@cache
+def _housing(case):
+    """Spectrum of the forces in the ring's meshes as a sensor on the housing hears them, without pulses."""
+    return spectrum(gf.housing_signal(_record(case, False)))
+
+
+def sc_simulated(law=OWN):
     """S0's definition on the force of a sun mesh, under impacts."""
-    return {case: _values(case, True)["SC (S0)"] for case in CASES}
+    return {case: _values(case, True, law=law)["SC (S0)"] for case in CASES}
 
 
-def sc_measured():
+def sc_measured(law=OWN):
     """S0's definition on the acceleration of the ring, under impacts."""
-    return {case: _values(case, True, SENSOR)["SC (S0)"] for case in CASES}
+    return _measured("SC (S0)", law)
 
 
-def _measured(name):
-    return {case: _values(case, True, SENSOR)[name] for case in CASES}
+def _measured(name, law):
+    return {case: _values(case, True, SENSOR, law)[name] for case in CASES}
 
 
-def rms():
+def rms(law=OWN):
     """Of the acceleration of the ring, under impacts."""
-    return _measured("rms")
+    return _measured("rms", law)
 
 
-def kurtosis():
+def kurtosis(law=OWN):
     """Of the same."""
-    return _measured("kurtosis")
+    return _measured("kurtosis", law)
 
 
-def shape_factor():
+def shape_factor(law=OWN):
     """Of the same."""
-    return _measured("shape factor")
+    return _measured("shape factor", law)
 
 
-def amplitudes():
+def amplitudes(law=OWN):
     """Largest acceleration of the ring, under impacts."""
-    return _measured("peak")
+    return _measured("peak", law)
 
 
-def _sidebands(case, impact=False):
-    """Mean amplitude of the force at f_m +- f_fault [N]."""
+def _sidebands(case, law=OWN):
+    """Mean amplitude of the force at f_m +- f_fault without pulses [N]."""
     mesh, fault = speeds()[2:]
-    found = _spectrum(case, impact)
+    found = _spectrum(case, False, law=law)
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
 @cache
-def folded():
-    """Healthy force at 240 Hz over its mesh line: 10 000 samples per second as in S0, and `RATE`."""
-    start = periodic(NAME)
-    out = []
-    for rate in (10000.0, RATE):
-        found = spectrum(signal(record(machine(NAME), 0.3, rate, SETTLE, start), FORCE))
-        out.append(amplitude(found, 240.0) / amplitude(found, 280.0))
-    return out
+def folded(law=OWN):
+    """Healthy force at 240 Hz over its mesh line: 10 000 samples per second as in S0, and `FINE`."""
+    made = own_law(NAME, pulsed=False) if law == OWN else machine(NAME)
+    finer = spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
+    return [amplitude(one, 240.0) / amplitude(one, 280.0) for one in (_spectrum("healthy", False, law=law), finer)]
 
 
-def statements():
+@cache
+def carrier_lines(case):
+    """Mean amplitude [N] on the housing one carrier turn beside multiples of the sun's turns relative to the carrier.
+
+    Multiples by 3 are left out: there a healthy stage with equal planets has lines of its own.
+    """
+    _, carrier, mesh, fault = speeds()
+    turn, carrier = fault / scene(NAME).machine["n_planets"], carrier / 60
+    found = _housing(case)
+    beside = [mesh + k * turn + side * carrier for k in (-5, -4, -2, -1, 1, 2, 4, 5) for side in (-1, 1)]
+    return float(np.mean([amplitude(found, f, 0.4) for f in beside]))
+
+
+@cache
+def housing_lines():
+    """The same in percent of the mesh line, zero where it is below a millionth of it."""
+    parts = {case: carrier_lines(case) / amplitude(_housing(case), speeds()[2]) for case in ("healthy", *CASES)}
+    return {case: 100 * part if part > 1e-6 else 0.0 for case, part in parts.items()}
+
+
+def statements(law=OWN):
     """What the articles say of spectra and indicators; see the scene for the words."""
     mesh, fault = speeds()[2:]
-    side = {case: _sidebands(case) for case in ("healthy", *CASES)}
-    knocked_peak = {impact: np.ptp(signal(_record("healthy", impact), FORCE).values) for impact in (False, True)}
-    beside = [amplitude(_spectrum("healthy", impact), mesh + 1 / IMPACT["period"], 1 / SECONDS) for impact in (False, True)]
-    s0, s1 = ([_values(case, True)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
-    calm = [_values(case, False)["SC (S1)"] for case in CASES]
-    return {
+    side = {case: _sidebands(case, law) for case in ("healthy", *CASES)}
+    knocked_peak = {impact: np.ptp(signal(_record("healthy", impact, law), FORCE).values) for impact in (False, True)}
+    rate = 1 / scene(NAME).machine["impact"]["pulse_period_s"]
+    beside = [amplitude(_spectrum("healthy", impact, law=law), mesh + rate, 1 / SECONDS) for impact in (False, True)]
+    s0, s1 = ([_values(case, True, law=law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
+    calm = [_values(case, False, law=law)["SC (S1)"] for case in CASES]
+    out = {
         "pits raise sidebands 40 Hz beside 280 Hz": min(side[case] for case in CASES) > 10 * side["healthy"],
-        "they grow with severity": side["mild"] < side["moderate"] < side["severe"],
-        "sidebands at the carrier's frequency beside them": None,
+        "they grow with severity": side["healthy"] < side["mild"] < side["moderate"] < side["severe"],
         "impacts raise the force": knocked_peak[True] > 1.1 * knocked_peak[False],
         "impacts bring close sidebands of the mesh line": beside[1] > 10 * beside[0],
         "SC by S0's formula rises with severity": bool((np.diff(s0) > 0.1).all()),
         "SC by S1's formula rises with severity": bool((np.diff(s1) > 0.01 * s1[0]).all()),
         "SC by S1's formula is little affected by impacts": max(abs(a / b - 1) for a, b in zip(s1, calm, strict=True)) < 0.1,
-        "a healthy machine has no such sidebands, sampled as in S0": folded()[0] < 0.01,
-        "a healthy machine has no such sidebands, sampled finer": folded()[1] < 0.01,
-        "the window of SC allows 349.8 and 352.9 Hz": mesh + fault >= 349.8,
+        "a healthy machine has no such sidebands, sampled as in S0": folded(law)[0] < 0.01,
+        "a healthy machine has no such sidebands, sampled finer": folded(law)[1] < 0.01,
     }
+    if law == OWN:
+        lines = housing_lines()
+        seen = min(lines[case] for case in CASES) > max(1.0, 10 * lines["healthy"])
+        out |= {"sidebands at the carrier's frequency beside them": seen}
+        out |= {"the window of SC allows 349.8 and 352.9 Hz": mesh + fault >= 349.8}
+    return out
+
+
+def sidebands(law=OWN):
+    """Sidebands of the force [N] behind the first two statements, and the mesh line."""
+    lines = {case: _sidebands(case, law) for case in ("healthy", *CASES)}
+    return lines | {"healthy, mesh line": amplitude(_spectrum("healthy", False, law=law), speeds()[2])}
+
+
+def runs():
+    """What the simulations were made with."""
+    return {
+        OWN: told(_record("healthy", True)),
+        OWN + STEADY: told(_record("healthy", False)),
+        LINEAR: told(_record("healthy", True, LINEAR)),
+        LINEAR + STEADY: told(_record("healthy", False, LINEAR)),
+    }
+
+
+def write_more():
+    """Table of both laws."""
+    beside("planetary_pitting", BESIDE, OWN, LINEAR)
+
+
+def more():
+    """Lines of the page beside the verdicts."""
+    return tables("planetary_pitting", BOTH, OWN, LINEAR)
+
+
+BOTH = (
+    "The same quantities under the articles' own law, which is judged above, and with the linear stiffness curves of the pitted "
+    "teeth; the healthy sidebands are what 'pits raise sidebands' compares with"
+)
 
 
 PICTURES = {
     "planetary_pitting_lines": "Total contact line of the pitted sun tooth, with S0's half chord dashed "
     "(tables/planetary_pitting_lines.csv)",
-    "planetary_pitting_spectra": "Force of a sun mesh, without impacts",
+    "planetary_pitting_spectra": "Force of a sun mesh under the impact law, without pulses",
+    "planetary_pitting_housing": "Forces in the ring's meshes as a sensor on the housing hears them, without pulses",
 }
 
 
@@ -240,22 +196,13 @@ def draw(folder):
     np.savetxt(folder / "tables" / "planetary_pitting_lines.csv", columns, "%.6g", ",", header=",".join(names), comments="")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
-    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=70)
+    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=60)
+    carrier, turn = speeds()[1] / 60, speeds()[3] / scene(NAME).machine["n_planets"]
+    lines = {"f_m": speeds()[2], "f_m + f_1 + f_c": speeds()[2] + turn + carrier, "f_m + f_1 - f_c": speeds()[2] + turn - carrier}
+    heard = {case: _housing(case) for case in ("healthy", *CASES)}
+    plot_spectra(heard, lines, folder / "planetary_pitting_housing.png", 400.0, dpi=70)
 
 
-QUICK = {
-    "hertz_coefficient": hertz,
-    "base_radius": base_radii,
-    "carrier_speed": carrier_speed,
-    "mesh_frequency": mesh_frequency,
-    "mesh_period": mesh_period,
-    "fault_frequency": fault_frequency,
-    "fault_interval": fault_interval,
-    "measured_lines": measured_lines,
-    "ring_shift": ring_shift,
-    "contact_ratio": contact_ratio,
-    "line_length": line_length,
-}
 SIMULATED = {
     "sc_simulated": sc_simulated,
     "sc_measured": sc_measured,
@@ -263,5 +210,17 @@ SIMULATED = {
     "kurtosis": kurtosis,
     "shape_factor": shape_factor,
     "amplitudes": amplitudes,
+    "housing_lines": housing_lines,
     "statements": statements,
+}
+RUN_OF = dict.fromkeys(SIMULATED, OWN) | {"housing_lines": OWN + STEADY}
+BESIDE = {
+    "SC, force [Hz]": sc_simulated,
+    "SC, ring acceleration [Hz]": sc_measured,
+    "RMS [m/s^2]": rms,
+    "kurtosis": kurtosis,
+    "shape factor": shape_factor,
+    "peak [m/s^2]": amplitudes,
+    "sidebands f_m +- 40 Hz [N]": sidebands,
+    "the articles say": statements,
 }

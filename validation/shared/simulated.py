@@ -8,7 +8,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.machine.tables import pulses
-from gearfe.motion.simulate import default_step
+from gearfe.motion.step_control import chosen_step, default_step
 
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 
@@ -26,6 +26,15 @@ def machine(name, case=None, method="ritz3d"):
 
 
 @cache
+def own_law(name, case=None, *, pulsed=True):
+    """Machine of a scene under the impact law of its article; `pulsed`: with the scene's pulses on the carrier."""
+    table = dict(scene(name).machine)
+    if not pulsed:
+        table["impact"] = {key: value for key, value in table["impact"].items() if not key.startswith("pulse")}
+    return gf.build_machine(replace(scene(name), machine=table | {"contact": "impact"}), case)
+
+
+@cache
 def periodic(name, case=None, method="ritz3d"):
     """Displacements and velocities at the start of a period of the steady motion, None if none is found."""
     try:
@@ -37,7 +46,9 @@ def periodic(name, case=None, method="ritz3d"):
 
 def record(made, seconds, rate, settle, start=None):
     """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as of `gearfe.simulate`."""
-    finer = math.ceil(1 / rate / default_step(made))
+    impact = (made.law["power"] != 1).any()  # steep: its step is chosen by what half of it changes
+    step = chosen_step(made, settle + seconds)[0] if impact else default_step(made)
+    finer = math.ceil(1 / rate / step * (1 - 1e-9))
     whole = gf.simulate(made, settle + seconds, dt=1 / rate / finer, every=finer, initial=start)
     kept = whole.time >= settle - 1e-9
     count = round(seconds * rate)
@@ -66,13 +77,41 @@ def amplitude(found, frequency, tolerance=None):
     return gf.find_lines(found, {"line": frequency}, tolerance)["line"][1]
 
 
-def knocked(made, load, *, height, period, width, seconds):
-    """The machine with pulses on the load named `load`: `height` times its steady value more, every `period` [s]."""
-    loads = []
+def knocked(made, load, options, seconds):
+    """The machine with the pulses of a scene's ``[machine.impact]`` table on the load named `load`, away from zero."""
+    count, loads = math.ceil(seconds / options["pulse_period_s"]), []
     for one in made.loads:
         if one.name == load:
             base = float(one.value)
-            train = pulses(base, base * (1 + height), period, width, math.ceil(seconds / period), start=period / 2)
+            peak = base + math.copysign(options["pulse_Nm"], base)
+            train = pulses(
+                base, peak, options["pulse_period_s"], options["pulse_width_s"], count, start=options["pulse_period_s"]
+            )
             one = replace(one, value=train)
         loads.append(one)
     return replace(made, loads=tuple(loads))
+
+
+def told(response):
+    """What a simulation was made with, read from its machine and its times: one sentence."""
+    made, time = response.machine, response.time
+    step, law = float(time[1] - time[0]), made.law
+    impact = law["power"] != 1
+    power = f"exponent {law['power'].max():g}"
+    parts = [f"impact law, {power}, STEP damping" if impact.any() else "linear stiffness curves"]
+    rubbed = sum(bool(mesh.friction) for mesh in made.meshes)
+    parts += [f"Coulomb friction in {rubbed} meshes"] if rubbed else []
+    play = {f"{1e6 * one:g}" for one in law["backlash"] if math.isfinite(one) and one > 0}
+    parts.append(f"play {', '.join(sorted(play))} um" if play else "meshes never open")
+    sizes = sorted({f"{1e6 * size:.3g} um at {f:.4g} Hz" for mesh in made.meshes for size, f, _ in mesh.error})
+    parts += [f"errors in the meshes of {', '.join(sizes)}"] if sizes else []
+    for load in made.loads:
+        parts += [_pulsed(load)] if np.ndim(load.value) and not callable(load.value) else []
+    parts.append(f"{step * len(time):.4g} s after {float(time[0]):.4g} s, {1 / step:.6g} samples per second")
+    return "; ".join(parts)
+
+
+def _pulsed(load):
+    times, values = load.value
+    height, period, width = abs(values[1] - values[0]), times[4] - times[0], times[3] - times[0]
+    return f"pulses of {height:g} N m for {1e3 * width:g} ms every {period:g} s on the {load.name}"

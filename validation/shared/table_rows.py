@@ -27,3 +27,17 @@ def read(name):
     with open(path_of(name), encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     return [Row(**{c: float(r[c]) if c in COLUMNS[3:7] else r[c] for c in COLUMNS}) for r in rows]
+
+
+def write_runs(name, runs):
+    """Write what the simulations behind a page were made with, by their names."""
+    with written(TABLES / f"{name}_runs.csv") as target, open(target, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("run", "made with"))
+        out.writerows(runs.items())
+
+
+def read_runs(name):
+    """What `write_runs` wrote."""
+    with open(TABLES / f"{name}_runs.csv", encoding="utf-8", newline="") as file:
+        return {row["run"]: row["made with"] for row in csv.DictReader(file)}

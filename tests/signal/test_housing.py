@@ -1,0 +1,71 @@
+"""Housing sensor: lines of forces known in closed form, and what equal planets leave of them."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+
+F_M, F_C, RATE, SECONDS = 280.0, 10 / 3, 4000.0, 3.0
+
+
+def response(forces, notes=None):
+    """A response of three planets with the forces of their ring meshes as functions of time."""
+    time = np.arange(round(RATE * SECONDS)) / RATE
+    channels = {f"force planet_ring{i + 1}": force(time) for i, force in enumerate(forces)}
+    meshes = tuple(SimpleNamespace(name=name.removeprefix("force ")) for name in channels)
+
+    class Made:
+        machine = SimpleNamespace(meshes=meshes, notes={"carrier frequency [Hz]": F_C} if notes is None else notes)
+
+        def __getitem__(self, name):
+            return channels[name]
+
+    made = Made()
+    made.time = time
+    return made
+
+
+def amplitudes(signal, frequencies):
+    """Amplitudes of whole-period lines by the discrete sum itself."""
+    time = np.arange(signal.values.size) / signal.rate
+    return [2 * abs(np.mean(signal.values * np.exp(-2j * np.pi * f * time))) for f in frequencies]
+
+
+def test_one_planet_gives_the_mesh_line_and_its_carrier_sidebands():
+    still = lambda t: 0 * t  # noqa: E731
+    heard = gf.housing_signal(response([lambda t: 8 * np.cos(2 * np.pi * F_M * t), still, still]))
+    assert heard.unit == "N"
+    lines = amplitudes(heard, [F_M - F_C, F_M, F_M + F_C, F_M + 2 * F_C])
+    assert_allclose(lines, [2.0, 4.0, 2.0, 0.0], atol=1e-9, err_msg="product of (1 + cos)/2 and a cosine")
+
+
+def test_equal_planets_in_phase_leave_the_mesh_line_alone():
+    heard = gf.housing_signal(response([lambda t: np.cos(2 * np.pi * F_M * t)] * 3))
+    assert_allclose(amplitudes(heard, [F_M, F_M - F_C, F_M + F_C]), [1.5, 0.0, 0.0], atol=1e-9)
+
+
+def test_meshes_a_third_of_a_cycle_apart_leave_one_sideband():
+    """With phases -p/3 the window's three cosines add up on one side of the mesh line and cancel on the other and on the line."""
+    forces = [lambda t, p=p: np.cos(2 * np.pi * (F_M * t - p / 3)) for p in range(3)]
+    heard = gf.housing_signal(response(forces))
+    assert_allclose(amplitudes(heard, [F_M - F_C, F_M, F_M + F_C]), [0.0, 0.0, 0.75], atol=1e-9)
+
+
+def test_the_sensor_only_shifts_phases_and_the_nearest_planet_is_loudest():
+    forces = [lambda t, p=p: np.full_like(t, float(p == 0)) for p in range(3)]
+    heard = gf.housing_signal(response(forces), sensor=np.pi / 3)
+    assert_allclose(heard.values[0], 0.75)
+    assert np.argmax(heard.values[:1200]) == pytest.approx(RATE / F_C / 6, abs=1)
+
+
+def test_what_cannot_be_heard_is_refused():
+    made = response([lambda t: t] * 3, notes={})
+    with pytest.raises(ValueError, match="give carrier"):
+        gf.housing_signal(made)
+    with pytest.raises(ValueError, match="planet_ring1"):
+        gf.housing_signal(made, kind="sun_planet", carrier=1.0)
+    with pytest.raises(ValueError, match="3 planets"):
+        gf.housing_signal(made, carrier=1.0, places=[0.0])

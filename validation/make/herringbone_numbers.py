@@ -1,0 +1,108 @@
+"""What article S4 prints and no simulation is needed for: frequencies, coefficients, masses, counts."""
+
+import math
+
+from gearfe import Pit
+from gearfe.energy.closed.beam import SAINSOT
+
+from ..shared.simulated import scene
+
+NAME = "herringbone"
+
+
+def speeds():
+    """Frequencies [Hz] of sun, carrier, mesh and fault."""
+    sun, ring, run = scene(NAME).gears["sun"].z, scene(NAME).gears["ring"].z, scene(NAME).machine
+    turn = run["speed_rpm"] / 60
+    carrier = turn / (1 + ring / sun)
+    mesh = (turn - carrier) * sun
+    return turn, carrier, mesh, run["n_planets"] * mesh / sun
+
+
+def mesh_frequency():
+    """By the relative speed of the sun, and by the printed form with the planet's teeth."""
+    turn, carrier, mesh, _ = speeds()
+    planet = scene(NAME).gears["planet"].z
+    return {
+        "(f_s - f_c) z_s": mesh,
+        "(f_s - f_c) z_p as printed": (turn - carrier) * planet,
+        "f_c z_r": carrier * scene(NAME).gears["ring"].z,
+    }
+
+
+def fault_frequency():
+    """As printed, and how often the damaged tooth meshes."""
+    _, _, mesh, fault = speeds()
+    run, sun = scene(NAME).machine, scene(NAME).gears["sun"].z
+    return {"f_m / (z_s N) as printed": mesh / (sun * run["n_planets"]), "N f_m / z_s": fault}
+
+
+def periods():
+    """Of sun and fault [s]."""
+    turn, _, _, fault = speeds()
+    return {"sun": 1 / turn, "fault": 1 / fault}
+
+
+def mesh_period():
+    """Printed 60 / (n_1 z_1) over the period of the mesh."""
+    turn, _, mesh, _ = speeds()
+    return {"60 / (n_1 z_1) as printed": mesh / (turn * scene(NAME).gears["sun"].z)}
+
+
+def impulses():
+    """Of one damaged sun tooth: in a turn of the sun, and in a turn relative to the carrier."""
+    turn, carrier, _, fault = speeds()
+    return {"turn of the sun": fault / turn, "turn relative to the carrier": fault / (turn - carrier)}
+
+
+def sainsot():
+    """Coefficients of the foundation polynomials."""
+    names = [f"{row} {column}" for row in ("L", "M", "P", "Q") for column in "ABCDEF"]
+    return dict(zip(names, map(float, SAINSOT.ravel()), strict=True))
+
+
+def masses():
+    """Of discs up to the reference circle, without bore, 60 mm wide [kg]."""
+    out = {}
+    for name in ("sun", "planet"):
+        gear = scene(NAME).gears[name]
+        out[name] = 7850e-9 * math.pi * gear.r**2 * gear.b
+    return out
+
+
+def inertias():
+    """Of discs of the printed mass up to the reference circle, of the ring as a hoop of that radius [kg m2]."""
+    out = {}
+    for name, part in (("sun", 0.5), ("planet", 0.5), ("ring", 1.0)):
+        out[name] = part * scene(NAME).machine["bodies"][name][0] * (1e-3 * scene(NAME).gears[name].r) ** 2
+    return out
+
+
+def pit_counts():
+    """Pits of the cases in the table of stiffness, from the scene."""
+    found = scene(NAME).pairs["sun_planet"].damage
+    count = {case: sum(isinstance(one, Pit) for one in found[case]["pinion"]) for case in ("case2", "case4")}
+    return {
+        "simulated, moderate": count["case2"],
+        "measured, moderate": count["case2"],
+        "measured, severe": count["case4"],
+    }
+
+
+def measured_range():
+    """Not computed: the housing is not modelled."""
+    return {"healthy, lower": None, "healthy, upper": None}
+
+
+QUICK = {
+    "mesh_frequency": mesh_frequency,
+    "fault_frequency": fault_frequency,
+    "periods": periods,
+    "mesh_period": mesh_period,
+    "impulses": impulses,
+    "sainsot": sainsot,
+    "masses": masses,
+    "inertias": inertias,
+    "pit_counts": pit_counts,
+    "measured_range": measured_range,
+}

@@ -1,0 +1,134 @@
+"""What articles S0 and S1 print and no simulation is needed for: frequencies, geometry, contact lines."""
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.machine.contact_law import hertz_coefficient
+from geometry.damage.pit import Pit
+from geometry.pair.lines import total_length
+
+from ..shared.simulated import scene
+
+NAME = "planetary_pitting"
+CASES = ("mild", "moderate", "severe")
+BINS = 61440 / 307200  # Hz, of the measured spectra
+
+
+def stage():
+    """Pairs sun-planet and planet-ring."""
+    return scene(NAME).pairs["sun_planet"], scene(NAME).pairs["planet_ring"]
+
+
+def speeds():
+    """Sun, carrier [rpm], mesh and fault frequency [Hz]."""
+    outer, inner = stage()
+    sun, ring = outer.pair.gear_1.z, inner.pair.gear_2.z
+    run = scene(NAME).machine
+    carrier = run["speed_rpm"] * sun / (sun + ring)
+    mesh = (run["speed_rpm"] - carrier) / 60 * sun
+    return run["speed_rpm"], carrier, mesh, run["n_planets"] * mesh / sun
+
+
+def hertz():
+    """K at the pitch point."""
+    outer, _ = stage()
+    radii = outer.pair.curvature_radii(outer.pair.pitch_phase)
+    return {"sun and planet": hertz_coefficient(float(radii[0]), float(radii[1]), outer.materials)}
+
+
+def base_radii():
+    """Base radii."""
+    return {name: scene(NAME).gears[name].r_b for name in ("sun", "planet")}
+
+
+def carrier_speed():
+    """Ring held."""
+    return {"sun at 1000 rpm": speeds()[1]}
+
+
+def mesh_frequency():
+    """Of all meshes."""
+    return {"simulated": speeds()[2]}
+
+
+def mesh_period():
+    """Its inverse."""
+    return {"simulated": 1 / speeds()[2]}
+
+
+def fault_frequency():
+    """A damaged sun tooth meets every planet once a turn relative to the carrier."""
+    return {"simulated": speeds()[3]}
+
+
+def fault_interval():
+    """Its inverse."""
+    return {"simulated": 1 / speeds()[3]}
+
+
+def measured_lines():
+    """The nearest bins of the measured spectra to carrier and fault frequency at 1000 rpm."""
+    return {name: round(value / BINS) * BINS for name, value in (("carrier", speeds()[1] / 60), ("fault", speeds()[3]))}
+
+
+def ring_shift():
+    """Profile shift with which planet and ring mesh at the centre distance of sun and planet without backlash."""
+    outer, inner = stage()
+    run = scene(NAME).machine
+    made = gf.PlanetarySet(outer.pair.gear_1, outer.pair.gear_2, inner.pair.gear_2, run["n_planets"], outer.pair.a)
+    return {"ring": made.closing_shift()}
+
+
+def contact_ratio():
+    """By the involute geometry; S0's formula is the same for equal shifts."""
+    outer, inner = stage()
+    return {"sun and planet": outer.pair.eps_alpha, "planet and ring": inner.pair.eps_alpha}
+
+
+def lengths(count=400):
+    """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same rows.
+
+    S0: a pit takes the chord ``l = sqrt((D/2)**2 - (D/2 - d)**2)`` (half of a circle's chord), d the distance of the contact
+    from the pit's edge; N pits take N l.
+    """
+    outer, _ = stage()
+    pair = outer.pair
+    phase = (np.arange(count) + 0.5) / count * (pair.eps_alpha + 0.5) - 0.25
+    out = {"healthy": total_length(pair, phase)}
+    printed = {}
+    for case in CASES:
+        pits = outer.damage[case]["pinion"]
+        out[case] = total_length(pair, phase, pits=(pits, ()))
+        printed[case] = out["healthy"] - sum(_printed_chord(pair, phase, pit) for pit in pits)
+    return phase, out, printed
+
+
+def _printed_chord(pair, phase, pit: Pit):
+    """S0's l(t) [mm] of one pit; d is the distance along the profile from the pit's edge to the contact."""
+    roll = pair.path[0] + phase * pair.p_bt
+    arc = (roll**2 + pair.gear_1.r_b**2 - pit.radius**2) / (2 * pair.gear_1.r_b)
+    half = pit.axes[0]
+    touching = (phase >= 0) & (phase < pair.eps_alpha)
+    return np.where(touching, np.sqrt(np.maximum(half**2 - np.minimum(abs(arc), half) ** 2, 0.0)), 0.0)
+
+
+def line_length():
+    """Shortest and longest total contact line; with pits the shortest."""
+    _, ours, _ = lengths()
+    out = {"double contact, no pits": ours["healthy"].max(), "single contact, no pits": ours["healthy"].min()}
+    return out | {f"{case}, least": ours[case].min() for case in CASES}
+
+
+QUICK = {
+    "hertz_coefficient": hertz,
+    "base_radius": base_radii,
+    "carrier_speed": carrier_speed,
+    "mesh_frequency": mesh_frequency,
+    "mesh_period": mesh_period,
+    "fault_frequency": fault_frequency,
+    "fault_interval": fault_interval,
+    "measured_lines": measured_lines,
+    "ring_shift": ring_shift,
+    "contact_ratio": contact_ratio,
+    "line_length": line_length,
+}
