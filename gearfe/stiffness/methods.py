@@ -117,7 +117,11 @@ ROWS = (
 METHODS = {row.name: row for row in ROWS}
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-RING_FOUNDATIONS = ("external", "none", "printed")  # values of the variant `foundation` that say what is done with the body of a ring
+RING_FOUNDATIONS = (
+    "external",
+    "none",
+    "printed",
+)  # values of the variant `foundation` that say what is done with the body of a ring
 
 
 def described():
