@@ -121,7 +121,7 @@ RING_FOUNDATIONS = (
     "external",
     "none",
     "printed",
-)  # values of the variant `foundation` that say what is done with the body of a ring
+)  # variants `foundation` that say what a ring's body does
 
 
 def described():

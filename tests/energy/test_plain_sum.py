@@ -253,7 +253,7 @@ def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
     theta = root_half_angle(ring) if formulas is textbook else float(ring.half_thickness(ring.r_f))
     angle = load_angle(ring, at)
     u = (ring.r_f - ring.r_b / np.cos(angle)) / (2 * ring.r_f * theta)  # inwards from the root circle to the centre-line
-    l, m, p, q = (
+    first, m, p, q = (
         a / theta**2 + b + c / theta + d / theta + e + f  # A..F with h = 1
         for a, b, c, d, e, f in (
             (-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045),
@@ -264,7 +264,7 @@ def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
     )
     tan = np.tan(angle)
     last = p * (1 + q * tan**2) if formulas is textbook else p * (1 + tan**2) + q * tan
-    assert_allclose(got.foundation, np.cos(angle) ** 2 / STEEL.E * (l * u**2 + m * u + last), rtol=1e-12)
+    assert_allclose(got.foundation, np.cos(angle) ** 2 / STEEL.E * (first * u**2 + m * u + last), rtol=1e-12)
     assert any("h = r_f / r_bore" in seen.what and seen.value == 1.0 for seen in got.outside)
 
 

@@ -1,4 +1,4 @@
-"""The scan of what article S4 does not print: its tables are those of this code, and its closed forms those of `mesh_stiffness`."""
+"""The scan of what article S4 does not print: tables are those of this code, closed forms those of `mesh_stiffness`."""
 
 import numpy as np
 import pytest

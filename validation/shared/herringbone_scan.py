@@ -45,7 +45,7 @@ RANGES = {  # of the Sobol sample
     "own": (
         0.0,
         2.0,
-    ),  # 0: the formulas' crack as long as that of `ritz3d`; 1: the same part of the thickness at their beam's foot
+    ),  # 0: the formulas' crack as long as that of `ritz3d`; 1: the same part of their beam's foot
 }
 READINGS = ("printed", "external")  # foundation of the ring in `published`
 STEPS = (
@@ -332,7 +332,7 @@ def numbers(found):
 
 
 def direct(reading):
-    """`ritz3d` of a reading solved for just its gears, cracks, pits and load, at the coarseness of the nodes: mean [N/m] by row."""
+    """`ritz3d` of a reading solved for just its gears, damage and load, as coarse as the nodes: mean [N/m] by row."""
     scene, out = gf.load_scene(SCENE), {}
     angle, start, half = GROUPS[reading.group]
     for name, case in rows():

@@ -1,4 +1,4 @@
-"""Which readings of the scan bear S4's claim: agreement of formulas and finite elements, printed stiffness, printed reductions."""
+"""Which readings of the scan bear S4's claim: agreement with finite elements, printed stiffness, printed reductions."""
 
 from functools import lru_cache
 
@@ -78,7 +78,7 @@ class Scan:
         return found
 
     def reduced(self, kind, limit, without=()):
-        """Readings whose reductions by `ritz3d` or `published` are the printed ones within so many points, some cases left out."""
+        """Readings whose reductions by a method are the printed ones within so many points, some cases left out."""
         kept = [k for k, (_, case) in enumerate(rows()) if case != "healthy" and case[-1] not in without]
         return (np.abs(self.drop[kind] - printed("stiffness_reduction"))[:, kept] < limit).all(axis=1)
 
