@@ -13,6 +13,7 @@ from .shared import places
 
 PAGES = {
     "machines": "every printed number of the four machines beside ours, with verdicts",
+    "herringbone_scan": "article S4: which readings of what it does not print bear its table (resumable)",
     "herringbone": "article S4: ten rows of stiffness against finite elements, and what moves them",
     "sample": "finite elements against the energy model, and both error estimates, on random pairs (resumable)",
     "cracks": "crack reductions and their conventions",
@@ -40,6 +41,7 @@ PAGES = {
 LONG_RUNS = ("pairs_three", "herringbone")  # pages whose finite elements --reference computes
 LONG = {
     "sample": "a new sample of random pairs",
+    "herringbone_scan": "an hour of energy models, where it is not kept",
     "slow": "runs the slow tests",
     "map": "thousands of gears",
     "three": "brute-force finite elements of whole gears",

@@ -12,7 +12,7 @@ from geometry.damage.pit import Pit
 
 from ..energy.closed.plain_sum import plain_sum
 from ..material import Material
-from .methods import FACES, METHODS, NAMES, WITHOUT_BODY, Method, having
+from .methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, Method, having
 from .own_flexibility import OwnFlexibility
 
 NO_VARIANTS = (
@@ -107,10 +107,10 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
     if ring and row.rings == "no":
         raise ValueError(f"{method} has no ring: use method = 'ritz'")
-    if ring and row.rings == "without body" and (variants or {}).get("foundation") not in WITHOUT_BODY:
+    if ring and row.rings == "without body" and (variants or {}).get("foundation") not in RING_FOUNDATIONS:
         raise ValueError(
             f"{method} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
-            "out (or 'none' for both gears'), or use method = 'ritz'"
+            "out ('none': both gears'; 'printed': that of external gears with h = 1, as article S4), or use method = 'ritz'"
         )
     if damaged and not row.cracks and not row.pits:
         raise ValueError(f"damage with {method}, which has none: use {having('cracks')}")

@@ -117,7 +117,11 @@ ROWS = (
 METHODS = {row.name: row for row in ROWS}
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-WITHOUT_BODY = ("external", "none")  # values of the variant `foundation` that leave out a ring's body
+RING_FOUNDATIONS = (
+    "external",
+    "none",
+    "printed",
+)  # variants `foundation` that say what a ring's body does
 
 
 def described():
@@ -168,6 +172,6 @@ def fitted(method, run):
         less = f", b less the groove of {groove:g} mm" if groove else ""
         left_out.append(f"{method} is the transverse section: {face} teeth are taken as spur teeth {width:g} mm wide{less}")
     if pair.gear_2.internal and row.rings == "without body" and not run.get("variants"):
-        out["variants"] = {"foundation": WITHOUT_BODY[0]}
+        out["variants"] = {"foundation": RING_FOUNDATIONS[0]}
         left_out.append(f"{method} has no foundation for a ring: the ring's body is left out")
     return out, tuple(left_out)

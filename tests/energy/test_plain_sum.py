@@ -11,12 +11,12 @@ from scipy.integrate import quad
 
 import gearfe as gf
 from gearfe.energy.closed import published, textbook
-from gearfe.energy.closed.beam import SAINSOT, Validity
+from gearfe.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.energy.closed.plain_sum import plain_sum
 from gearfe.energy.closed.slices import faces
 from gearfe.flexibility import hertz
 from geometry.damage.pit import centre_arc, lost_width, pit_row
-from geometry.tooth.profile import arc_at
+from geometry.tooth.profile import arc_at, root_half_angle
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 BOTH = (STEEL, STEEL)
@@ -240,12 +240,40 @@ def test_a_ring_has_beams_and_its_planet_a_foundation(formulas):
         formulas.components(ring, STEEL, at)
 
 
+@pytest.mark.parametrize("formulas", [textbook, published])
+def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
+    """Article S4's bracket with h = 1, here from the numbers of its table, in front of the planet's unchanged one."""
+    planet = gf.Gear(z=27, r_bore=12.0, **RACK)
+    ring = gf.Gear(z=72, r_rim=90.0, addendum=0.86, tip_radius=0.2, **RACK)
+    roll = np.array([8.0, 9.0])
+    own, whole = (formulas.components(planet, STEEL, roll, foundation=name) for name in ("printed", "sainsot"))
+    assert_allclose(own.total, whole.total, rtol=0)
+    at = np.linspace(ring.roll_a, ring.roll_f, 4)[1:3]
+    got = formulas.components(ring, STEEL, at, foundation="printed")
+    theta = root_half_angle(ring) if formulas is textbook else float(ring.half_thickness(ring.r_f))
+    angle = load_angle(ring, at)
+    u = (ring.r_f - ring.r_b / np.cos(angle)) / (2 * ring.r_f * theta)  # inwards from the root circle to the centre-line
+    first, m, p, q = (
+        a / theta**2 + b + c / theta + d / theta + e + f  # A..F with h = 1
+        for a, b, c, d, e, f in (
+            (-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045),
+            (60.111e-5, 28.100e-3, -83.431e-4, -9.9256e-3, 0.1624, 0.9086),
+            (-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236),
+            (-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904),
+        )
+    )
+    tan = np.tan(angle)
+    last = p * (1 + q * tan**2) if formulas is textbook else p * (1 + tan**2) + q * tan
+    assert_allclose(got.foundation, np.cos(angle) ** 2 / STEEL.E * (first * u**2 + m * u + last), rtol=1e-12)
+    assert any("h = r_f / r_bore" in seen.what and seen.value == 1.0 for seen in got.outside)
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"crack_model": "curved"}, "constant, straight, parabola"),
         ({"root": "square"}, "fillet, base, line"),
-        ({"foundation": "rigid"}, "sainsot, external, none"),
+        ({"foundation": "rigid"}, "sainsot, external, printed, none"),
         ({"contact": "iso"}, "linear, published, weber, palmgren"),
         ({"face": "bevel"}, "spur, helical, herringbone"),
         ({"groove": 2.0}, "only face = 'herringbone'"),

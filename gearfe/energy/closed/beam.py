@@ -10,7 +10,8 @@ from numpy.polynomial.legendre import leggauss
 
 from geometry.tooth.profile import cartesian, fillet, flank, form_point
 
-FOUNDATIONS = ("sainsot", "external", "none")
+FOUNDATIONS = ("sainsot", "external", "printed", "none")
+RING_H = 1.0  # h of a ring with the foundation of external gears, as article S4 prints it
 FLANK_POINTS, FILLET_POINTS = leggauss(24), leggauss(64)
 
 # rows L*, M*, P*, Q*; columns A..F of X = A/theta**2 + B h**2 + C h/theta + D/theta + E h + F
@@ -65,20 +66,27 @@ def sainsot(h, theta):
     return SAINSOT @ np.array([1 / theta**2, h**2, h / theta, 1 / theta, h, 1.0])
 
 
-def sainsot_outside(gear, theta):
-    """Ranges of Sainsot's fit that `gear` with root half angle `theta` [rad] is not in, as a tuple of `Validity`.
+def body_ratio(gear, foundation):
+    """``h = r_f / r_bore`` of a gear for Sainsot's polynomials; of a ring `RING_H`, if `foundation` is "printed".
 
     Raises
     ------
     ValueError
-        For a ring: the fit is for a disc held at its bore.
+        For a ring otherwise: the fit is for a disc held at its bore.
     """
-    if gear.internal:
-        raise ValueError(
-            f"the foundation of Sainsot does not hold for a ring (z = {gear.z}): use foundation = 'none', or method = 'fe'"
-        )
+    if not gear.internal:
+        return gear.r_f / gear.r_bore
+    if foundation == "printed":
+        return RING_H
+    raise ValueError(
+        f"the foundation of Sainsot does not hold for a ring (z = {gear.z}): use foundation = 'none', or method = 'fe'"
+    )
+
+
+def sainsot_outside(gear, h, theta):
+    """Ranges of Sainsot's fit that `gear` with `h` and root half angle `theta` [rad] is not in, as a tuple of `Validity`."""
     seen = (
-        Validity(f"h = r_f / r_bore of z = {gear.z} (Sainsot)", gear.r_f / gear.r_bore, 1.4, 7.0),
+        Validity(f"h = r_f / r_bore of z = {gear.z} (Sainsot)", h, 1.4, 7.0),
         Validity(f"theta_f [rad] of z = {gear.z} (Sainsot)", float(theta), 0.01, 0.12),
     )
     return tuple(v for v in seen if not v.low <= v.value <= v.high)

@@ -7,7 +7,7 @@ from numpy.polynomial.legendre import leggauss
 
 from geometry.tooth.profile import flank
 
-from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
+from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sainsot_outside
 from .integrals import integrals
 
 GAUSS = leggauss(32)
@@ -40,10 +40,14 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
        take nothing more (its case 3, there only said to be "close to");
     7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
 
-    For a ring, with ``foundation="external"`` (as in `textbook`):
+    For a ring:
 
     8. its beam is integrated over its own profile, the involute extended to the root circle (the printed integrals from a_f to
-       a_1 have lost their factors); it has no foundation, since that formula is a fit to discs held at their bore.
+       a_1 have lost their factors);
+    9. the article gives one foundation formula right after the ring's integrals and uses it for both gears of every pair:
+       ``foundation="printed"`` does so, with ``h = 1`` (`gearfe.energy.closed.beam.RING_H`: the article defines no h, a ring has
+       no bore), u_f inwards from the root circle and theta_f of the ring's own tooth. The formula is a fit to discs held at their
+       bore; ``foundation="external"`` leaves the ring's out.
 
     The contact term ``k_h = E L / 2 (1 - mu**2)`` is in `contact`.
 
@@ -53,27 +57,31 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
     """
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
     force = load_angle(gear, roll)
-    alpha_2 = gear.base_half_angle
-    cos = np.cos(force)
     if foundation not in FOUNDATIONS:
         raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
     if cracks or pits or gear.internal:
         bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model)
     else:
         bending, shear, axial = _healthy(gear, material, force)
+    return Components(bending, shear, axial, *body(gear, material, roll, foundation))
+
+
+def body(gear, material, roll, foundation="sainsot"):
+    """Foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the ranges of validity that the gear is not in."""
+    force = load_angle(gear, roll)
+    cos, tan = np.cos(force), np.tan(force)
     if foundation == "none" or (foundation == "external" and gear.internal):
-        return Components(bending, shear, axial, np.zeros(roll.shape))
+        return np.zeros(np.shape(roll)), ()
     theta = (
-        math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
+        math.asin(min(1.0, gear.r_b * math.sin(gear.base_half_angle) / gear.r_f))
         if gear.r_f < gear.r_b
         else float(gear.half_thickness(gear.r_f))
     )
-    outside = sainsot_outside(gear, theta)
-    ratio = (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
-    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
-    tan = np.tan(force)
-    foundation = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan)
-    return Components(bending, shear, axial, foundation, outside)
+    h = body_ratio(gear, foundation)
+    outside = sainsot_outside(gear, h, theta)
+    ratio = gear.outward * (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
+    l, m, p, q = sainsot(h, theta)  # noqa: E741 the source's letters
+    return cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan), outside
 
 
 def _healthy(gear, material, force):

@@ -4,7 +4,7 @@ import numpy as np
 
 from geometry.tooth.profile import flank, root_half_angle
 
-from .beam import FOUNDATIONS, Components, load_angle, sainsot, sainsot_outside
+from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sainsot_outside
 from .integrals import integrals
 
 
@@ -48,8 +48,9 @@ def components(
         Where the beam begins: on the root circle over the true fillet; or where the involute, extended downwards, meets the
         larger of base and root circle, ``base`` with nothing below it, ``line`` with a straight radial flank and ``prism``
         with constant thickness down to the root circle.
-    foundation : {"sainsot", "external", "none"}
-        ``external``: Sainsot's of external gears, none of a ring.
+    foundation : {"sainsot", "external", "printed", "none"}
+        ``external``: Sainsot's of external gears, none of a ring. ``printed``: of a ring too, with ``h = 1``, as article S4 has
+        it (see `published`), though it is a fit to discs held at their bore.
     lever : {"crossing", "contact"}
         u: height over the root circle of the point where the load line crosses the centre-line (Sainsot), or of the
         contact point itself (as some codes have it).
@@ -80,12 +81,20 @@ def components(
     bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
     shear = 1.2 * cos**2 * area / material.shear_modulus
     axial = sin**2 * uncracked / material.E
+    return Components(bending, shear, axial, *body(gear, material, roll, foundation=foundation, lever=lever, theta_f=theta_f))
+
+
+def body(gear, material, roll, *, foundation="sainsot", lever="crossing", theta_f=None):
+    """Foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the ranges of validity that the gear is not in."""
     if foundation == "none" or (foundation == "external" and gear.internal):
-        return Components(bending, shear, axial, np.zeros(roll.shape))
+        return np.zeros(np.shape(roll)), ()
+    beta = load_angle(gear, roll)
+    radius, angle = flank(gear, roll)
+    x_f, y_f = radius * np.sin(angle), gear.outward * radius * np.cos(angle)
     theta = root_half_angle(gear) if theta_f is None else theta_f
-    outside = sainsot_outside(gear, theta)
-    height = y_f - gear.r_f - (x_f * np.tan(beta) if lever == "crossing" else 0.0)
+    h = body_ratio(gear, foundation)
+    outside = sainsot_outside(gear, h, theta)
+    height = y_f - gear.outward * gear.r_f - (x_f * np.tan(beta) if lever == "crossing" else 0.0)
     ratio = height / (2 * gear.r_f * theta)
-    l, m, p, q = sainsot(gear.r_f / gear.r_bore, theta)  # noqa: E741 the source's letters
-    body = cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + q * np.tan(beta) ** 2))
-    return Components(bending, shear, axial, body, outside)
+    l, m, p, q = sainsot(h, theta)  # noqa: E741 the source's letters
+    return np.cos(beta) ** 2 / material.E * (l * ratio**2 + m * ratio + p * (1 + q * np.tan(beta) ** 2)), outside
