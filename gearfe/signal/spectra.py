@@ -71,6 +71,7 @@ def spectrum(signal, *, window="hann"):
 
     Examples
     --------
+    >>> from gearfe.signal.series import Signal
     >>> t = np.arange(1000) / 1000
     >>> found = spectrum(Signal(2 + 3 * np.sin(2 * np.pi * 50 * t), 1000.0, "N"))
     >>> found.values[[0, 50]].round(6).tolist(), found.resolution, found.bandwidth

@@ -107,7 +107,7 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
     if ring and row.rings == "no":
         raise ValueError(f"{method} has no ring: use method = 'ritz'")
-    if ring and row.rings == "without body" and (variants or {}).get("foundation") not in RING_FOUNDATIONS:
+    if ring and row.rings in RING_FOUNDATIONS and (variants or {}).get("foundation") not in RING_FOUNDATIONS:
         raise ValueError(
             f"{method} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
             "out ('none': both gears'; 'printed': that of external gears with h = 1, as article S4), or use method = 'ritz'"

@@ -40,8 +40,8 @@ class Method:
     cracks : {"", "through", "part of the width", "sloping"}
         None; of one depth through the whole width; also of part of the width; also sloping.
     pits : bool
-    rings : {"yes", "no", "without body"}
-        ``without body``: only with the variant ``foundation`` saying that the ring's body is left out.
+    rings : {"yes", "no", "external", "printed"}
+        The last two: only with the variant ``foundation`` saying what a ring's body does; of a scene's rings it is this one.
     faces : tuple of str
         How the teeth may run. A section takes helical gears as spur gears of the same width.
     variants, teeth, error, extended : bool
@@ -105,23 +105,23 @@ ROWS = (
     ),
     Method(
         "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",
-        "gearfe.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="without body", faces=FACES,
+        "gearfe.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="external", faces=FACES,
         variants=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
         "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
-        "gearfe.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="without body", faces=FACES,
+        "gearfe.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
         variants=True, crack_models=("constant",),
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}
 NAMES = ("auto", *METHODS)
 SUMS = tuple(row.name for row in ROWS if row.kind == "sum")
-RING_FOUNDATIONS = (
-    "external",
-    "none",
-    "printed",
-)  # variants `foundation` that say what a ring's body does
+RING_FOUNDATIONS = {  # variants `foundation` that say what a ring's body does
+    "external": "has no foundation for a ring: the ring's body is left out",
+    "none": "is taken without foundations",
+    "printed": "takes the ring's foundation as its article prints it, by the formula of discs with h = 1",
+}
 
 
 def described():
@@ -141,7 +141,7 @@ def fitted(method, run):
     This is the one rule for which face, groove and variants go to which method:
 
     - a transverse section takes a helical or herringbone pair as a spur pair of the width that carries, b less the groove;
-    - a sum that has no foundation for a ring leaves out the ring's body.
+    - a plain sum takes a ring's body as its row says: left out, or as its article prints it.
 
     ``mesh_stiffness`` itself refuses such arguments, so that nobody gets a section who asked for a helical gear.
 
@@ -171,7 +171,7 @@ def fitted(method, run):
             out["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))
         less = f", b less the groove of {groove:g} mm" if groove else ""
         left_out.append(f"{method} is the transverse section: {face} teeth are taken as spur teeth {width:g} mm wide{less}")
-    if pair.gear_2.internal and row.rings == "without body" and not run.get("variants"):
-        out["variants"] = {"foundation": RING_FOUNDATIONS[0]}
-        left_out.append(f"{method} has no foundation for a ring: the ring's body is left out")
+    if pair.gear_2.internal and row.rings in RING_FOUNDATIONS and not run.get("variants"):
+        out["variants"] = {"foundation": row.rings}
+        left_out.append(f"{method} {RING_FOUNDATIONS[row.rings]}")
     return out, tuple(left_out)

@@ -177,7 +177,7 @@ def test_herringbone_halves_have_their_own_cracks(steel):
     ("options", "message"),
     [
         ({"teeth": 3}, "teeth = 3 with method = 'fe3d'"),
-        ({"variants": {"root": "prism"}}, "only textbook and published have variants"),
+        ({"variants": {"root": "prism"}}, "only textbook or published have variants"),
         ({"refine": 0.0}, "refine = 0.0"),
         ({"face": "spur"}, "the gears have a helix angle"),
         ({"damage": {"pinion": [gf.Crack(level=0.3, width=(1.0, 4.5))]}}, "the face ends at 4 mm"),

@@ -14,7 +14,7 @@ from gearfe.cli import main
 from gearfe.energy.closed import coupled, textbook
 from gearfe.energy.ritz import plane as ritz
 from gearfe.stiffness.inputs import why_solid
-from gearfe.stiffness.methods import FACES, METHODS, NAMES, ROWS, fitted
+from gearfe.stiffness.methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, ROWS, fitted
 from gearfe.studies.own_model import own_models
 from geometry.pair import lines
 from geometry.tooth.profile import roll_at_arc
@@ -38,7 +38,7 @@ INPUTS = {
     "sloping crack": ({"damage": {"wheel": [gf.Crack(level=0.3, ends=(1.0, 0.4))]}}, lambda row: row.cracks == "sloping"),
     "pit": ({"damage": {"pinion": [PIT]}}, lambda row: row.pits),
     "ring": ({"pair": RING}, lambda row: row.rings == "yes"),
-    "ring without its body": ({"pair": RING, "variants": {"foundation": "external"}}, lambda row: row.rings == "without body"),
+    "ring without its body": ({"pair": RING, "variants": {"foundation": "external"}}, lambda row: row.rings in RING_FOUNDATIONS),
     "helical": ({"pair": HELICAL, "face": "helical"}, lambda row: "helical" in row.faces),
     "herringbone": ({"pair": HELICAL, "face": "herringbone", "groove": 0.4}, lambda row: "herringbone" in row.faces),
     "variants": ({"variants": {"contact": "linear"}}, lambda row: row.variants),
@@ -126,7 +126,7 @@ def test_one_rule_for_what_a_method_gets():
         else:
             assert (given, left_out) == (run, ())
         given, left_out = fitted(row.name, {"pair": RING, "face": None, "groove": 0.0})
-        assert ("variants" in given) == (row.rings == "without body") == bool(left_out)
+        assert ("variants" in given) == (row.rings in RING_FOUNDATIONS) == bool(left_out)
     assert fitted("auto", run) == (run, ())
     assert [bool(why_solid(pair, None, ())) for pair in (SPUR, HELICAL)] == [False, True]
 
