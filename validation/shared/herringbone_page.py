@@ -33,7 +33,8 @@ unprinted values would bear S4's table is in [herringbone_scan.md](herringbone_s
 
 ## Ours
 
-FE: 20-node hexahedra of the whole gears (`fe3d`), pits as lost contact; the estimate is of its mesh. Errors are against it;
+FE: 20-node hexahedra of the whole gears (`fe3d`), pits as lost contact; the estimate is of its mesh, and not
+shown for rings, where it does not cover the difference from the energy model ([pairs](pairs_three.md)). Errors are against it;
 bold: beyond 3 %. `ritz3d` is the converged energy model, `published` and `textbook` closed forms in exact slices (of the ring
 `published` has the foundation that S4 prints, `textbook` none, since no usual formula is for a ring). Contact lines, the
 half-space under each and the patches that the flanks are loaded by are common to `fe3d` and `ritz3d`; the faces of a crack may
