@@ -35,6 +35,8 @@ def _print_scene(scene):
     print(f"{scene.title}\n")
     for note in scene.assumptions:
         print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
+    for text in scene.changed:
+        print(f"  changed: {text}")
     for item in scene.later:
         print(f"  not modelled yet: {item}")
     print()

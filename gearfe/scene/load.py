@@ -204,7 +204,7 @@ def _scene(file, data):
         found = _cases(file, damage, gears, name, rows["pair"])
         pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
     notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
-    cases = {kind: _by_case(made) for kind, made in damage.items()}
+    cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})
     title, source = top["title"], top["source"]
     if own:

@@ -77,9 +77,9 @@ def known_path(file, where, key, tables):
     """
     value = tables
     for part in key.split("."):
-        if isinstance(value, list):
-            found = [one[part] for one in value if part in one]
-            value = None if not found else found[0] if all(one == found[0] for one in found) else found
+        if isinstance(value, list) and all(isinstance(one, dict) and part in one for one in value):
+            found = [one[part] for one in value]
+            value = found[0] if all(one == found[0] for one in found) else found
         elif isinstance(value, dict) and part in value:
             value = value[part]
         else:

@@ -152,3 +152,24 @@ def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
     file.write_text(TEXT.replace("count = 5", f"count = {count}"))
     with pytest.raises(ValueError, match=f"count = {count} pits"):
         gf.load_scene(file)
+
+
+@pytest.mark.parametrize("name", scene_names())
+def test_built_in_scenes_state_what_their_assumptions_hold_for(name):
+    scene = gf.load_scene(name)
+    assert scene.changed == ()
+    assert scene.references
+
+
+def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):
+    """24/30/84 at 54 mm: the article's face width stays assumed, its centre distance and its printed results do not."""
+    text = TEXT.replace("z = 21\n", "z = 24\n").replace("z = 31\n", "z = 30\n").replace("a_mm = 52.0", "a_mm = 54.0")
+    file = tmp_path / "plan.toml"
+    file.write_text(text.replace("\nx = -0.4617", "\nx = 0.0"))
+    scene = gf.load_scene(file)
+    assert scene.references == ()
+    assert "changed" in scene.title
+    told = [one["what"] for one in scene.assumptions]
+    assert any("face width" in one for one in told)
+    assert not any("centre distance" in one or "x = -0.4617" in one for one in told)
+    assert any("gear.sun.z = 24" in one for one in scene.changed)
