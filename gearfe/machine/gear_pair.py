@@ -1,13 +1,30 @@
 """Two gears on elastic shafts."""
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
-from .gear_mesh import GearMesh
-from .layout import Layout
-from .tables import Load, Machine, Stage
+from geometry.pair.gear_pair import GearPair
+
+from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .layout import Body, Layout
+from .tables import History, Load, Machine, Stage
 
 
-def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 0.0), zeta=0.02, helix=None, damage=(), **mesh):
+def gear_pair(
+    pair: GearPair,
+    bodies: tuple[Body, Body],
+    stiffness: Stiffness,
+    *,
+    speed: float,
+    torque: History,
+    support: Mapping[str, float],
+    torsion: tuple[float, float] = (0.0, 0.0),
+    zeta: float = 0.02,
+    helix: float | None = None,
+    damage: tuple[ToothDamage, ...] = (),
+    **mesh: Any,
+) -> Machine:
     """Two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
 
     Gear 1 drives counter-clockwise; gear 2 stands on the x axis.
@@ -37,7 +54,7 @@ def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 
     """
     layout, (one, two) = Layout(bodies), bodies
     radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
-    place = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
+    place: dict[str, Any] = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
     row = layout.mesh(one.name, two.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
     frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
     springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]

@@ -6,9 +6,11 @@ carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .tables import Spring
 
@@ -45,20 +47,20 @@ class Layout:
     250 N
     """
 
-    def __init__(self, bodies):
+    def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
         self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
 
-    def unit(self, name, dof):
+    def unit(self, name: str, dof: str) -> NDArray[np.float64]:
         """Row of one degree of freedom."""
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
-    def point(self, name, direction, arm=(0.0, 0.0, 0.0)):
+    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
@@ -67,7 +69,9 @@ class Layout:
             row[self.place[f"{name}.{dof}"]] = parts[dof]
         return row
 
-    def springs(self, one, two, stiffness, zeta, arm=None):
+    def springs(
+        self, one: str, two: str | None, stiffness: Mapping[str, float], zeta: float, arm: ArrayLike | None = None
+    ) -> list[Spring]:
         """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
 
         Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
@@ -86,7 +90,18 @@ class Layout:
                 out.append(Spring(name, row, float(k), 2 * zeta * math.sqrt(k * self.mass[self.place[f"{one}.{dof}"]])))
         return out
 
-    def mesh(self, one, two, *, angle, alpha, radii, sense=1, helix=0.0, internal=False):
+    def mesh(
+        self,
+        one: str,
+        two: str,
+        *,
+        angle: float,
+        alpha: float,
+        radii: tuple[float, float],
+        sense: int = 1,
+        helix: float = 0.0,
+        internal: bool = False,
+    ) -> NDArray[np.float64]:
         """Row of the mesh in which body `one` pushes body `two`.
 
         The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
@@ -114,7 +129,9 @@ class Layout:
         first, second = (r / math.cos(alpha) for r in radii)
         return self.point(one, along, first * e) - self.point(two, along, (second if internal else -second) * e)
 
-    def rubbing(self, one, two, *, angle, alpha, sense=1, internal=False):
+    def rubbing(
+        self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.

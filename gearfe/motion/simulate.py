@@ -5,6 +5,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
 from ..machine.tables import Machine
@@ -19,17 +20,17 @@ ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 
 
 def simulate(
-    machine,
-    duration,
+    machine: Machine,
+    duration: float,
     *,
-    method="fast",
-    dt=None,
-    initial=None,
-    every=1,
-    rtol=1e-8,
-    error=False,
-    numba=None,
-):
+    method: str = "fast",
+    dt: float | None = None,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    every: int = 1,
+    rtol: float = 1e-8,
+    error: bool = False,
+    numba: bool | None = None,
+) -> Response:
     """Response of a machine from time 0.
 
     Parameters

@@ -100,11 +100,12 @@ class Reference:
     tolerance: str
     trend: bool
     note: str
-    rows: tuple
+    rows: tuple[Printed, ...]
 
-    def within(self, ours, value):
+    def within(self, ours: float, value: float) -> bool:
         """Whether `ours` is `value` within the tolerance."""
-        return abs(ours - value) <= (self.absolute if self.relative is None else self.relative * abs(value))
+        allowed = self.absolute if self.relative is None else self.relative * abs(value)
+        return abs(ours - value) <= allowed  # type: ignore[operator]  # one of the two is given
 
 
 def read_references(file, tables, pairs):

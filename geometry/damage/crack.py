@@ -61,7 +61,7 @@ class Crack:
     width: tuple[float, float] | None = None
     ends: tuple[float, float] = (1.0, 1.0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("level", "length", "angle"):
             value = getattr(self, name)
@@ -95,7 +95,7 @@ class Crack:
             raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not both 0")
 
     @property
-    def through(self):
+    def through(self) -> bool:
         """Whether the crack is open over its whole length and over the whole width."""
         return self.width is None and self.ends == (1.0, 1.0)
 

@@ -55,7 +55,7 @@ class Pit:
     tooth: int = 0
     side: str = "loaded"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("radius", "z", "depth", "angle"):
             object.__setattr__(self, name, _number(name, getattr(self, name)))
@@ -78,14 +78,14 @@ class Pit:
             raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
 
     @property
-    def form(self):
+    def form(self) -> tuple[float, float, float]:
         """Coefficients (A, B, C) of the edge ``A w**2 + 2 B u w + C u**2 = 1`` [1/mm**2]."""
         s, c = math.sin(self.angle), math.cos(self.angle)
         p, q = 1 / self.axes[0] ** 2, 1 / self.axes[1] ** 2
         return s * s * p + c * c * q, s * c * (p - q), c * c * p + s * s * q
 
     @property
-    def reach(self):
+    def reach(self) -> tuple[float, float]:
         """Half extents along the profile and along the width [mm]."""
         across, _, along = self.form
         area = self.axes[0] * self.axes[1]

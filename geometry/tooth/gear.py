@@ -66,7 +66,7 @@ class Gear:
     r_rim: float | None = None
     z_cutter: int = 20
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse what cannot be cut, and cap the rack tip radius."""
         self._check_numbers()
         self._check_body()
@@ -148,94 +148,94 @@ class Gear:
             )
 
     @property
-    def internal(self):
+    def internal(self) -> bool:
         """Whether this is a ring."""
         return self.r_rim is not None
 
     @property
-    def outward(self):
+    def outward(self) -> int:
         """+1 for an external gear, -1 for a ring: the sense in which its teeth point."""
         return -1 if self.internal else 1
 
     @property
-    def held(self):
+    def held(self) -> float:
         """Radius of the held edge [mm]: bore, or outside of a ring."""
-        return self.r_rim if self.internal else self.r_bore
+        return self.r_rim if self.internal else self.r_bore  # type: ignore[return-value]  # the other one is None
 
     @property
-    def m_t(self):
+    def m_t(self) -> float:
         """Transverse module [mm]."""
         return self.m_n / math.cos(self.beta)
 
     @property
-    def alpha_t(self):
+    def alpha_t(self) -> float:
         """Transverse pressure angle [rad]."""
         return math.atan(math.tan(self.alpha_n) / math.cos(self.beta))
 
     @property
-    def beta_b(self):
+    def beta_b(self) -> float:
         """Base helix angle [rad], with the sign of beta: ``sin(beta_b) = sin(beta) cos(alpha_n)``."""
         return math.asin(math.sin(self.beta) * math.cos(self.alpha_n))
 
     @property
-    def twist_rate(self):
+    def twist_rate(self) -> float:
         """Clockwise turn of the transverse section for each mm of height [rad/mm], ``tan(beta) / r``."""
         return math.tan(self.beta) / self.r
 
     @property
-    def r(self):
+    def r(self) -> float:
         """Reference radius [mm]."""
         return self.z * self.m_t / 2
 
     @property
-    def r_b(self):
+    def r_b(self) -> float:
         """Base radius [mm]."""
         return self.r * math.cos(self.alpha_t)
 
     @property
-    def r_a(self):
+    def r_a(self) -> float:
         """Tip radius [mm]."""
         return self.r + (self.outward * self.addendum + self.x) * self.m_n
 
     @property
-    def r_f(self):
+    def r_f(self) -> float:
         """Root radius [mm]."""
         return self.r - (self.outward * self.dedendum - self.x) * self.m_n
 
     @property
-    def p_bt(self):
+    def p_bt(self) -> float:
         """Transverse base pitch [mm]: the distance of successive contacts along the line of action."""
         return 2 * math.pi * self.r_b / self.z
 
     @property
-    def roll_a(self):
+    def roll_a(self) -> float:
         """Roll length at the tip [mm]."""
         return math.sqrt(self.r_a**2 - self.r_b**2)
 
     @property
-    def roll_f(self):
+    def roll_f(self) -> float:
         """Roll length at the form radius [mm], where the involute ends and the fillet begins."""
         from .profile import form_point
 
         return form_point(self)[1]
 
     @property
-    def r_form(self):
+    def r_form(self) -> float:
         """Form radius [mm]."""
         return math.hypot(self.r_b, self.roll_f)
 
     @property
-    def full_tip_radius(self):
+    def full_tip_radius(self) -> float:
         """Largest rack tip radius that fits [m_n]: one arc from flank to flank."""
         s, c = math.sin(self.alpha_n), math.cos(self.alpha_n)
         return (math.pi / 4 - self.dedendum * s / c) * c / (1 - s)
 
     @property
-    def base_half_angle(self):
+    def base_half_angle(self) -> float:
         """Half angle of the tooth on the base circle [rad] (of a ring: of its flanks extended to it)."""
         tooth = (math.pi / 2 + 2 * self.x * math.tan(self.alpha_n)) / self.z + inv(self.alpha_t)
         return math.pi / self.z - tooth if self.internal else tooth
 
-    def half_thickness(self, radius):
+    def half_thickness(self, radius: float) -> float:
         """Half angle of the involute tooth [rad] at `radius` [mm], r_b <= radius (ISO 21771:2007, eq. 33)."""
         return self.base_half_angle - self.outward * inv(math.acos(min(1.0, self.r_b / radius)))
