@@ -46,6 +46,7 @@ from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
 from .scene.load import load_scene as load_scene
 from .signal.demodulation import demodulate as demodulate
+from .signal.housing import housing_signal as housing_signal
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
 from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis

@@ -66,7 +66,7 @@ class Printed:
     kind: str = "model"
 
     @property
-    def target(self):
+    def target(self) -> float:
         """Corrected value if there is one, else the printed one."""
         return self.value if self.corrected is None else self.corrected
 
