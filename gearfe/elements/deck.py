@@ -41,9 +41,9 @@ def write_inp(
         Ends in ``.inp``.
     gear : Gear
     radius : float
-        Of the loaded flank point of tooth 0 [mm].
+        Radius of the loaded flank point of tooth 0 [mm].
     line_load : float
-        Normal to the flank, per face width [N/mm].
+        Load normal to the flank, per face width [N/mm].
     material : Material
     cracks : sequence of Crack
     state : {"plane strain", "plane stress"}

@@ -51,9 +51,9 @@ def stress_intensity(
     gear : Gear
     crack : Crack
     radius : float
-        Of the loaded flank point of the cracked tooth [mm].
+        Radius of the loaded flank point of the cracked tooth [mm].
     line_load : float
-        Normal to the flank, per face width [N/mm].
+        Load normal to the flank, per face width [N/mm].
     material : Material
     state : {"plane strain", "plane stress"}
     refine : float

@@ -70,7 +70,7 @@ def tooth_flexibility(
     gear : Gear
         Its bore is held.
     radius : float
-        Of the loaded flank point [mm].
+        Radius of the loaded flank point [mm].
     material : Material
     at : {"centreline", "surface"}
         Where the displacement is taken: where the load line crosses the tooth centre-line (the local contact
@@ -136,7 +136,7 @@ def root_stress(
     gear : Gear
         Its bore is held.
     radius : float
-        Of the loaded flank point [mm].
+        Radius of the loaded flank point [mm].
     line_load : float
         Load normal to the flank per face width [N/mm].
     half_width : float, optional

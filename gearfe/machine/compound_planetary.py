@@ -140,17 +140,17 @@ def compound_planetary(
     Parameters
     ----------
     stiffness : dict
-        By kind of mesh (`KINDS`) [N/m].
+        Mesh stiffness by kind of mesh (`KINDS`) [N/m].
     pairs : dict
         GearPairs by kind (`scene_pairs` of a scene).
     damage : dict, optional
         ``{"sun2": (tooth, {"sun2_b": curve})}``: by body, the tooth and its curves by kind of mesh.
     speed : float
-        Of sun 2 [rad/s]; the article has 700 rpm.
+        Speed of sun 2 [rad/s]; the article has 700 rpm.
     torque : float
         Load on the carrier [N m]; the article has 200.
     n_planets : int
-        Branches.
+        Number of branches, each with one planet of stage 1 and two of stage 2.
     beta : float
         Mesh damping over stiffness [s]; the article's constants are lost, assumed 2e-6.
     zeta, bearing : float

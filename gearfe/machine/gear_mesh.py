@@ -2,8 +2,8 @@
 
 The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
 ``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
-damaged
-tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting interval.
+damaged tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting
+interval.
 """
 
 import math
@@ -19,7 +19,7 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
 
 class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases, where there is no `StiffnessCurve` (contact coefficients, curves of others)."""
+    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
 
     phase: NDArray[np.float64]
     k: NDArray[np.float64]
@@ -137,11 +137,12 @@ class GearMesh:
     row : ndarray, shape (n,)
         ``row @ q`` is the compression along the transverse line of action [m].
     stiffness : float, ndarray, StiffnessCurve or Table
-        Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
+        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
     frequency : float
-        Of the mesh [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+        Mesh frequency [Hz]. It is negative where the loaded flanks are those of gear 1 driving, but gear 2 drives: the contacts
+        then run backwards.
     phase : float
-        At t = 0; whole cycles count (they number the teeth).
+        Phase at t = 0; whole cycles count, because they number the teeth.
     teeth, first : (int, int)
         Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
     damage : tuple of ToothDamage
@@ -149,15 +150,16 @@ class GearMesh:
         Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
     damping, beta, zeta : float
         ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
-        m))`` by `gearfe.motion.simulate.Machine` over all degrees of freedom the row moves in rotation or translation.
+        m))`` by `gearfe.machine.tables.Machine`, summed over all degrees of freedom that the row moves.
     power, depth, push : float, float, bool
-        Of the impact law: exponent, penetration at which the damping is full [m] (0: always), and that flanks never pull.
+        Of the impact law: the exponent, the penetration from which the damping is full [m] (0: it always is), and whether the
+        flanks only push and never pull.
     backlash : float
-        Play along the line of action [m]; 0: the mesh never opens; inf: there is no back flank.
+        Play along the line of action [m]. With 0 the mesh never opens, with inf there is no back flank.
     film : float
         Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
-        Rows and weights: friction adds ``-row weight(phase) F``.
+        Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
     """
 
     name: str

@@ -33,17 +33,17 @@ def gear_pair(
     ----------
     pair : GearPair
     bodies : (Body, Body)
-        Of the two gears, names and directions included.
+        The bodies of the two gears, with their names and directions.
     stiffness
-        Of the mesh along its transverse line of action [N/m^power].
+        Mesh stiffness along the transverse line of action [N/m^power], anything that `GearMesh` takes.
     speed : float
-        Of gear 1 [rad/s].
+        Speed of gear 1 [rad/s].
     torque : float, (ndarray, ndarray) or callable
-        On gear 1 [N m]; gear 2 carries it times the ratio of the base radii.
+        Torque on gear 1 [N m]; gear 2 carries it times the ratio of the base radii.
     support : dict
         Stiffness of both bearings by direction, ``{"x": k, "y": k, ...}`` [N/m, N m/rad].
     torsion : (float, float)
-        Of the shafts to drive and load [N m/rad]; 0: free.
+        Torsional stiffness of the shafts to drive and to load [N m/rad]; 0: free.
     zeta : float
         Damping ratio of the supports.
     helix : float, optional

@@ -65,12 +65,12 @@ def pitted_helical(
     pair : GearPair
         The article has 17/60, m_n 2.1 mm, 17.5 and 29 degrees, widths 19.8 and 16.9 mm.
     materials : (Material, Material)
-        For the coefficient of the impact law at the pitch point.
+        Materials of both gears, for the coefficient of the impact law at the pitch point.
     pits : sequence of (int, sequence of (float, float, float, float))
         Pinion teeth and their pits, as `gearfe.machine.contact_cycle.ellipse_loss` takes them, or instead of pits a function of
         the phase (`gearfe.machine.impact.pits_loss`); where the pits are is not in the article.
     speed, torque : float
-        Of the pinion [rad/s], [N m]: 2500 rpm; that 250 N m act on the pinion is assumed.
+        Speed [rad/s] and torque [N m] of the pinion: 2500 rpm; that 250 N m act on the pinion is assumed.
     damping, depth : float
         Largest damping of the impact law [N s/m], assumed 1e3, and the penetration from which it is full [m], 0.1 mm.
     support : dict, optional

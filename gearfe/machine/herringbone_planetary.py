@@ -42,9 +42,8 @@ def herringbone_planetary(
     """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
 
     Sun input, ring held, carrier output; 55 degrees of freedom and 12 meshes with three planets. The rows are those of the
-    transverse
-    line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial force
-    causes; the article prints ``sin(beta)`` and no tilting.
+    transverse line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial
+    force causes; the article prints ``sin(beta)`` and no tilting.
 
     Parameters
     ----------
@@ -55,7 +54,7 @@ def herringbone_planetary(
     damage : dict, optional
         ``{"sun": (tooth, {"sun_planet": curve})}`` as in `gearfe.machine.pitted_planetary.pitted_planetary`; in both halves.
     speed, torque : float
-        Of the sun [rad/s], [N m]: the article has 2000 rpm and 400.
+        Speed [rad/s] and torque [N m] of the sun: the article has 2000 rpm and 400 N m.
     members : dict, optional
         Masses [kg] and inertias [kg m2] of whole bodies, ``{"sun": (mass, inertia), "planet": ..., "ring": ..., "carrier":
         ...}``; default: rings from bore to reference circle of `density`, the carrier as heavy as its planets (assumed).
@@ -69,7 +68,7 @@ def herringbone_planetary(
     groove : float
         Width of the relief groove [mm], assumed 20: the halves are joined by a hollow shaft from bore to root circle.
     shear_modulus : float
-        Of it [Pa]; Young's modulus is 2.6 times it.
+        Shear modulus of that shaft [Pa]; its Young's modulus is 2.6 times as large.
     zeta, mesh_zeta : float
         Damping ratios of supports and meshes, assumed 0.02 and 0.05.
     density : float

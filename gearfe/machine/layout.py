@@ -1,8 +1,7 @@
 """Rows of springs and meshes from where bodies are and how they touch, and the phases of meshes along a train of gears.
 
 Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
-their
-carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
+their carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
 """
 
 import math
@@ -30,7 +29,7 @@ class Body:
 
 
 class Layout:
-    """The degrees of freedom of some bodies, and rows over them: what a machine of one's own starts from.
+    """The degrees of freedom of some bodies, and rows over them: start here to build a machine of your own.
 
     Examples
     --------
@@ -117,7 +116,7 @@ class Layout:
         radii : (float, float)
             Base radii [m].
         sense : {1, -1}
-            In which body `one` would turn if it drove with the loaded flanks; 1: counter-clockwise.
+            Sense in which body `one` would turn if it drove with the loaded flanks; 1: counter-clockwise.
         helix : float
             ``tan(beta_b)`` with the sign of the axial force on body `two`.
         internal : bool
@@ -164,11 +163,11 @@ def through(phase, pair_1, pair_2, sense, turn):
     Parameters
     ----------
     phase : float
-        Of `pair_1`.
+        Phase of the mesh `pair_1`.
     pair_1, pair_2 : GearPair
         The idler is gear 2 of the first and gear 1 of the second.
     sense : {1, -1}
-        In which the idler turns (if contacts run forward); 1: counter-clockwise.
+        Sense in which the idler turns (if contacts run forward); 1: counter-clockwise.
     turn : float
         Angle from the first to the second pitch point about the idler's centre [rad].
     """

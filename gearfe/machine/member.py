@@ -15,9 +15,9 @@ class Member:
     mass, inertia : float
         [kg], [kg m2]
     bearing : float
-        In x and y [N/m].
+        Stiffness of its bearing in x and in y [N/m].
     torsion : float
-        To the ground [N m/rad].
+        Torsional stiffness to the ground [N m/rad].
     r_b : float
         Base radius [m]; of the carrier: the radius to the planets' axes.
     """

@@ -44,13 +44,13 @@ def pitted_planetary(
     damage : dict, optional
         By gear: ``{"sun": (tooth, {"sun_planet": curve})}``, planets as ``"planet1"`` with curves for both meshes, ``"ring"``.
     speed : float
-        Of the sun [rad/s]; the articles have 1000 rpm.
+        Speed of the sun [rad/s]; the articles have 1000 rpm.
     torque : float
-        Of the sun [N m], assumed 100.
+        Torque on the sun [N m], assumed 100.
     carrier_torque : number, history or function, optional
         Load against the carrier's rotation [N m] (`gearfe.machine.tables.pulses`); default: steady, in balance with `torque`.
     bearing : float
-        Of every body in x and y [N/m], assumed 1e8.
+        Stiffness of every body's bearing in x and in y [N/m], assumed 1e8.
     drive : float
         Torsional stiffness that holds the sun to its motor and the ring to the housing (a hundred times as much) [N m/rad],
         assumed 1e4: the articles prescribe the sun's speed.

@@ -94,7 +94,7 @@ def stage_phases(
     start : float
         Phase of the first sun-planet mesh at t = 0.
     frequency : float
-        Of all meshes [Hz].
+        Mesh frequency, the same for all meshes [Hz].
     places : sequence of float, optional
         Angles of the planets [rad].
 

@@ -16,9 +16,9 @@ def single_mesh(mass: float, stiffness: Stiffness, frequency: float, *, force: H
     mass : float
         Equivalent mass [kg], ``1 / (r_b1**2 / I_1 + r_b2**2 / I_2)``.
     stiffness
-        Over one cycle [N/m].
+        Mesh stiffness over one cycle [N/m], anything that `GearMesh` takes.
     frequency : float
-        Of the mesh [Hz].
+        Mesh frequency [Hz].
     force : float, (ndarray, ndarray) or callable
         Force transmitted [N].
     **mesh

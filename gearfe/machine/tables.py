@@ -109,11 +109,11 @@ class Stage:
     mesh : float
         Mesh frequency [Hz].
     turning : float
-        Of the driving gear, against the carrier if there is one [Hz].
+        Turning frequency of the driving gear [Hz], relative to the carrier if there is one.
     fault : float, optional
-        Of a damaged tooth of the driving gear that meets several gears [Hz]; None: that is `turning`.
+        How often a damaged tooth of the driving gear meshes, if that gear meets several others [Hz]; None: once a turn.
     carrier : float, optional
-        Of the carrier [Hz].
+        Turning frequency of the carrier [Hz].
     """
 
     name: str
@@ -150,7 +150,7 @@ class Machine:
     Attributes
     ----------
     K, C : ndarray, shape (n, n)
-        Of the springs only.
+        Stiffness and damping matrices of the springs alone, without the meshes.
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)

@@ -49,7 +49,7 @@ def simulate(
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
-        Keep every n-th output; without `dt` of those that `default_step` is apart, whatever the step.
+        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool

@@ -43,7 +43,7 @@ class Printed:
     pair : str or None
         Pair of the scene.
     value : float
-        As printed; of a statement 1 (true) or 0; nan: the source gives a formula but no number.
+        The number as printed; for a statement 1 (true) or 0; nan where the source gives a formula but no number.
     corrected : float or None
         After the correction.
     correction : str

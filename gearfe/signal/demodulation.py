@@ -42,11 +42,11 @@ def demodulate(
     fault_frequency : float
         [Hz]
     count : int
-        Harmonics of it.
+        Number of harmonics of the fault frequency to look for.
     levels : int, optional
-        Of `fast_kurtogram`. Default: as deep as bands still pass `count` harmonics of the fault.
+        Deepest level of `fast_kurtogram`. Default: the deepest whose bands still pass `count` harmonics of the fault.
     band : (float, float), optional
-        To use instead of the best one [Hz].
+        Band to use instead of the best one [Hz].
 
     Returns
     -------

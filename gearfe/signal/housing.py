@@ -33,7 +33,7 @@ def housing_signal(
     Parameters
     ----------
     response : gearfe.motion.response.Response
-        Of a machine with one planetary stage.
+        Response of a machine with one planetary stage.
     kind : str
         Meshes whose forces are heard, one or more to a planet: those named ``kind`` and the number of the planet
         (``planet_ring1``, ``planet_ring1L``...).

@@ -221,7 +221,7 @@ def indicator_table(
     Parameters
     ----------
     signals : dict of str to Signal
-        By case; all of one unit, rate and length, on which the sideband indicators depend.
+        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
     mesh_frequency, fault_frequency, **options
         See `indicators`.
     healthy : str

@@ -23,9 +23,9 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.f
     Parameters
     ----------
     signal : Signal
-        With `angle` or `shaft_frequency`.
+        One that has `angle` or `shaft_frequency`.
     samples_per_turn : int, optional
-        Default: as many as the slowest turn has, so that nothing is folded.
+        Default: as many samples as a turn has where the shaft is slowest, so that no frequency is folded back.
 
     Returns
     -------
@@ -81,11 +81,11 @@ def synchronous_average(
     Parameters
     ----------
     signal : Signal
-        With `angle` or `shaft_frequency` of the shaft; for a sun gear or planet that of the gear relative to the carrier.
+        One that has `angle` or `shaft_frequency` of the shaft; for a sun or a planet those of the gear relative to the carrier.
     samples_per_turn : int, optional
         See `by_turn`.
     turns_per_period : int
-        Average over so many turns at a time, for what repeats only after several (hunting tooth).
+        Number of turns in one period, for what repeats only after several turns (hunting tooth).
 
     Returns
     -------
@@ -115,7 +115,7 @@ def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft
     Parameters
     ----------
     average : ndarray, shape (n,)
-        Of one turn.
+        Synchronous average over one turn.
     teeth : int
     sidebands, shaft_orders : int
 

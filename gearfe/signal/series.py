@@ -19,7 +19,7 @@ class Signal:
     Attributes
     ----------
     values : ndarray, shape (n,)
-        In `unit`.
+        Samples, in `unit`.
     rate : float
         Samples per second [Hz].
     unit : str
@@ -129,7 +129,7 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     above : float
         What lies below [Hz] is taken out, with the mean: noise there would grow without bound.
     unit : str
-        Of the result; for ``m/s^2`` integrated twice ``m``.
+        Unit of the result, for example ``m`` for ``m/s^2`` integrated twice.
 
     Returns
     -------

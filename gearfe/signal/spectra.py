@@ -20,9 +20,9 @@ class Spectrum:
     Attributes
     ----------
     frequency : ndarray, shape (m,)
-        From 0 [Hz], or shaft orders (per turn), as `axis` says.
+        Frequencies from 0 on [Hz], or shaft orders (per turn), as `axis` says.
     values : ndarray, shape (m,)
-        In `unit`.
+        Values at these frequencies, in `unit`.
     unit : str
     resolution : float
         Distance of two bins.
@@ -63,7 +63,7 @@ def spectrum(signal: "Signal", *, window: str | tuple[Any, ...] = "hann") -> Spe
     ----------
     signal : Signal
     window : str or tuple
-        Of `scipy.signal.get_window`.
+        A window that `scipy.signal.get_window` knows.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def analytic(signal, band=None):
 def squared_envelope_spectrum(
     signal: "Signal", band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
-    """Amplitude spectrum of the squared envelope, best of the band the kurtogram finds; unit ``(unit)^2``.
+    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
 

@@ -32,9 +32,9 @@ def expected_lines(
     carrier_frequency : float, optional
         f_carrier [Hz].
     count : int
-        Sidebands on each side and harmonics of the fault.
+        Number of sidebands on each side, and of harmonics of the fault.
     harmonics : int
-        Of the mesh.
+        Number of harmonics of the mesh.
 
     Returns
     -------

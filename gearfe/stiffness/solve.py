@@ -139,7 +139,7 @@ def mesh_stiffness(
     order : int, optional
         Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
-        For ``fe``: only so many teeth on a plain rim; default all.
+        For ``fe``: number of teeth that are modelled, on a plain rim; default: all.
     variants : dict, optional
         For ``textbook`` and ``published``: options of `gearfe.energy.closed.plain_sum.plain_sum` and of the formulas'
         ``components`` (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).

@@ -114,9 +114,8 @@ def error_map(
     """Errors of the closed forms, and of your own models, against `ritz` over a sample of gear pairs.
 
     A scrambled Sobol sequence over `RANGES`; samples that cannot be built or mesh, or whose crack leaves
-    the body, are passed over. Every pair is taken healthy,
-    and every second one also with a pinion crack from the 30-degree point at 45 degrees. Steel (206 GPa, 0.3), plane strain,
-    no contact beyond the path of contact, which closed forms do not know.
+    the body, are passed over. Every pair is taken healthy, and every second one also with a pinion crack from the 30-degree point
+    at 45 degrees. Steel (206 GPa, 0.3), plane strain, no contact beyond the path of contact, which closed forms do not know.
 
     Parameters
     ----------

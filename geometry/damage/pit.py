@@ -23,18 +23,18 @@ class Pit:
     Parameters
     ----------
     radius : float
-        Of its centre: radius [mm] at which the flank touches there.
+        Radius of the flank point at its centre [mm], from the axis of the gear.
     z : float
-        Of its centre: distance [mm] from the end face at the back of the transverse section (x, y and z right-handed; the
+        Distance of its centre [mm] from the end face at the back of the transverse section (x, y and z right-handed; the
         loaded flank is on the right), from 0 to b. Of two meshing gears both are counted from the same end.
     axes : (float, float)
         Semi-axes along the profile and along the width [mm].
     depth : float
-        Along the flank normal [mm].
+        Depth along the flank normal [mm].
     angle : float
-        By which the axes are turned in the flank's tangent plane, the first from the profile towards +z [rad].
+        Angle by which the axes are turned in the flank's tangent plane, the first one from the profile towards +z [rad].
     tooth : int
-        Number of the tooth, as of a `Crack`.
+        Number of the tooth, counted as for a `Crack`.
     side : {"loaded", "unloaded"}
         Flank it lies on.
 
