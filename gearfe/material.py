@@ -30,7 +30,7 @@ class Material:
     E: float = 206e3
     nu: float = 0.3
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse constants no stable material has."""
         for name in ("E", "nu"):
             value = getattr(self, name)
@@ -49,23 +49,23 @@ class Material:
             raise ValueError(f"nu = {self.nu}, but plane strain needs 0 <= nu < 0.5; use 0.4999 for rubber")
 
     @property
-    def shear_modulus(self):
+    def shear_modulus(self) -> float:
         """Shear modulus [MPa]."""
         return self.E / (2 * (1 + self.nu))
 
-    def lame(self, state):
+    def lame(self, state: str) -> tuple[float, float]:
         """Plane Lame constants (lambda, mu) [MPa]; `state` is "plane strain" or "plane stress"."""
         mu = self.shear_modulus
         if check_state(state) == "plane stress":
             return self.E * self.nu / (1 - self.nu**2), mu
         return self.E * self.nu / ((1 + self.nu) * (1 - 2 * self.nu)), mu
 
-    def plane_modulus(self, state):
+    def plane_modulus(self, state: str) -> float:
         """``E / (1 - nu**2)`` in plane strain, ``E`` in plane stress [MPa]."""
         return self.E if check_state(state) == "plane stress" else self.E / (1 - self.nu**2)
 
 
-def check_state(state):
+def check_state(state: str) -> str:
     """Return `state`, or raise ValueError if it is not a plane state."""
     if state not in ("plane strain", "plane stress"):
         raise ValueError(f"state = {state!r}, but it must be 'plane strain' or 'plane stress'")

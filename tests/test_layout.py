@@ -52,13 +52,18 @@ def room_of(name):
 
 @cache
 def asked(name):
-    """Absolute names of all modules a file imports, at its top or inside its functions, with their lines."""
+    """Absolute names of all modules a file imports, at its top or inside its functions, with their lines.
+
+    Imports under ``if TYPE_CHECKING:`` are none: they name types and are never executed.
+    """
     return tuple(_asked(name))
 
 
 def _asked(name):
     package = FILES[name].relative_to(ROOT).parent.parts
-    for node in ast.walk(ast.parse(FILES[name].read_text(encoding="utf-8"))):
+    tree = ast.parse(FILES[name].read_text(encoding="utf-8"))
+    tree.body = [node for node in tree.body if not (isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING")]
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, alias.name) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):

@@ -10,7 +10,7 @@ from .sharing import share
 
 MOST = 60  # steps, the second half of them with exact contact problems
 WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
-SMOOTH = 8.0  # the width of the strip follows the line load's mean over so many half widths: it knows no sharper peaks
+SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
 SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
 FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.mesh.outline import spaced
 from geometry.pair.lines import covered
@@ -33,18 +34,18 @@ class Cells:
     [MPa], nan at a corner.
     """
 
-    half: np.ndarray
-    order: np.ndarray
-    z: np.ndarray
-    width: np.ndarray
-    depth: np.ndarray
-    nominal: np.ndarray
-    roll_1: np.ndarray
-    roll_2: np.ndarray
-    gap: np.ndarray
-    corner: np.ndarray
-    load: np.ndarray | None = None
-    pressure: np.ndarray | None = None
+    half: NDArray[np.int64]
+    order: NDArray[np.int64]
+    z: NDArray[np.float64]
+    width: NDArray[np.float64]
+    depth: NDArray[np.float64]
+    nominal: NDArray[np.float64]
+    roll_1: NDArray[np.float64]
+    roll_2: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    corner: NDArray[np.int64]
+    load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
+    pressure: NDArray[np.float64] = None  # type: ignore[assignment]
 
 
 class Piece(NamedTuple):

@@ -15,7 +15,7 @@ from .corner import CornerLaw
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
-REACH = 1.3  # gaps up to so many times the approach of the phase before are looked at first
+REACH = 1.3  # initial search radius for gaps, in approaches of the phase before
 
 
 class PhaseContact:

@@ -10,12 +10,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
 from .bodies import bodies_of
+from .cells import Cells
 from .phase_contact import REACH, PhaseContact
 
 STEP = 0.4  # longest cell along the width [mm]
@@ -32,15 +34,15 @@ class Contact3D:
     `error` (phases,) estimated discretisation error of k [N/m], or None.
     """
 
-    phase: np.ndarray
-    k: np.ndarray
-    approach: np.ndarray
-    order: np.ndarray
-    load: np.ndarray
-    cells: tuple
-    dofs: tuple
-    closed: tuple = ()
-    error: np.ndarray | None = None
+    phase: NDArray[np.float64]
+    k: NDArray[np.float64]
+    approach: NDArray[np.float64]
+    order: NDArray[np.int64]
+    load: NDArray[np.float64]
+    cells: tuple[Cells, ...]
+    dofs: tuple[int, int]
+    closed: tuple[int, ...] = ()
+    error: NDArray[np.float64] | None = None
 
 
 def pair_stiffness3d(

@@ -1,17 +1,21 @@
 """A whole gear pair in nonlinear contact as a CalculiX deck: the second opinion on load sharing and corner contact."""
 
 import math
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.pair.gear_pair import GearPair
 from geometry.tooth.profile import arc_at
 
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
+from ..material import Material
 from .deck import element_nodes, held_nodes
 from .elasticity import edge_nodes
 from .fe import EDGES
@@ -24,11 +28,11 @@ PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that
 class ContactDeck:
     """What is needed to read the result, of both gears: held nodes (numbers), their places from the centre [mm], r_b [mm]."""
 
-    held: tuple
-    place: tuple
-    r_b: tuple
+    held: tuple[NDArray[np.int64], NDArray[np.int64]]
+    place: tuple[NDArray[np.float64], NDArray[np.float64]]
+    r_b: tuple[float, float]
 
-    def forces(self, path) -> tuple[float, float]:
+    def forces(self, path: str | os.PathLike[str]) -> tuple[float, float]:
         """``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
         rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines()]
         reaction = {int(r[0]): (float(r[1]), float(r[2])) for r in rows if len(r) == 4 and r[0].isdigit()}
@@ -36,12 +40,24 @@ class ContactDeck:
         moment = [float((f[0] * p[1] - f[1] * p[0]).sum()) for f, p in zip(pushed, self.place, strict=True)]
         return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
 
-    def force(self, path) -> float:
+    def force(self, path: str | os.PathLike[str]) -> float:
         """Force along the line of action per width [N/mm], the mean of `forces` (see `geometry.pair.contacts`)."""
         return sum(self.forces(path)) / 2
 
 
-def write_contact_inp(path, pair, phase, approach, line_load, materials, *, pose="mean", per_width=8, penalty=500.0, refine=1.0):
+def write_contact_inp(
+    path: str | os.PathLike[str],
+    pair: GearPair,
+    phase: float,
+    approach: float,
+    line_load: float,
+    materials: tuple[Material, Material],
+    *,
+    pose: str = "mean",
+    per_width: int = 8,
+    penalty: float = 500.0,
+    refine: float = 1.0,
+) -> ContactDeck:
     """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
 
     Frictionless surface-to-surface contact of all flanks that may touch, with a linear pressure-overclosure of `penalty` times
@@ -123,7 +139,7 @@ def write_contact_inp(path, pair, phase, approach, line_load, materials, *, pose
     text = [*lines, *blocks, *contact, *step, "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF\n*END STEP\n"]
     with written(path) as name:
         Path(name).write_text("\n".join(text), encoding="ascii")
-    return ContactDeck(tuple(held), tuple(place), (pair.gear_1.r_b, pair.gear_2.r_b))
+    return ContactDeck((held[0], held[1]), (place[0], place[1]), (pair.gear_1.r_b, pair.gear_2.r_b))
 
 
 def _meshed(gear, teeth, arcs, widths, per_width, refine):

@@ -1,20 +1,35 @@
 """The finite-element model of one loaded gear as a CalculiX / Abaqus input deck, for a second opinion."""
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from scipy.sparse import spmatrix
 
+from geometry.damage.crack import Crack
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.tooth.gear import Gear
 
 from ..files import suffix_of, written
-from ..material import check_state
+from ..material import Material, check_state
 from .elasticity import Body
 from .fe import EDGES
 from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
 
 
-def write_inp(path, gear, radius, line_load, material, *, cracks=(), state="plane strain", refine=1.0):
+def write_inp(
+    path: str | os.PathLike[str],
+    gear: Gear,
+    radius: float,
+    line_load: float,
+    material: Material,
+    *,
+    cracks: Sequence[Crack] = (),
+    state: str = "plane strain",
+    refine: float = 1.0,
+) -> tuple[Body, spmatrix]:
     """Write a static deck: second-order triangles, held edge, consistent nodal forces of the flank load.
 
     Cracks are seams: their faces have their own nodes at the same places. The load is spread as ``cos**2`` over 0.1 m_n of arc
@@ -26,9 +41,9 @@ def write_inp(path, gear, radius, line_load, material, *, cracks=(), state="plan
         Ends in ``.inp``.
     gear : Gear
     radius : float
-        Of the loaded flank point of tooth 0 [mm].
+        Radius of the loaded flank point of tooth 0 [mm].
     line_load : float
-        Normal to the flank, per face width [N/mm].
+        Load normal to the flank, per face width [N/mm].
     material : Material
     cracks : sequence of Crack
     state : {"plane strain", "plane stress"}

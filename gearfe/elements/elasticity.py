@@ -1,9 +1,14 @@
 """Plane elasticity on a second-order triangle mesh: assemble, factor once, solve many, recover stress."""
 
+from typing import Any
+
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix, csc_matrix, spmatrix
 from scipy.sparse.linalg import splu
-from skfem import Basis, ElementTriP2
+from skfem import Basis, ElementTriP2, MeshTri2
+
+from ..material import Material
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
 
@@ -25,7 +30,9 @@ class Body:
         Polynomial degree the quadrature is exact for; 2 is enough for straight triangles.
     """
 
-    def __init__(self, mesh, material, *, state="plane strain", held="held", order=4):
+    def __init__(
+        self, mesh: MeshTri2, material: Material, *, state: str = "plane strain", held: str = "held", order: int = 4
+    ) -> None:
         if held not in (mesh.boundaries or {}):
             raise ValueError(f"no boundary {held!r}; this mesh has {', '.join(mesh.boundaries or {})}")
         self.mesh, self.material, self.state = mesh, material, state
@@ -35,9 +42,9 @@ class Body:
         free = np.ones(2 * mesh.doflocs.shape[1], dtype=bool)
         free[2 * fixed] = free[2 * fixed + 1] = False
         self.free = np.flatnonzero(free)
-        self._factor = None
+        self._factor: Any = None
 
-    def stiffness(self):
+    def stiffness(self) -> csc_matrix:
         """Stiffness matrix (sparse, 2 nodes square) [N/mm per mm of width].
 
         The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``; the triangle matrices are one batched product of
@@ -59,7 +66,7 @@ class Body:
         j = np.tile(dofs, (1, 12)).ravel()
         return coo_matrix((local.reshape(n_tri, 144).ravel(), (i, j)), shape=(size, size)).tocsc()
 
-    def solve(self, load):
+    def solve(self, load: NDArray[np.float64] | spmatrix) -> NDArray[np.float64]:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""
         if self._factor is None:
             free = self.stiffness()[self.free][:, self.free]
@@ -73,7 +80,7 @@ class Body:
             raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
         return out
 
-    def stress(self, displacement, inset=0.0):
+    def stress(self, displacement: NDArray[np.float64], inset: float = 0.0) -> NDArray[np.float64]:
         """Stress at the nodes ``(3, nodes)`` [MPa]: xx, yy, xy, averaged over the triangles that share a node.
 
         It is taken by the part `inset` of the way to the middle of each triangle: at a crack's tip it is infinite.

@@ -132,7 +132,7 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     refine : float
         Divides every edge length; 1 is the default resolution.
     teeth : int, optional
-        Model only so many teeth on a plain rim (see `geometry.mesh.mesher.section`).
+        Number of teeth that are modelled, on a plain rim (see `geometry.mesh.mesher.section`).
 
     Returns
     -------

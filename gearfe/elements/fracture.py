@@ -8,7 +8,9 @@ import numpy as np
 from geometry.damage.crack import Crack
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.tooth.gear import Gear
 
+from ..material import Material
 from .elasticity import Body
 from .fe import EDGES
 from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
@@ -32,7 +34,16 @@ class Intensity:
     direction: float
 
 
-def stress_intensity(gear, crack, radius, line_load, material, *, state="plane strain", refine=1.0):
+def stress_intensity(
+    gear: Gear,
+    crack: Crack,
+    radius: float,
+    line_load: float,
+    material: Material,
+    *,
+    state: str = "plane strain",
+    refine: float = 1.0,
+) -> Intensity:
     """Stress intensity factors of a cracked tooth under a load on its flank.
 
     Parameters
@@ -40,9 +51,9 @@ def stress_intensity(gear, crack, radius, line_load, material, *, state="plane s
     gear : Gear
     crack : Crack
     radius : float
-        Of the loaded flank point of the cracked tooth [mm].
+        Radius of the loaded flank point of the cracked tooth [mm].
     line_load : float
-        Normal to the flank, per face width [N/mm].
+        Load normal to the flank, per face width [N/mm].
     material : Material
     state : {"plane strain", "plane stress"}
     refine : float

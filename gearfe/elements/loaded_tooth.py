@@ -8,8 +8,10 @@ from skfem import MeshTri
 
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, flank, roll_at_arc
 
+from ..material import Material
 from .elasticity import Body, edge_nodes, edge_shapes
 from .fe import EDGES, flank_load
 
@@ -58,7 +60,9 @@ def _solve(gear, material, state, arc, half_width, edges, refine):
     return mesh, body, body.solve(narrow_load(mesh, 0, arc, half_width))[:, 0]
 
 
-def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane strain", refine=1.0):
+def tooth_flexibility(
+    gear: Gear, radius: float, material: Material, *, at: str = "centreline", state: str = "plane strain", refine: float = 1.0
+) -> float:
     """Deflection of a tooth per unit line load, along the load line [mm per N/mm].
 
     Parameters
@@ -66,7 +70,7 @@ def tooth_flexibility(gear, radius, material, *, at="centreline", state="plane s
     gear : Gear
         Its bore is held.
     radius : float
-        Of the loaded flank point [mm].
+        Radius of the loaded flank point [mm].
     material : Material
     at : {"centreline", "surface"}
         Where the displacement is taken: where the load line crosses the tooth centre-line (the local contact
@@ -112,7 +116,16 @@ def _displacement(body, moved, x, y):
     return np.array(shapes) @ moved.reshape(-1, 2)[body.nodes[:, triangle[0]]]
 
 
-def root_stress(gear, radius, line_load, material, *, half_width=None, state="plane strain", refine=1.0):
+def root_stress(
+    gear: Gear,
+    radius: float,
+    line_load: float,
+    material: Material,
+    *,
+    half_width: float | None = None,
+    state: str = "plane strain",
+    refine: float = 1.0,
+) -> float:
     """Largest principal stress on the loaded side's fillet [MPa].
 
     On the free fillet the stress is one tension along the profile, ``E' du_t/ds``; it is taken at the Gauss points of the
@@ -123,7 +136,7 @@ def root_stress(gear, radius, line_load, material, *, half_width=None, state="pl
     gear : Gear
         Its bore is held.
     radius : float
-        Of the loaded flank point [mm].
+        Radius of the loaded flank point [mm].
     line_load : float
         Load normal to the flank per face width [N/mm].
     half_width : float, optional

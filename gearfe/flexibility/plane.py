@@ -1,8 +1,11 @@
 """`Flexibility`: what a gear gives to its contacts, wherever it came from."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
@@ -26,11 +29,11 @@ class SeamFaces:
         Its inverse.
     """
 
-    opening: dict
-    influence: np.ndarray
-    stiffness: np.ndarray
+    opening: dict[int, Any]
+    influence: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
 
-    def at(self, arc, teeth):
+    def at(self, arc: ArrayLike, teeth: Sequence[int] | NDArray[np.int64]) -> NDArray[np.float64]:
         """Opening ``(..., contacts, n)`` under unit loads at `arc` ``(..., contacts)`` [mm] on `teeth`.
 
         It is zero for teeth that were not solved.
@@ -68,25 +71,25 @@ class Flexibility:
     """
 
     gear: Gear
-    near: dict
-    far: dict
-    tip: dict
-    limits: tuple
+    near: dict[int, Any]
+    far: dict[tuple[int, int], Any]
+    tip: dict[int, "TipHats"]
+    limits: tuple[float, float]
     dofs: int = 0
-    healthy: object = None
+    healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
 
-    def near_of(self, tooth):
+    def near_of(self, tooth: int) -> Any:
         """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
         tooth %= self.gear.z
         return self.near[tooth] if tooth in self.near else self._whole().near[0]
 
-    def far_of(self, first, second):
+    def far_of(self, first: int, second: int) -> Any:
         """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
         key = first % self.gear.z, second % self.gear.z
         return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
 
-    def tip_of(self, tooth):
+    def tip_of(self, tooth: int) -> "TipHats":
         """Tip hats of a tooth."""
         tooth %= self.gear.z
         return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
@@ -94,7 +97,7 @@ class Flexibility:
     def _whole(self):
         return self if self.healthy is None else self.healthy
 
-    def matrix(self, roll, teeth):
+    def matrix(self, roll: NDArray[np.float64], teeth: ArrayLike) -> NDArray[np.float64]:
         """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
 
         Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
@@ -122,6 +125,6 @@ class TipHats:
     between them, half-plane logarithm and all [mm per N/mm].
     """
 
-    arc: np.ndarray
-    knots: np.ndarray
-    influence: np.ndarray
+    arc: NDArray[np.float64]
+    knots: NDArray[np.float64]
+    influence: NDArray[np.float64]

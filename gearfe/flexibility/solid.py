@@ -7,6 +7,7 @@ like a half-space is taken out (`energy.halfspace`), the rest is smooth and carr
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -62,8 +63,8 @@ class Flexibility3D:
     near: dict
     far: dict
     unknowns: int
-    healthy: object = None
-    seam: object = None
+    healthy: "Flexibility3D | None" = None
+    seam: Any = None
 
     def basis(self, roll, z):
         """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""

@@ -1,10 +1,14 @@
 """The two-stage compound planetary gearbox with meshed planets, shared ring and shared carrier, as a table."""
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from .gear_mesh import GearMesh, ToothDamage
+from geometry.pair.gear_pair import GearPair
+
+from .gear_mesh import Curve, GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout, around, through
 from .member import disc
 from .scene_curves import healthy_and_hurt, speed_of
@@ -113,9 +117,21 @@ def _whole(value, kind):
 
 
 def compound_planetary(
-    stiffness, *, pairs, damage=None, speed=700 * math.pi / 30, torque=200.0, n_planets=3, beta=2e-6, zeta=0.02,
-    bearing=1e8, hold=1e6, drive=1e4, density=7800.0, **mesh
-):  # fmt: skip
+    stiffness: Mapping[str, Stiffness],
+    *,
+    pairs: Mapping[str, GearPair],
+    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    speed: float = 700 * math.pi / 30,
+    torque: float = 200.0,
+    n_planets: int = 3,
+    beta: float = 2e-6,
+    zeta: float = 0.02,
+    bearing: float = 1e8,
+    hold: float = 1e6,
+    drive: float = 1e4,
+    density: float = 7800.0,
+    **mesh: Any,
+) -> Machine:
     """Two-stage compound planetary: sun 2 driven, sun 1 held, load on the carrier; 39 degrees of freedom (3 per body).
 
     Stage 2 pushes the ring forward and stage 1 holds it. In stage 1 the loaded flanks are those of a sun that drives forward;
@@ -124,17 +140,17 @@ def compound_planetary(
     Parameters
     ----------
     stiffness : dict
-        By kind of mesh (`KINDS`) [N/m].
+        Mesh stiffness by kind of mesh (`KINDS`) [N/m].
     pairs : dict
         GearPairs by kind (`scene_pairs` of a scene).
     damage : dict, optional
         ``{"sun2": (tooth, {"sun2_b": curve})}``: by body, the tooth and its curves by kind of mesh.
     speed : float
-        Of sun 2 [rad/s]; the article has 700 rpm.
+        Speed of sun 2 [rad/s]; the article has 700 rpm.
     torque : float
         Load on the carrier [N m]; the article has 200.
     n_planets : int
-        Branches.
+        Number of branches, each with one planet of stage 1 and two of stage 2.
     beta : float
         Mesh damping over stiffness [s]; the article's constants are lost, assumed 2e-6.
     zeta, bearing : float

@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..flexibility.hertz import contact_modulus
 from .contact_law import friction_coefficient
@@ -169,7 +170,9 @@ def _integral(one):
     return np.concatenate([[0.0], np.cumsum(inside.sum(axis=1))]), inside
 
 
-def _running(one: Table, first, inside, phase, *, periodic=True):
+def _running(
+    one: Table, first: NDArray[np.float64], inside: NDArray[np.float64], phase: NDArray[np.float64], *, periodic: bool = True
+) -> NDArray[np.float64]:
     place = (np.asarray(phase) - one.start) / one.width
     turns = np.floor(place / len(inside)) if periodic else np.zeros_like(place)
     place = place - turns * len(inside)

@@ -2,15 +2,16 @@
 
 The phase of a mesh runs on without end, ``phase + frequency t``; the pair that enters at the whole number n is formed by tooth
 ``first[0] + n`` of body 1 and ``first[1] + n`` of body 2 (modulo their tooth numbers, numbered in the order they enter). A
-damaged
-tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting interval.
+damaged tooth therefore returns every z cycles of *each* mesh its body takes part in, and two damaged teeth meet at the hunting
+interval.
 """
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..stiffness.curve import StiffnessCurve
 
@@ -18,10 +19,13 @@ FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
 
 class Samples(NamedTuple):
-    """Stiffness `k` [N/m^power] at phases, where there is no `StiffnessCurve` (contact coefficients, curves of others)."""
+    """Stiffness `k` [N/m^power] at phases, of what is no `StiffnessCurve`: contact coefficients, or curves of other programs."""
 
-    phase: np.ndarray
-    k: np.ndarray
+    phase: NDArray[np.float64]
+    k: NDArray[np.float64]
+
+
+Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +42,14 @@ class Table:
 
     start: float
     width: float
-    cells: np.ndarray
+    cells: NDArray[np.float64]
 
     @property
-    def end(self):
+    def end(self) -> float:
         """Phase at which the last cell ends."""
         return self.start + self.width * len(self.cells)
 
-    def __call__(self, phase):
+    def __call__(self, phase: ArrayLike) -> NDArray[np.float64]:
         """Value at phases from `start` to `end` (beyond them, of the end cells)."""
         place = (np.asarray(phase) - self.start) / self.width
         cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
@@ -54,14 +58,18 @@ class Table:
         return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
 
     @property
-    def mean(self):
+    def mean(self) -> float:
         """Mean over the table."""
         return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
 
 
-def table(values, start, width, *, periodic):
+Stiffness = float | NDArray[np.float64] | Curve | Table  # what `GearMesh` takes
+
+
+def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> Table:
     """`Table` through equally spaced `values`; `periodic` ones close with the first value (F. N. Fritsch, J. Butland, 1984)."""
-    values = np.append(values, values[0]) if periodic else np.asarray(values, dtype=float)
+    values = np.asarray(values, dtype=float)
+    values = np.append(values, values[0]) if periodic else values
     rise = np.diff(values)
     before, after = (np.roll(rise, 1), rise) if periodic else (rise[:-1], rise[1:])
     product = before * after
@@ -71,7 +79,7 @@ def table(values, start, width, *, periodic):
     return Table(start, width, np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1))
 
 
-def cycle_table(stiffness):
+def cycle_table(stiffness: Stiffness) -> Table:
     """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve` or of `Samples`."""
     if isinstance(stiffness, Table):
         return stiffness
@@ -104,9 +112,9 @@ class ToothDamage:
 
     body: int
     tooth: int
-    curve: Any
+    curve: Curve
 
-    def change(self, healthy):
+    def change(self, healthy: Table) -> Table:
         """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
         phase, k = np.asarray(self.curve.phase, dtype=float), np.asarray(self.curve.k, dtype=float)
         if phase.size < 2 or not (np.diff(phase) > 0).all():
@@ -129,11 +137,12 @@ class GearMesh:
     row : ndarray, shape (n,)
         ``row @ q`` is the compression along the transverse line of action [m].
     stiffness : float, ndarray, StiffnessCurve or Table
-        Over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
+        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
     frequency : float
-        Of the mesh [Hz]; negative where the loaded flanks are those of gear 1 driving but gear 2 drives: contacts run back.
+        Mesh frequency [Hz]. It is negative where the loaded flanks are those of gear 1 driving, but gear 2 drives: the contacts
+        then run backwards.
     phase : float
-        At t = 0; whole cycles count (they number the teeth).
+        Phase at t = 0; whole cycles count, because they number the teeth.
     teeth, first : (int, int)
         Tooth numbers of the bodies, and the teeth of the pair that enters at phase 0.
     damage : tuple of ToothDamage
@@ -141,26 +150,27 @@ class GearMesh:
         Mesh error ``e(t)`` as sinusoids: amplitude [m], frequency [Hz], phase [rad] of a sine; it opens the mesh.
     damping, beta, zeta : float
         ``c = damping + beta k(t)`` [N s/m], `beta` in s; a `zeta` is turned into ``damping = 2 zeta sqrt(mean k / sum(row**2 /
-        m))`` by `gearfe.motion.simulate.Machine` over all degrees of freedom the row moves in rotation or translation.
+        m))`` by `gearfe.machine.tables.Machine`, summed over all degrees of freedom that the row moves.
     power, depth, push : float, float, bool
-        Of the impact law: exponent, penetration at which the damping is full [m] (0: always), and that flanks never pull.
+        Of the impact law: the exponent, the penetration from which the damping is full [m] (0: it always is), and whether the
+        flanks only push and never pull.
     backlash : float
-        Play along the line of action [m]; 0: the mesh never opens; inf: there is no back flank.
+        Play along the line of action [m]. With 0 the mesh never opens, with inf there is no back flank.
     film : float
         Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
-        Rows and weights: friction adds ``-row weight(phase) F``.
+        Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
     """
 
     name: str
-    row: np.ndarray
-    stiffness: Any
+    row: NDArray[np.float64]
+    stiffness: Stiffness
     frequency: float = 0.0
     phase: float = 0.0
-    teeth: tuple = (1, 1)
-    first: tuple = (0, 0)
-    damage: tuple = ()
-    error: tuple = ()
+    teeth: tuple[int, int] = (1, 1)
+    first: tuple[int, int] = (0, 0)
+    damage: tuple[ToothDamage, ...] = ()
+    error: tuple[tuple[float, float, float], ...] = ()
     damping: float = 0.0
     beta: float = 0.0
     zeta: float = 0.0
@@ -169,11 +179,11 @@ class GearMesh:
     push: bool = False
     backlash: float = 0.0
     film: float = 1.0
-    friction: tuple = ()
+    friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
     cycle: Table = field(init=False)
-    changes: tuple = field(init=False)
+    changes: tuple[tuple[float, float, Table], ...] = field(init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Make the tables; refuse what cannot be."""
         for name in ("frequency", "phase", "damping", "beta", "zeta", "depth"):
             value = getattr(self, name)
@@ -189,19 +199,19 @@ class GearMesh:
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
         changes = []
-        for one in self.damage:
-            z = self.teeth[one.body]
-            made = one.change(self.cycle)
+        for hurt in self.damage:
+            z = self.teeth[hurt.body]
+            made = hurt.change(self.cycle)
             if made.end - made.start > z:
                 raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
-            changes.append((float(z), float((one.tooth - self.first[one.body]) % z), made))
+            changes.append((float(z), float((hurt.tooth - self.first[hurt.body]) % z), made))
         object.__setattr__(self, "changes", tuple(changes))
 
-    def k(self, t):
+    def k(self, t: ArrayLike) -> NDArray[np.float64]:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
 
-    def at_phase(self, phase):
+    def at_phase(self, phase: NDArray[np.float64]) -> NDArray[np.float64]:
         """Stiffness at running phases."""
         out = self.cycle(phase - np.floor(phase))
         for z, first, change in self.changes:
@@ -210,7 +220,7 @@ class GearMesh:
             out = out + np.where(own < change.end, change(np.minimum(own, change.end)), 0.0)
         return np.maximum(out, 0.0) if self.changes else out
 
-    def e(self, t):
+    def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mesh error and its rate at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
         for amplitude, frequency, angle in self.error:
@@ -219,11 +229,11 @@ class GearMesh:
             rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
         return out, rate
 
-    def cycles(self):
+    def cycles(self) -> int:
         """Mesh cycles after which the stiffness repeats: 1, or the common multiple of the damaged bodies' tooth numbers."""
         return math.lcm(1, *(int(z) for z, _, _ in self.changes))
 
-    def entries(self, duration):
+    def entries(self, duration: float) -> list[NDArray[np.float64]]:
         """Times [s] up to `duration` at which each damaged tooth is at phase 0 of this mesh (list of arrays, one per damage)."""
         out = []
         for z, first, _ in self.changes:

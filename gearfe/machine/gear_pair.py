@@ -1,13 +1,30 @@
 """Two gears on elastic shafts."""
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
-from .gear_mesh import GearMesh
-from .layout import Layout
-from .tables import Load, Machine, Stage
+from geometry.pair.gear_pair import GearPair
+
+from .gear_mesh import GearMesh, Stiffness, ToothDamage
+from .layout import Body, Layout
+from .tables import History, Load, Machine, Stage
 
 
-def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 0.0), zeta=0.02, helix=None, damage=(), **mesh):
+def gear_pair(
+    pair: GearPair,
+    bodies: tuple[Body, Body],
+    stiffness: Stiffness,
+    *,
+    speed: float,
+    torque: History,
+    support: Mapping[str, float],
+    torsion: tuple[float, float] = (0.0, 0.0),
+    zeta: float = 0.02,
+    helix: float | None = None,
+    damage: tuple[ToothDamage, ...] = (),
+    **mesh: Any,
+) -> Machine:
     """Two gears on elastic shafts: 6 degrees of freedom (x, y, theta each), more if the bodies have more.
 
     Gear 1 drives counter-clockwise; gear 2 stands on the x axis.
@@ -16,17 +33,17 @@ def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 
     ----------
     pair : GearPair
     bodies : (Body, Body)
-        Of the two gears, names and directions included.
+        The bodies of the two gears, with their names and directions.
     stiffness
-        Of the mesh along its transverse line of action [N/m^power].
+        Mesh stiffness along the transverse line of action [N/m^power], anything that `GearMesh` takes.
     speed : float
-        Of gear 1 [rad/s].
+        Speed of gear 1 [rad/s].
     torque : float, (ndarray, ndarray) or callable
-        On gear 1 [N m]; gear 2 carries it times the ratio of the base radii.
+        Torque on gear 1 [N m]; gear 2 carries it times the ratio of the base radii.
     support : dict
         Stiffness of both bearings by direction, ``{"x": k, "y": k, ...}`` [N/m, N m/rad].
     torsion : (float, float)
-        Of the shafts to drive and load [N m/rad]; 0: free.
+        Torsional stiffness of the shafts to drive and to load [N m/rad]; 0: free.
     zeta : float
         Damping ratio of the supports.
     helix : float, optional
@@ -37,7 +54,7 @@ def gear_pair(pair, bodies, stiffness, *, speed, torque, support, torsion=(0.0, 
     """
     layout, (one, two) = Layout(bodies), bodies
     radii = 1e-3 * pair.gear_1.r_b, 1e-3 * pair.gear_2.r_b
-    place = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
+    place: dict[str, Any] = {"angle": 0.0, "alpha": pair.alpha_w, "radii": radii, "internal": pair.gear_2.internal}
     row = layout.mesh(one.name, two.name, helix=math.tan(abs(pair.gear_1.beta_b)) if helix is None else helix, **place)
     frequency = abs(speed) * pair.gear_1.z / (2 * math.pi)
     springs = [s for body in bodies for s in layout.springs(body.name, None, support, zeta)]

@@ -1,7 +1,14 @@
 """The helical pair on elastic shafts, with 8 degrees of freedom: linear contact, or the impact law with pitted pinion teeth."""
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.pair.gear_pair import GearPair
+
+from ..material import Material
 from .contact_cycle import ellipse_loss, line_cycle
 from .contact_law import hertz_coefficient
 from .gear_mesh import ToothDamage
@@ -9,6 +16,7 @@ from .gear_pair import gear_pair
 from .layout import Body
 from .member import disc
 from .scene_curves import curves, speed_of
+from .tables import Machine
 
 DENSITY = 7850.0  # kg/m3
 BEARING = {"x": 1e8, "y": 1e8, "z": 1e8}  # N/m, assumed
@@ -32,9 +40,22 @@ def _bodies(pair, density):
 
 
 def pitted_helical(
-    pair, materials, *, pits=(), speed=2500 * math.pi / 30, torque=250.0, damping=1e3, depth=1e-4, support=None, drive=1e4,
-    density=7840.0, zeta=0.02, backlash=1e-4,
-):  # fmt: skip
+    pair: GearPair,
+    materials: tuple[Material, Material],
+    *,
+    pits: Sequence[
+        tuple[int, Sequence[tuple[float, float, float, float]] | Callable[[NDArray[np.float64]], NDArray[np.float64]]]
+    ] = (),
+    speed: float = 2500 * math.pi / 30,
+    torque: float = 250.0,
+    damping: float = 1e3,
+    depth: float = 1e-4,
+    support: Mapping[str, float] | None = None,
+    drive: float = 1e4,
+    density: float = 7840.0,
+    zeta: float = 0.02,
+    backlash: float = 1e-4,
+) -> Machine:
     """The helical pair with pitted pinion teeth: impact law, load shared by the lengths of the contact lines.
 
     8 degrees of freedom: x, y, z and theta of both gears.
@@ -44,12 +65,12 @@ def pitted_helical(
     pair : GearPair
         The article has 17/60, m_n 2.1 mm, 17.5 and 29 degrees, widths 19.8 and 16.9 mm.
     materials : (Material, Material)
-        For the coefficient of the impact law at the pitch point.
+        Materials of both gears, for the coefficient of the impact law at the pitch point.
     pits : sequence of (int, sequence of (float, float, float, float))
         Pinion teeth and their pits, as `gearfe.machine.contact_cycle.ellipse_loss` takes them, or instead of pits a function of
         the phase (`gearfe.machine.impact.pits_loss`); where the pits are is not in the article.
     speed, torque : float
-        Of the pinion [rad/s], [N m]: 2500 rpm; that 250 N m act on the pinion is assumed.
+        Speed [rad/s] and torque [N m] of the pinion: 2500 rpm; that 250 N m act on the pinion is assumed.
     damping, depth : float
         Largest damping of the impact law [N s/m], assumed 1e3, and the penetration from which it is full [m], 0.1 mm.
     support : dict, optional

@@ -1,13 +1,16 @@
 """The herringbone planetary stage with its relief groove."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from geometry.pair.gear_pair import GearPair
+from geometry.pair.planetary import PlanetarySet
 
-from .gear_mesh import GearMesh
+from .gear_mesh import Curve, GearMesh, Stiffness
 from .layout import SPACE, Body, Layout
 from .member import disc
 from .planetary import damages, stage_phases
@@ -18,15 +21,29 @@ HALVES = {"L": -1, "R": 1}
 
 
 def herringbone_planetary(
-    stage, stiffness, *, damage=None, speed=2000 * math.pi / 30, torque=400.0, members=None, bearing=1e8, tilt=1e5, housing=1e9,
-    drive=1e4, groove=20.0, shear_modulus=80e9, zeta=0.02, mesh_zeta=0.05, density=7800.0, **mesh
-):  # fmt: skip
+    stage: PlanetarySet,
+    stiffness: Mapping[str, Stiffness],
+    *,
+    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    speed: float = 2000 * math.pi / 30,
+    torque: float = 400.0,
+    members: Mapping[str, tuple[float, float]] | None = None,
+    bearing: float = 1e8,
+    tilt: float = 1e5,
+    housing: float = 1e9,
+    drive: float = 1e4,
+    groove: float = 20.0,
+    shear_modulus: float = 80e9,
+    zeta: float = 0.02,
+    mesh_zeta: float = 0.05,
+    density: float = 7800.0,
+    **mesh: Any,
+) -> Machine:
     """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
 
     Sun input, ring held, carrier output; 55 degrees of freedom and 12 meshes with three planets. The rows are those of the
-    transverse
-    line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial force
-    causes; the article prints ``sin(beta)`` and no tilting.
+    transverse line of action with ``tan(beta_b)`` along the axis, opposite in both halves, and include the tilting that the axial
+    force causes; the article prints ``sin(beta)`` and no tilting.
 
     Parameters
     ----------
@@ -37,7 +54,7 @@ def herringbone_planetary(
     damage : dict, optional
         ``{"sun": (tooth, {"sun_planet": curve})}`` as in `gearfe.machine.pitted_planetary.pitted_planetary`; in both halves.
     speed, torque : float
-        Of the sun [rad/s], [N m]: the article has 2000 rpm and 400.
+        Speed [rad/s] and torque [N m] of the sun: the article has 2000 rpm and 400 N m.
     members : dict, optional
         Masses [kg] and inertias [kg m2] of whole bodies, ``{"sun": (mass, inertia), "planet": ..., "ring": ..., "carrier":
         ...}``; default: rings from bore to reference circle of `density`, the carrier as heavy as its planets (assumed).
@@ -51,7 +68,7 @@ def herringbone_planetary(
     groove : float
         Width of the relief groove [mm], assumed 20: the halves are joined by a hollow shaft from bore to root circle.
     shear_modulus : float
-        Of it [Pa]; Young's modulus is 2.6 times it.
+        Shear modulus of that shaft [Pa]; its Young's modulus is 2.6 times as large.
     zeta, mesh_zeta : float
         Damping ratios of supports and meshes, assumed 0.02 and 0.05.
     density : float
@@ -85,7 +102,7 @@ def herringbone_planetary(
             meshes.append(GearMesh(f"{name}{half}", row, stiffness[kind], **options))
     loads = [Load(f"sun{half} torque", layout.unit(f"sun{half}", "theta"), torque / 2) for half in HALVES]
     loads.append(Load("carrier torque", layout.unit("carrier", "theta"), -torque * (1 + ring.z / sun.z)))
-    notes = {
+    notes: dict[str, Any] = {
         "mesh frequency [Hz]": frequency,
         "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
         "carrier frequency [Hz]": speed / (1 + ring.z / sun.z) / (2 * math.pi),
@@ -93,8 +110,8 @@ def herringbone_planetary(
         "overlap ratio of one half": outer.eps_beta_of(sun.b),
     }
     driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
-    one = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (one,))
+    whole = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,))
 
 
 def scene_herringbone(scene, case, **options):

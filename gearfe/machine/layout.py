@@ -1,14 +1,15 @@
 """Rows of springs and meshes from where bodies are and how they touch, and the phases of meshes along a train of gears.
 
 Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
-their
-carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
+their carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .tables import Spring
 
@@ -28,7 +29,7 @@ class Body:
 
 
 class Layout:
-    """The degrees of freedom of some bodies, and rows over them: what a machine of one's own starts from.
+    """The degrees of freedom of some bodies, and rows over them: start here to build a machine of your own.
 
     Examples
     --------
@@ -45,20 +46,20 @@ class Layout:
     250 N
     """
 
-    def __init__(self, bodies):
+    def __init__(self, bodies: Sequence[Body]) -> None:
         self.bodies = {body.name: body for body in bodies}
         self.dofs = tuple(f"{body.name}.{dof}" for body in bodies for dof in body.dofs.split())
         self.place = {name: i for i, name in enumerate(self.dofs)}
         sizes = {"theta": "inertia", "tilt_x": "across", "tilt_y": "across"}
         self.mass = np.array([getattr(body, sizes.get(dof, "mass")) for body in bodies for dof in body.dofs.split()])
 
-    def unit(self, name, dof):
+    def unit(self, name: str, dof: str) -> NDArray[np.float64]:
         """Row of one degree of freedom."""
         row = np.zeros(len(self.dofs))
         row[self.place[f"{name}.{dof}"]] = 1.0
         return row
 
-    def point(self, name, direction, arm=(0.0, 0.0, 0.0)):
+    def point(self, name: str, direction: ArrayLike, arm: ArrayLike = (0.0, 0.0, 0.0)) -> NDArray[np.float64]:
         """Row of the displacement along `direction` of the point at `arm` [m] from a body's centre; missing dofs do not move."""
         direction, arm = np.append(direction, np.zeros(3))[:3], np.append(arm, np.zeros(3))[:3]
         parts = dict(zip(SPACE.split(), (*direction, *np.cross(arm, direction)), strict=True))
@@ -67,7 +68,9 @@ class Layout:
             row[self.place[f"{name}.{dof}"]] = parts[dof]
         return row
 
-    def springs(self, one, two, stiffness, zeta, arm=None):
+    def springs(
+        self, one: str, two: str | None, stiffness: Mapping[str, float], zeta: float, arm: ArrayLike | None = None
+    ) -> list[Spring]:
         """Springs between two bodies (`two` None: the ground) by direction ``{dof: k}``.
 
         Those of translations act where `arm` [m] from the centre of body `two` is the centre of body `one`. Dampers are
@@ -86,7 +89,18 @@ class Layout:
                 out.append(Spring(name, row, float(k), 2 * zeta * math.sqrt(k * self.mass[self.place[f"{one}.{dof}"]])))
         return out
 
-    def mesh(self, one, two, *, angle, alpha, radii, sense=1, helix=0.0, internal=False):
+    def mesh(
+        self,
+        one: str,
+        two: str,
+        *,
+        angle: float,
+        alpha: float,
+        radii: tuple[float, float],
+        sense: int = 1,
+        helix: float = 0.0,
+        internal: bool = False,
+    ) -> NDArray[np.float64]:
         """Row of the mesh in which body `one` pushes body `two`.
 
         The transverse line of action leaves the pitch point at ``sense t cos(alpha) + e sin(alpha)``: e points from the centre of
@@ -102,7 +116,7 @@ class Layout:
         radii : (float, float)
             Base radii [m].
         sense : {1, -1}
-            In which body `one` would turn if it drove with the loaded flanks; 1: counter-clockwise.
+            Sense in which body `one` would turn if it drove with the loaded flanks; 1: counter-clockwise.
         helix : float
             ``tan(beta_b)`` with the sign of the axial force on body `two`.
         internal : bool
@@ -114,7 +128,9 @@ class Layout:
         first, second = (r / math.cos(alpha) for r in radii)
         return self.point(one, along, first * e) - self.point(two, along, (second if internal else -second) * e)
 
-    def rubbing(self, one, two, *, angle, alpha, sense=1, internal=False):
+    def rubbing(
+        self, one: str, two: str, *, angle: float, alpha: float, sense: int = 1, internal: bool = False
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Rows of friction of such a mesh: across the line of action, and the turning of either body per lever arm [m].
 
         The first pulls body `one` back where its flank slides forward, towards the line of action turned by +90 degrees.
@@ -147,11 +163,11 @@ def through(phase, pair_1, pair_2, sense, turn):
     Parameters
     ----------
     phase : float
-        Of `pair_1`.
+        Phase of the mesh `pair_1`.
     pair_1, pair_2 : GearPair
         The idler is gear 2 of the first and gear 1 of the second.
     sense : {1, -1}
-        In which the idler turns (if contacts run forward); 1: counter-clockwise.
+        Sense in which the idler turns (if contacts run forward); 1: counter-clockwise.
     turn : float
         Angle from the first to the second pitch point about the idler's centre [rad].
     """

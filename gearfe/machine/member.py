@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from geometry.tooth.gear import Gear
+
 
 @dataclass(frozen=True, slots=True)
 class Member:
@@ -13,9 +15,9 @@ class Member:
     mass, inertia : float
         [kg], [kg m2]
     bearing : float
-        In x and y [N/m].
+        Stiffness of its bearing in x and in y [N/m].
     torsion : float
-        To the ground [N m/rad].
+        Torsional stiffness to the ground [N m/rad].
     r_b : float
         Base radius [m]; of the carrier: the radius to the planets' axes.
     """
@@ -27,8 +29,8 @@ class Member:
     torsion: float = 0.0
 
 
-def disc(gear, density, bearing, *, width=None):
+def disc(gear: Gear, density: float, bearing: float, *, width: float | None = None) -> Member:
     """`Member` of a gear as a ring from its bore (or rim) to its reference circle; `width` in mm, default the gear's."""
-    low, high = sorted((gear.r_rim if gear.internal else gear.r_bore, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
+    low, high = sorted((gear.held, gear.z * gear.m_n / (2 * math.cos(gear.beta))))
     mass = density * math.pi * (high**2 - low**2) * (width or gear.b) * 1e-9
     return Member(mass, mass * (low**2 + high**2) / 2 * 1e-6, bearing, 1e-3 * gear.r_b)

@@ -1,10 +1,19 @@
 """Mesh errors of a whole machine: of the profiles at mesh frequency, of eccentric bodies, of misplaced ones."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
+from .tables import Machine
 
-def with_errors(machine, *, profile=0.0, runout=None, place=None):
+
+def with_errors(
+    machine: Machine,
+    *,
+    profile: float | Mapping[str, float] = 0.0,
+    runout: Mapping[str, tuple[float, float, float]] | None = None,
+    place: Mapping[str, tuple[float, float]] | None = None,
+) -> Machine:
     """The machine with sinusoidal errors in every mesh, the three kinds that the article on the herringbone stage lists.
 
     Parameters
@@ -26,7 +35,7 @@ def with_errors(machine, *, profile=0.0, runout=None, place=None):
             raise ValueError(f"no body {name!r}; there are {', '.join(sorted(known))}")
     meshes = []
     for mesh in machine.meshes:
-        own = profile.get(mesh.name, 0.0) if isinstance(profile, dict) else profile
+        own = profile.get(mesh.name, 0.0) if isinstance(profile, Mapping) else profile
         errors = [(own, mesh.frequency, 2 * math.pi * (mesh.phase % 1.0))] if own else []
         for name, (amplitude, frequency, start) in (runout or {}).items():
             dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")

@@ -4,14 +4,18 @@ A model is one file that states its bodies, stages and springs and a function ``
 one row here.
 """
 
+from collections.abc import Callable
+
+from ..scene.load import Scene
 from .compound_planetary import scene_compound
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
 from .mesh_errors import with_errors
 from .pitted_planetary import scene_planetary
+from .tables import Machine
 
-MACHINES = {  # by model, how it is built with either contact
+MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
     "planetary": {"linear": scene_planetary, "impact": impact_planetary},
     "compound_planetary": {"linear": scene_compound},
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
@@ -20,7 +24,7 @@ MACHINES = {  # by model, how it is built with either contact
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
 
-def build_machine(scene, case=None, *, phases=64, method="auto"):
+def build_machine(scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto") -> Machine:
     """Machine of a scene for `gearfe.simulate`, with the stiffness curves of its pairs.
 
     Parameters

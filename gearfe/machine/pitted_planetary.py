@@ -1,22 +1,38 @@
 """The planetary gearbox with a damaged sun tooth: sun drives, ring held, load on the carrier."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from geometry.pair.planetary import PlanetarySet
+
 from .contact_cycle import friction_weights
+from .gear_mesh import Curve, Stiffness
 from .layout import Body, Layout
 from .member import Member, disc
 from .planetary import damages, planetary, stage_phases
 from .scene_curves import healthy_and_hurt, speed_of, stage_of
-from .tables import Stage
+from .tables import History, Machine, Stage
 
 
 def pitted_planetary(
-    stage, stiffness, *, damage=None, speed=1000 * math.pi / 30, torque=100.0, carrier_torque=None, bearing=1e8, drive=1e4,
-    density=7800.0, zeta=0.02, friction=None, **mesh
-):  # fmt: skip
+    stage: PlanetarySet,
+    stiffness: Mapping[str, Stiffness],
+    *,
+    damage: Mapping[str, tuple[int, Mapping[str, Curve]]] | None = None,
+    speed: float = 1000 * math.pi / 30,
+    torque: float = 100.0,
+    carrier_torque: History | None = None,
+    bearing: float = 1e8,
+    drive: float = 1e4,
+    density: float = 7800.0,
+    zeta: float = 0.02,
+    friction: Mapping[str, float] | None = None,
+    **mesh: Any,
+) -> Machine:
     """The planetary gearbox with pitted sun teeth (articles on 21/31/84): sun drives, ring held, load on the carrier.
 
     Parameters
@@ -28,13 +44,13 @@ def pitted_planetary(
     damage : dict, optional
         By gear: ``{"sun": (tooth, {"sun_planet": curve})}``, planets as ``"planet1"`` with curves for both meshes, ``"ring"``.
     speed : float
-        Of the sun [rad/s]; the articles have 1000 rpm.
+        Speed of the sun [rad/s]; the articles have 1000 rpm.
     torque : float
-        Of the sun [N m], assumed 100.
+        Torque on the sun [N m], assumed 100.
     carrier_torque : number, history or function, optional
         Load against the carrier's rotation [N m] (`gearfe.machine.tables.pulses`); default: steady, in balance with `torque`.
     bearing : float
-        Of every body in x and y [N/m], assumed 1e8.
+        Stiffness of every body's bearing in x and in y [N/m], assumed 1e8.
     drive : float
         Torsional stiffness that holds the sun to its motor and the ring to the housing (a hundred times as much) [N m/rad],
         assumed 1e4: the articles prescribe the sun's speed.
@@ -69,7 +85,7 @@ def pitted_planetary(
         loads={"sun": torque, "carrier": _against(load)},
         zeta=zeta,
     )
-    notes = {
+    notes: dict[str, Any] = {
         "mesh frequency [Hz]": frequency,
         "fault frequency of a sun tooth [Hz]": n * frequency / sun.z,
         "carrier frequency [Hz]": turn / (2 * math.pi),

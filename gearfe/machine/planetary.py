@@ -5,15 +5,33 @@ name as anything `gearfe.machine.gear_mesh.GearMesh` takes; damage by mesh name 
 """
 
 import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from .gear_mesh import GearMesh, ToothDamage
+from geometry.pair.gear_pair import GearPair
+
+from .gear_mesh import GearMesh, Stiffness, ToothDamage
 from .layout import Body, Layout, around, through
-from .tables import Load, Machine
+from .member import Member
+from .tables import History, Load, Machine
 
 
-def planetary(sun, planet, ring, carrier, *, n_planets, alpha, stiffness, mesh=None, loads=None, zeta=0.0, places=None):
+def planetary(
+    sun: Member,
+    planet: Member,
+    ring: Member,
+    carrier: Member,
+    *,
+    n_planets: int,
+    alpha: tuple[float, float],
+    stiffness: Mapping[str, Stiffness],
+    mesh: Callable[[str, int], dict[str, Any]] | None = None,
+    loads: Mapping[str, History] | None = None,
+    zeta: float = 0.0,
+    places: Sequence[float] | None = None,
+) -> Machine:
     """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier, without gyroscopic terms.
 
     The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
@@ -58,7 +76,14 @@ def planetary(sun, planet, ring, carrier, *, n_planets, alpha, stiffness, mesh=N
     return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques)
 
 
-def stage_phases(pairs, n_planets, *, start=0.0, frequency=1.0, places=None):
+def stage_phases(
+    pairs: tuple[GearPair, GearPair],
+    n_planets: int,
+    *,
+    start: float = 0.0,
+    frequency: float = 1.0,
+    places: Sequence[float] | None = None,
+) -> dict[str, dict[str, Any]]:
     """Running phases and first teeth of the meshes of a simple stage whose sun drives counter-clockwise.
 
     Parameters
@@ -69,7 +94,7 @@ def stage_phases(pairs, n_planets, *, start=0.0, frequency=1.0, places=None):
     start : float
         Phase of the first sun-planet mesh at t = 0.
     frequency : float
-        Of all meshes [Hz].
+        Mesh frequency, the same for all meshes [Hz].
     places : sequence of float, optional
         Angles of the planets [rad].
 

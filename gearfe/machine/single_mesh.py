@@ -1,12 +1,14 @@
 """One mass on one mesh: the smallest machine."""
 
+from typing import Any
+
 import numpy as np
 
-from .gear_mesh import GearMesh
-from .tables import Load, Machine
+from .gear_mesh import GearMesh, Stiffness
+from .tables import History, Load, Machine
 
 
-def single_mesh(mass, stiffness, frequency, *, force=0.0, **mesh):
+def single_mesh(mass: float, stiffness: Stiffness, frequency: float, *, force: History = 0.0, **mesh: Any) -> Machine:
     """One mass on one mesh: a gear pair along its line of action, ``m x'' + c x' + k(t) f(x - e(t)) = F``.
 
     Parameters
@@ -14,9 +16,9 @@ def single_mesh(mass, stiffness, frequency, *, force=0.0, **mesh):
     mass : float
         Equivalent mass [kg], ``1 / (r_b1**2 / I_1 + r_b2**2 / I_2)``.
     stiffness
-        Over one cycle [N/m].
+        Mesh stiffness over one cycle [N/m], anything that `GearMesh` takes.
     frequency : float
-        Of the mesh [Hz].
+        Mesh frequency [Hz].
     force : float, (ndarray, ndarray) or callable
         Force transmitted [N].
     **mesh

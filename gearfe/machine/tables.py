@@ -3,14 +3,19 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
 from .contact_law import LAW, force, slopes
+from .gear_mesh import GearMesh
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
+
+# of a load: a number, times and values, or a function of an array of times
+History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray[np.float64]], ArrayLike]
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +23,7 @@ class Spring:
     """A linear spring and damper along a row: force ``k row @ q + c row @ v`` against it [N/m, N s/m or per rad]."""
 
     name: str
-    row: np.ndarray
+    row: NDArray[np.float64]
     k: float
     c: float = 0.0
 
@@ -36,18 +41,19 @@ class Load:
     """
 
     name: str
-    row: np.ndarray
-    value: float | tuple[NDArray, NDArray] | Callable
+    row: NDArray[np.float64]
+    value: History
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse what is no load."""
-        if callable(self.value):
+        given: Any = self.value
+        if callable(given):
             return
-        if not isinstance(self.value, (tuple, list)) and np.ndim(self.value) == 0:
-            if not math.isfinite(self.value):
-                raise ValueError(f"load {self.name} = {self.value}, but it must be finite")
+        if not isinstance(given, (tuple, list)) and np.ndim(given) == 0:
+            if not math.isfinite(given):
+                raise ValueError(f"load {self.name} = {given}, but it must be finite")
             return
-        times, values = (np.asarray(part, dtype=float) for part in self.value)
+        times, values = (np.asarray(part, dtype=float) for part in given)
         if times.ndim != 1 or times.shape != values.shape or not times.size:
             raise ValueError(f"load {self.name}: give as many times as values, got shapes {times.shape} and {values.shape}")
         if not (np.isfinite(times).all() and np.isfinite(values).all()):
@@ -56,24 +62,28 @@ class Load:
             at = int(np.argmax(np.diff(times) < 0)) + 1
             raise ValueError(f"load {self.name}: time {times[at]:g} s follows {times[at - 1]:g} s; sort the history by time")
 
-    def __call__(self, t):
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
         """Value at times `t`."""
-        if callable(self.value):
-            found = np.broadcast_to(np.asarray(self.value(t), dtype=float), np.shape(t))
+        given: Any = self.value
+        if callable(given):
+            found = np.broadcast_to(np.asarray(given(t), dtype=float), np.shape(t))
             if not np.isfinite(found).all():
                 raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
             return found
-        if np.ndim(self.value) == 0:
-            return np.full(np.shape(t), float(self.value))
-        return np.interp(t, *self.value)
+        if np.ndim(given) == 0:
+            return np.full(np.shape(t), float(given))
+        return np.interp(np.asarray(t, dtype=float), *given)
 
     @property
-    def breaks(self):
+    def breaks(self) -> NDArray[np.float64]:
         """Times at which the history bends or jumps [s]."""
-        return np.unique(self.value[0]) if not callable(self.value) and np.ndim(self.value) else np.empty(0)
+        given: Any = self.value
+        return np.unique(given[0]) if not callable(given) and np.ndim(given) else np.empty(0)
 
 
-def pulses(base, peak, period, width, count, *, start=0.0, rise=0.1):
+def pulses(
+    base: float, peak: float, period: float, width: float, count: int, *, start: float = 0.0, rise: float = 0.1
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """History of a load that rises from `base` to `peak` for `width` seconds every `period` seconds, `count` times.
 
     Each flank of a pulse takes the part `rise` of its width. For `Load`.
@@ -99,11 +109,11 @@ class Stage:
     mesh : float
         Mesh frequency [Hz].
     turning : float
-        Of the driving gear, against the carrier if there is one [Hz].
+        Turning frequency of the driving gear [Hz], relative to the carrier if there is one.
     fault : float, optional
-        Of a damaged tooth of the driving gear that meets several gears [Hz]; None: that is `turning`.
+        How often a damaged tooth of the driving gear meshes, if that gear meets several others [Hz]; None: once a turn.
     carrier : float, optional
-        Of the carrier [Hz].
+        Turning frequency of the carrier [Hz].
     """
 
     name: str
@@ -140,36 +150,37 @@ class Machine:
     Attributes
     ----------
     K, C : ndarray, shape (n, n)
-        Of the springs only.
+        Stiffness and damping matrices of the springs alone, without the meshes.
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
         Their contact laws.
     """
 
-    dofs: tuple
-    mass: np.ndarray
-    springs: tuple
-    meshes: tuple
-    loads: tuple = ()
-    notes: dict = field(default_factory=dict)
+    dofs: tuple[str, ...]
+    mass: NDArray[np.float64]
+    springs: tuple[Spring, ...]
+    meshes: tuple[GearMesh, ...]
+    loads: tuple[Load, ...] = ()
+    notes: dict[str, Any] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
-    K: np.ndarray = field(init=False)
-    C: np.ndarray = field(init=False)
-    G: np.ndarray = field(init=False)
-    law: dict = field(init=False)
+    K: NDArray[np.float64] = field(init=False)
+    C: NDArray[np.float64] = field(init=False)
+    G: NDArray[np.float64] = field(init=False)
+    law: dict[str, NDArray[Any]] = field(init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Assemble; refuse masses that are not, rows that do not fit."""
         n, mass = len(self.dofs), np.asarray(self.mass, dtype=float)
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
-        for one in (*self.springs, *self.meshes, *self.loads):
+        rows: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
+        for one in rows:
             if np.shape(one.row) != (n,) or not np.isfinite(one.row).all():
                 raise ValueError(f"{one.name}: its row needs {n} finite numbers, one per degree of freedom")
-        for one in self.springs:
-            if not (math.isfinite(one.k) and math.isfinite(one.c) and one.k >= 0 and one.c >= 0):
-                raise ValueError(f"spring {one.name}: k = {one.k}, c = {one.c}, but they must be finite and not negative")
+        for s in self.springs:
+            if not (math.isfinite(s.k) and math.isfinite(s.c) and s.k >= 0 and s.c >= 0):
+                raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
         object.__setattr__(self, "mass", mass)
         object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
@@ -180,7 +191,7 @@ class Machine:
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})
 
-    def row(self, name):
+    def row(self, name: str) -> NDArray[np.float64]:
         """Unit row of a degree of freedom.
 
         Raises
@@ -192,11 +203,13 @@ class Machine:
             raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
         return np.eye(len(self.dofs))[self.dofs.index(name)]
 
-    def mean_stiffness(self):
+    def mean_stiffness(self) -> NDArray[np.float64]:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
         return np.array([m.cycle.mean for m in self.meshes])
 
-    def linear(self, x=None):
+    def linear(
+        self, x: ArrayLike | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
 
         `x` (m,): compressions [m] at which a law that is not linear is taken (needed for a power other than 1).
@@ -212,11 +225,11 @@ class Machine:
         k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law)
         return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
 
-    def load(self, t=0.0):
+    def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""
         return sum((one.row * float(one(t)) for one in self.loads), np.zeros(len(self.dofs)))
 
-    def rest(self, t=None):
+    def rest(self, t: float | None = None) -> NDArray[np.float64]:
         """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
 
         Rigid-body motions are left out (least squares).
@@ -241,7 +254,7 @@ class Machine:
                 return q
         raise RuntimeError("no state of rest found: the loads do not press the meshes together, or leave a body free")
 
-    def with_meshes(self, **changes):
+    def with_meshes(self, **changes: Any) -> "Machine":
         """The same machine with fields of every mesh replaced, e.g. ``with_meshes(backlash=1e-4)``."""
         return replace(self, meshes=tuple(replace(m, **changes) for m in self.meshes))
 
@@ -251,7 +264,7 @@ def _weighted_solve(matrix, right, mass):
     return scale * np.linalg.lstsq(matrix * scale[:, None] * scale[None, :], right * scale, rcond=1e-13)[0]
 
 
-def natural_frequencies(machine, *, x=None):
+def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Natural frequencies and modes without damping, meshes at their mean stiffness.
 
     Parameters
@@ -273,7 +286,7 @@ def natural_frequencies(machine, *, x=None):
     return np.sqrt(squared) / (2 * math.pi), modes
 
 
-def modal(K, mass):
+def modal(K: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
 
     Raises

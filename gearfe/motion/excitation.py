@@ -20,7 +20,7 @@ class Flat(NamedTuple):
     frequency: np.ndarray
     phase: np.ndarray
     place: np.ndarray
-    count: np.ndarray
+    count: np.ndarray  # type: ignore[assignment]  # a tuple's own method of this name is not needed
     change_mesh: np.ndarray
     change: np.ndarray  # (n, 4): teeth, first, start, width
     change_place: np.ndarray

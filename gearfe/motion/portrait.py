@@ -3,10 +3,13 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from ..signal.series import Signal
 
-def phase_portrait(signal, velocity=None):
+
+def phase_portrait(signal: Signal, velocity: Signal | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Displacement and velocity at every sample, for a plot of one over the other.
 
     Parameters
@@ -26,7 +29,9 @@ def phase_portrait(signal, velocity=None):
     return x(signal.time), v(signal.time)
 
 
-def poincare_section(signal, frequency, velocity=None, *, start=0.0):
+def poincare_section(
+    signal: Signal, frequency: float, velocity: Signal | None = None, *, start: float = 0.0
+) -> NDArray[np.float64]:
     """Points of the phase portrait once a period: one point repeated if the motion has that period.
 
     Parameters

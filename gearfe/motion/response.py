@@ -1,8 +1,12 @@
 """`Response`: what a machine did, by named channels with units."""
 
+import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import Content, save_as, suffix_of
 from ..machine.contact_law import force
@@ -34,19 +38,19 @@ class Response:
     """
 
     machine: Machine
-    time: np.ndarray
-    states: np.ndarray
-    basis: np.ndarray
-    stats: dict = field(default_factory=dict)
+    time: NDArray[np.float64]
+    states: NDArray[np.float64]
+    basis: NDArray[np.float64]
+    stats: dict[str, Any] = field(default_factory=dict)
 
     @property
-    def names(self):
+    def names(self) -> list[str]:
         """Names of all channels."""
         dofs = self.machine.dofs
         own = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
         return [*own, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
 
-    def unit(self, name):
+    def unit(self, name: str) -> str:
         """Unit of a channel."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
@@ -55,7 +59,7 @@ class Response:
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
 
-    def __getitem__(self, name):
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
         """Channel `name` ``(t,)``."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
@@ -66,16 +70,16 @@ class Response:
         return self.states @ self.basis[dof + (n if tail == "velocity" else 0)]
 
     @property
-    def q(self):
+    def q(self) -> NDArray[np.float64]:
         """Displacements ``(t, n)``."""
         return self.states @ self.basis[: len(self.machine.dofs)].T
 
     @property
-    def v(self):
+    def v(self) -> NDArray[np.float64]:
         """Velocities ``(t, n)``."""
         return self.states @ self.basis[len(self.machine.dofs) :].T
 
-    def mesh(self, kind="force"):
+    def mesh(self, kind: str = "force") -> NDArray[np.float64]:
         """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
         if kind not in MESH:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
@@ -89,24 +93,24 @@ class Response:
         v = self.states @ (machine.G @ self.basis[n:]).T - rate
         return x if kind == "compression" else force(x, v, k, machine.law)
 
-    def accelerations(self):
+    def accelerations(self) -> NDArray[np.float64]:
         """Accelerations ``(t, n)``, from the equations of motion."""
         return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
 
-    def save(self, path, names=None):
+    def save(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
         suffix = suffix_of(path, "response")
         save_as(suffix, path, self._content(names))
 
-    def to_csv(self, path, names=None):
+    def to_csv(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write a table of repr-exact numbers under comment lines with the solver's statistics (JSON)."""
         save_as(".csv", path, self._content(names))
 
-    def to_npz(self, path, names=None):
+    def to_npz(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write a numpy archive: ``time``, ``values`` (t, channels), ``names``, ``units``, ``meta`` (JSON)."""
         save_as(".npz", path, self._content(names))
 
-    def to_mat(self, path, names=None):
+    def to_mat(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write a MATLAB 5 file with the variables of `to_npz`."""
         save_as(".mat", path, self._content(names))
 

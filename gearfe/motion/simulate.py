@@ -5,6 +5,7 @@ import time
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
 from ..machine.tables import Machine
@@ -19,17 +20,17 @@ ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 
 
 def simulate(
-    machine,
-    duration,
+    machine: Machine,
+    duration: float,
     *,
-    method="fast",
-    dt=None,
-    initial=None,
-    every=1,
-    rtol=1e-8,
-    error=False,
-    numba=None,
-):
+    method: str = "fast",
+    dt: float | None = None,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    every: int = 1,
+    rtol: float = 1e-8,
+    error: bool = False,
+    numba: bool | None = None,
+) -> Response:
     """Response of a machine from time 0.
 
     Parameters
@@ -48,7 +49,7 @@ def simulate(
     initial : (ndarray, ndarray), optional
         Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
     every : int
-        Keep every n-th output; without `dt` of those that `default_step` is apart, whatever the step.
+        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool

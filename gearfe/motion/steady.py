@@ -6,8 +6,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..machine.contact_law import slopes
+from ..machine.tables import Machine
 from . import excitation, propagator
 from .exponential import Step
 from .numpy_loop import run
@@ -37,17 +39,17 @@ class Steady:
 
     response: Response
     period: float
-    multipliers: np.ndarray
+    multipliers: NDArray[np.complex128]
     residual: float
     iterations: int
 
     @property
-    def stable(self):
+    def stable(self) -> bool:
         """Whether small disturbances do not grow."""
         return bool(abs(self.multipliers[0]) <= 1 + STABLE)
 
 
-def common_period(machine):
+def common_period(machine: Machine) -> float:
     """Shortest time after which all stiffnesses and errors of a machine repeat [s].
 
     Raises
@@ -68,7 +70,15 @@ def common_period(machine):
     return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]
 
 
-def steady_state(machine, *, period=None, dt=None, initial=None, iterations=20, tolerance=1e-9):
+def steady_state(
+    machine: Machine,
+    *,
+    period: float | None = None,
+    dt: float | None = None,
+    initial: tuple[ArrayLike, ArrayLike] | None = None,
+    iterations: int = 20,
+    tolerance: float = 1e-9,
+) -> Steady:
     """Periodic motion of a machine by shooting.
 
     Newton's method on the state at the start of the period; for meshes that stay closed one step is exact. Motions of longer

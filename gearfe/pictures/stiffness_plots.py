@@ -1,11 +1,22 @@
 """Plots (matplotlib) of stiffness: curves, error maps, contact lines."""
 
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from geometry.damage.pit import centre_arc
+from geometry.damage.pit import Pit, centre_arc
+from geometry.pair.gear_pair import GearPair
 from geometry.tooth.profile import roll_at_arc
 
 from ..files import save_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ..contact.solid import Contact3D
+
 
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
@@ -136,7 +147,9 @@ def plot_lengths(phase, lengths, others=None, path=None):
     return save_figure(figure, path, dpi=100)
 
 
-def plot_contact(pair, contact, phase=0, path=None, pits=()):
+def plot_contact(
+    pair: GearPair, contact: "Contact3D", phase: int = 0, path: str | os.PathLike[str] | None = None, pits: Sequence[Pit] = ()
+) -> "Figure":
     """Contact lines of one phase on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
 
     Parameters
@@ -184,8 +197,8 @@ def plot_contact(pair, contact, phase=0, path=None, pits=()):
     for at in _lines_of(cells):
         order = int(cells.order[at[0]])
         z, load = _stairs(cells.z[at], cells.width[at], cells.load[at] / cells.width[at])
-        label = f"pair {order:+d}" if f"pair {order:+d}" not in bottom.get_legend_handles_labels()[1] else None
-        bottom.plot(z, load, color=colours[order % 10], linewidth=1.3, label=label)
+        named = f"pair {order:+d}" if f"pair {order:+d}" not in bottom.get_legend_handles_labels()[1] else None
+        bottom.plot(z, load, color=colours[order % 10], linewidth=1.3, label=named)
     bottom.set_ylabel("load [N/mm]")
     bottom.set_ylim(bottom=0)
     bottom.set_xlabel("along the width [mm]")

@@ -1,11 +1,29 @@
 """Plots (matplotlib) of vibration: spectra, kurtogram, phase portraits."""
 
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import save_figure
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def plot_spectra(spectra, lines=None, path=None, top=None, *, dpi=120):
+    from ..signal.kurtogram import Kurtogram
+    from ..signal.spectra import Spectrum
+
+
+def plot_spectra(
+    spectra: Mapping[str, "Spectrum"],
+    lines: Mapping[str, float] | None = None,
+    path: str | os.PathLike[str] | None = None,
+    top: float | None = None,
+    *,
+    dpi: int = 120,
+) -> "Figure":
     """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
 
     Parameters
@@ -54,7 +72,7 @@ def plot_waves(signals, path, seconds=0.25, *, dpi=60):
     figure.savefig(path, dpi=dpi)
 
 
-def plot_kurtogram(kurtogram, path=None):
+def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None) -> "Figure":
     """Draw a `gearfe.signal.kurtogram.Kurtogram`, the best band framed; save to `path` if given."""
     from matplotlib import colormaps
     from matplotlib.figure import Figure
@@ -79,7 +97,12 @@ def plot_kurtogram(kurtogram, path=None):
     return save_figure(figure, path, dpi=120)
 
 
-def plot_phase(portrait, section=None, unit="m", path=None):
+def plot_phase(
+    portrait: tuple[NDArray[np.float64], NDArray[np.float64]],
+    section: NDArray[np.float64] | None = None,
+    unit: str = "m",
+    path: str | os.PathLike[str] | None = None,
+) -> "Figure":
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
     from matplotlib.figure import Figure
 

@@ -1,19 +1,21 @@
 """Scenes: strict TOML descriptions of a machine's gears, pairs and loads. Units stand in the key names."""
 
 import math
+import os
 import tomllib
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from geometry.damage.crack import Crack
-from geometry.damage.pit import pit_row
+from geometry.damage.pit import Pit, pit_row
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
 from ..material import Material
 from . import assumed, machine_table
-from .references import read_references
+from .references import Reference, read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
@@ -88,13 +90,13 @@ class ScenePair:
     """
 
     pair: GearPair
-    materials: tuple
+    materials: tuple[Material, Material]
     force: float
     face: str | None = None
     groove: float = 0.0
-    damage: dict = field(default_factory=dict)
+    damage: dict[str, dict[str, list[Crack | Pit]]] = field(default_factory=dict)
 
-    def case(self, name=None):
+    def case(self, name: str | None = None) -> dict[str, Any]:
         """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
 
         Raises
@@ -119,15 +121,15 @@ class Scene:
     name: str
     title: str
     source: str
-    gears: dict
-    pairs: dict
-    assumptions: tuple
-    later: tuple
-    machine: dict = field(default_factory=dict)
-    references: tuple = ()
-    changed: tuple = ()
+    gears: dict[str, Gear]
+    pairs: dict[str, ScenePair]
+    assumptions: tuple[dict[str, Any], ...]
+    later: tuple[str, ...]
+    machine: dict[str, Any] = field(default_factory=dict)
+    references: tuple[Reference, ...] = ()
+    changed: tuple[str, ...] = ()
 
-    def pair(self, name=None):
+    def pair(self, name: str | None = None) -> ScenePair:
         """The pair called `name`; the first one if None.
 
         Raises
@@ -142,12 +144,12 @@ class Scene:
         return self.pairs[name]
 
 
-def scene_names():
+def scene_names() -> list[str]:
     """Names of the built-in scenes."""
     return sorted(f.name.removesuffix(".toml") for f in resources.files("gearfe.scenes").iterdir() if f.name.endswith(".toml"))
 
 
-def load_scene(name_or_path):
+def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
     """Read a built-in scene by name, or a scene file by path.
 
     Raises

@@ -43,7 +43,7 @@ class Printed:
     pair : str or None
         Pair of the scene.
     value : float
-        As printed; of a statement 1 (true) or 0; nan: the source gives a formula but no number.
+        The number as printed; for a statement 1 (true) or 0; nan where the source gives a formula but no number.
     corrected : float or None
         After the correction.
     correction : str
@@ -66,7 +66,7 @@ class Printed:
     kind: str = "model"
 
     @property
-    def target(self):
+    def target(self) -> float:
         """Corrected value if there is one, else the printed one."""
         return self.value if self.corrected is None else self.corrected
 
@@ -100,11 +100,12 @@ class Reference:
     tolerance: str
     trend: bool
     note: str
-    rows: tuple
+    rows: tuple[Printed, ...]
 
-    def within(self, ours, value):
+    def within(self, ours: float, value: float) -> bool:
         """Whether `ours` is `value` within the tolerance."""
-        return abs(ours - value) <= (self.absolute if self.relative is None else self.relative * abs(value))
+        allowed = self.absolute if self.relative is None else self.relative * abs(value)
+        return abs(ours - value) <= allowed  # type: ignore[operator]  # one of the two is given
 
 
 def read_references(file, tables, pairs):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .kurtogram import Kurtogram, fast_kurtogram
+from .series import Signal
 from .spectra import Spectrum, squared_envelope_spectrum
 from .spectral_lines import find_lines
 
@@ -19,10 +20,10 @@ class Demodulated:
 
     kurtogram: Kurtogram
     spectrum: Spectrum
-    lines: dict
+    lines: dict[str, tuple[float, float]]
     background: float
 
-    def text(self):
+    def text(self) -> str:
         """Best band and lines, as one paragraph."""
         low, high = self.kurtogram.band
         top = self.kurtogram.kurtosis[self.kurtogram.best]
@@ -30,7 +31,9 @@ class Demodulated:
         return f"kurtogram: {low:.0f} to {high:.0f} Hz, kurtosis {top:.3g}; squared envelope there, over its median: {found}"
 
 
-def demodulate(signal, fault_frequency, *, count=3, levels=None, band=None):
+def demodulate(
+    signal: Signal, fault_frequency: float, *, count: int = 3, levels: int | None = None, band: tuple[float, float] | None = None
+) -> Demodulated:
     """Squared-envelope spectrum of the best band of the fast kurtogram, and the lines of a fault in it.
 
     Parameters
@@ -39,11 +42,11 @@ def demodulate(signal, fault_frequency, *, count=3, levels=None, band=None):
     fault_frequency : float
         [Hz]
     count : int
-        Harmonics of it.
+        Number of harmonics of the fault frequency to look for.
     levels : int, optional
-        Of `fast_kurtogram`. Default: as deep as bands still pass `count` harmonics of the fault.
+        Deepest level of `fast_kurtogram`. Default: the deepest whose bands still pass `count` harmonics of the fault.
     band : (float, float), optional
-        To use instead of the best one [Hz].
+        Band to use instead of the best one [Hz].
 
     Returns
     -------
@@ -68,7 +71,7 @@ def demodulate(signal, fault_frequency, *, count=3, levels=None, band=None):
     return Demodulated(kurtogram, spectrum, find_lines(spectrum, names), float(np.median(around)))
 
 
-def with_noise(signal, decibels, seed=0):
+def with_noise(signal: Signal, decibels: float, seed: int = 0) -> Signal:
     """The signal with white Gaussian noise, its power `decibels` below that of the signal without its mean."""
     size = np.std(signal.values) * 10 ** (-decibels / 20)
     noise = np.random.default_rng(seed).standard_normal(signal.values.size)

@@ -1,13 +1,25 @@
 """What a sensor on the housing of a planetary stage receives: the forces of the planets, louder as they pass it."""
 
 import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .series import Signal
 
+if TYPE_CHECKING:
+    from ..motion.response import Response
 
-def housing_signal(response, *, kind="planet_ring", sensor=0.0, places=None, carrier=None):
+
+def housing_signal(
+    response: "Response",
+    *,
+    kind: str = "planet_ring",
+    sensor: float = 0.0,
+    places: Sequence[float] | None = None,
+    carrier: float | None = None,
+) -> Signal:
     """Sum of the planets' mesh forces, weighted by how near each planet is to a sensor that stands still.
 
     Simulations are made in the frame of the carrier; a sensor on a fixed ring sees the planets go by. The path from a mesh to
@@ -21,7 +33,7 @@ def housing_signal(response, *, kind="planet_ring", sensor=0.0, places=None, car
     Parameters
     ----------
     response : gearfe.motion.response.Response
-        Of a machine with one planetary stage.
+        Response of a machine with one planetary stage.
     kind : str
         Meshes whose forces are heard, one or more to a planet: those named ``kind`` and the number of the planet
         (``planet_ring1``, ``planet_ring1L``...).
@@ -49,8 +61,8 @@ def housing_signal(response, *, kind="planet_ring", sensor=0.0, places=None, car
     in Fault Diagnosis and Detection, InTech, 2017, doi 10.5772/67529, on windows for the path.
     """
     machine = response.machine
-    heard = [(one.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", one.name)) for one in machine.meshes]
-    heard = [(name, int(found[1]) - 1) for name, found in heard if found]
+    named = [(one.name, re.fullmatch(re.escape(kind) + r"(\d+)[LR]?", one.name)) for one in machine.meshes]
+    heard = [(name, int(found[1]) - 1) for name, found in named if found]
     if not heard:
         raise ValueError(f"no mesh is called {kind!r} and a number; there are {', '.join(one.name for one in machine.meshes)}")
     if carrier is None:

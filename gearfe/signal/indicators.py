@@ -5,11 +5,16 @@ measure the load. S0 ... S4 are the articles.
 """
 
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .spectra import spectrum
 from .spectral_lines import find_lines
+
+if TYPE_CHECKING:
+    from .series import Signal
 
 SOURCES = {
     "rms": "sqrt(mean(x**2)), S4; with the mean",
@@ -146,7 +151,15 @@ def _around(found, mesh_frequency, fault_frequency):
     return frequency, amplitude
 
 
-def indicators(signal, mesh_frequency=None, fault_frequency=None, *, window="hann", tolerance=None, harmonics=1):
+def indicators(
+    signal: "Signal",
+    mesh_frequency: float | None = None,
+    fault_frequency: float | None = None,
+    *,
+    window: str | tuple[Any, ...] = "hann",
+    tolerance: float | None = None,
+    harmonics: int = 1,
+) -> dict[str, float]:
     """All indicators of a signal, by the names of `SOURCES`, which states their formulae.
 
     Parameters
@@ -195,13 +208,20 @@ def increment(value, healthy):
     return 100 * (value - healthy) / healthy
 
 
-def indicator_table(signals, mesh_frequency=None, fault_frequency=None, *, healthy="healthy", **options):
+def indicator_table(
+    signals: Mapping[str, "Signal"],
+    mesh_frequency: float | None = None,
+    fault_frequency: float | None = None,
+    *,
+    healthy: str = "healthy",
+    **options: Any,
+) -> dict[str, dict[str, tuple[float, float]]]:
     """Indicators of several cases, each with its increment against the healthy one.
 
     Parameters
     ----------
     signals : dict of str to Signal
-        By case; all of one unit, rate and length, on which the sideband indicators depend.
+        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
     mesh_frequency, fault_frequency, **options
         See `indicators`.
     healthy : str

@@ -2,11 +2,16 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.signal import ShortTimeFFT, fftconvolve, firwin, get_window, upfirdn
 
 from .spectra import Spectrum
+
+if TYPE_CHECKING:
+    from .series import Signal
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
@@ -15,7 +20,7 @@ EMPTY = 1e-14  # of the power of the signal
 FEWEST = 128  # samples at the deepest level, before the ends are cut
 
 
-def spectral_kurtosis(signal, size, *, window="hann"):
+def spectral_kurtosis(signal: "Signal", size: int, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """Kurtosis over time of every bin of a short-time Fourier transform.
 
     ::
@@ -72,24 +77,24 @@ class Kurtogram:
         Excess over Gaussian noise.
     """
 
-    level: np.ndarray
-    centre: np.ndarray
-    bandwidth: np.ndarray
-    kurtosis: np.ndarray
+    level: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    bandwidth: NDArray[np.float64]
+    kurtosis: NDArray[np.float64]
 
     @property
-    def best(self):
+    def best(self) -> int:
         """Row of the largest kurtosis."""
         return int(np.argmax(self.kurtosis))
 
     @property
-    def band(self):
+    def band(self) -> tuple[float, float]:
         """Lower and upper edge [Hz] of the best band, for `gearfe.envelope` and its squared spectrum."""
         centre, width = float(self.centre[self.best]), float(self.bandwidth[self.best])
         return centre - width / 2, centre + width / 2
 
 
-def fast_kurtogram(signal, levels=None):
+def fast_kurtogram(signal: "Signal", levels: int | None = None) -> Kurtogram:
     """Kurtosis of the complex envelope in the bands of a 1/3-binary tree of quasi-analytic filters.
 
     Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is halved into level

@@ -1,17 +1,20 @@
 """Signals by the angle of a shaft: order spectrum, synchronous average and what is left of it without the healthy mesh."""
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
-from .spectra import amplitudes
+from .series import Signal
+from .spectra import Spectrum, amplitudes
 
 SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples
 
 
-def by_turn(signal, samples_per_turn=None):
+def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.float64]:
     """Values at equal steps of the shaft's angle, one row for each whole turn.
 
     Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
@@ -20,9 +23,9 @@ def by_turn(signal, samples_per_turn=None):
     Parameters
     ----------
     signal : Signal
-        With `angle` or `shaft_frequency`.
+        One that has `angle` or `shaft_frequency`.
     samples_per_turn : int, optional
-        Default: as many as the slowest turn has, so that nothing is folded.
+        Default: as many samples as a turn has where the shaft is slowest, so that no frequency is folded back.
 
     Returns
     -------
@@ -52,7 +55,7 @@ def by_turn(signal, samples_per_turn=None):
     return make_interp_spline(angle, signal.values, k=5)(grid).reshape(turns, count)
 
 
-def order_spectrum(signal, *, samples_per_turn=None, window="hann"):
+def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """One-sided amplitude spectrum over the orders of the shaft, sharp also when the speed varies.
 
     `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins.
@@ -70,17 +73,19 @@ def order_spectrum(signal, *, samples_per_turn=None, window="hann"):
     return amplitudes(turns.ravel(), float(turns.shape[1]), window, signal.unit, signal.name, "order")
 
 
-def synchronous_average(signal, samples_per_turn=None, *, turns_per_period=1):
+def synchronous_average(
+    signal: Signal, samples_per_turn: int | None = None, *, turns_per_period: int = 1
+) -> tuple[NDArray[np.float64], int]:
     """Mean over the turns of a shaft: what does not repeat with it falls with ``1 / sqrt(periods)``.
 
     Parameters
     ----------
     signal : Signal
-        With `angle` or `shaft_frequency` of the shaft; for a sun gear or planet that of the gear relative to the carrier.
+        One that has `angle` or `shaft_frequency` of the shaft; for a sun or a planet those of the gear relative to the carrier.
     samples_per_turn : int, optional
         See `by_turn`.
     turns_per_period : int
-        Average over so many turns at a time, for what repeats only after several (hunting tooth).
+        Number of turns in one period, for what repeats only after several turns (hunting tooth).
 
     Returns
     -------
@@ -101,7 +106,7 @@ def synchronous_average(signal, samples_per_turn=None, *, turns_per_period=1):
     return rows.mean(axis=0), periods
 
 
-def residual_signal(average, teeth, *, sidebands=0, shaft_orders=2):
+def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft_orders: int = 2) -> NDArray[np.float64]:
     """Synchronous average of one turn without the orders of a healthy gear: a local fault is what stands out of it.
 
     Taken out are the mean, the shaft orders 1 to `shaft_orders`, the mesh orders n `teeth`, and with ``sidebands=1`` also
@@ -110,7 +115,7 @@ def residual_signal(average, teeth, *, sidebands=0, shaft_orders=2):
     Parameters
     ----------
     average : ndarray, shape (n,)
-        Of one turn.
+        Synchronous average over one turn.
     teeth : int
     sidebands, shaft_orders : int
 

@@ -2,8 +2,10 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 
 from .indicators import indicators
@@ -17,7 +19,7 @@ class Signal:
     Attributes
     ----------
     values : ndarray, shape (n,)
-        In `unit`.
+        Samples, in `unit`.
     rate : float
         Samples per second [Hz].
     unit : str
@@ -29,14 +31,14 @@ class Signal:
         Turns per second [Hz] of a shaft at constant speed; instead of `angle`.
     """
 
-    values: np.ndarray
+    values: NDArray[np.float64]
     rate: float
     unit: str
     name: str = "signal"
-    angle: np.ndarray | None = None
+    angle: NDArray[np.float64] | None = None
     shaft_frequency: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "values", _samples(self.name, self.values))
         for name in ("rate", "shaft_frequency"):
             value = getattr(self, name)
@@ -63,17 +65,17 @@ class Signal:
         object.__setattr__(self, "angle", angle)
 
     @property
-    def time(self):
+    def time(self) -> NDArray[np.float64]:
         """Time of every sample [s], from 0."""
         return np.arange(self.values.size) / self.rate
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """Samples over rate [s]."""
         return self.values.size / self.rate
 
     @property
-    def shaft_angle(self):
+    def shaft_angle(self) -> NDArray[np.float64]:
         """Angle of the shaft at every sample [rad]."""
         if self.angle is not None:
             return self.angle
@@ -81,7 +83,9 @@ class Signal:
             raise ValueError(f"{self.name} has no shaft: give angle (rad, for every sample) or shaft_frequency (Hz)")
         return 2 * math.pi * self.shaft_frequency * self.time
 
-    def indicators(self, mesh_frequency=None, fault_frequency=None, **options):
+    def indicators(
+        self, mesh_frequency: float | None = None, fault_frequency: float | None = None, **options: Any
+    ) -> dict[str, float]:
         """Condition indicators by name, see `gearfe.signal.indicators.indicators`."""
         return indicators(self, mesh_frequency, fault_frequency, **options)
 
@@ -100,7 +104,7 @@ def _samples(name, values):
     return values
 
 
-def envelope(signal, band=None):
+def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
     return Signal(
         np.abs(analytic(signal, band)),
@@ -112,7 +116,7 @@ def envelope(signal, band=None):
     )
 
 
-def integrate(signal, times, above, unit):
+def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     """Integral over time, of the part above a frequency: displacement from acceleration, as S4 measures it.
 
     Divides the discrete Fourier transform by ``(2 pi i f)**times``; a record that does not close drifts at its ends.
@@ -125,7 +129,7 @@ def integrate(signal, times, above, unit):
     above : float
         What lies below [Hz] is taken out, with the mean: noise there would grow without bound.
     unit : str
-        Of the result; for ``m/s^2`` integrated twice ``m``.
+        Unit of the result, for example ``m`` for ``m/s^2`` integrated twice.
 
     Returns
     -------

@@ -1,6 +1,7 @@
 """Measured signals from files: CSV, MATLAB and numpy. Rate and unit are stated, in the file or by the caller."""
 
 import math
+import os
 import re
 from pathlib import Path
 
@@ -18,7 +19,14 @@ UNEVEN = 0.1  # of a step: times printed with few digits stay below, a lost samp
 AGREE = 1e-3  # between a stated rate and the time column
 
 
-def read_signal(path, *, column=None, rate=None, unit=None, shaft_frequency=None):
+def read_signal(
+    path: str | os.PathLike[str],
+    *,
+    column: str | None = None,
+    rate: float | None = None,
+    unit: str | None = None,
+    shaft_frequency: float | None = None,
+) -> Signal:
     """Read one signal from a ``.csv`` (or ``.txt``), ``.mat`` or ``.npz`` file.
 
     The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sampling_frequency``) [Hz], or follows from ``time`` (or ``t``), or is

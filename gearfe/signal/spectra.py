@@ -2,10 +2,15 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.fft import fft, fftfreq, ifft
 from scipy.signal import get_window, periodogram, welch
+
+if TYPE_CHECKING:
+    from .series import Signal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -15,9 +20,9 @@ class Spectrum:
     Attributes
     ----------
     frequency : ndarray, shape (m,)
-        From 0 [Hz], or shaft orders (per turn), as `axis` says.
+        Frequencies from 0 on [Hz], or shaft orders (per turn), as `axis` says.
     values : ndarray, shape (m,)
-        In `unit`.
+        Values at these frequencies, in `unit`.
     unit : str
     resolution : float
         Distance of two bins.
@@ -27,15 +32,15 @@ class Spectrum:
         `axis` is ``Hz`` or ``order``.
     """
 
-    frequency: np.ndarray
-    values: np.ndarray
+    frequency: NDArray[np.float64]
+    values: NDArray[np.float64]
     unit: str
     resolution: float
     bandwidth: float
     name: str = "spectrum"
     axis: str = "Hz"
 
-    def within(self, low, high):
+    def within(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Frequencies and values of the bins from `low` to `high`, both included."""
         slack = 1e-6 * self.resolution
         rows = (self.frequency >= low - slack) & (self.frequency <= high + slack)
@@ -47,7 +52,7 @@ class Spectrum:
         return self.frequency[rows], self.values[rows]
 
 
-def spectrum(signal, *, window="hann"):
+def spectrum(signal: "Signal", *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """One-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
@@ -58,7 +63,7 @@ def spectrum(signal, *, window="hann"):
     ----------
     signal : Signal
     window : str or tuple
-        Of `scipy.signal.get_window`.
+        A window that `scipy.signal.get_window` knows.
 
     Returns
     -------
@@ -96,7 +101,9 @@ def _noise_bins(window, n):
     return round(float(n * (w @ w) / w.sum() ** 2), 9)
 
 
-def power_spectral_density(signal, *, resolution=None, window="hann"):
+def power_spectral_density(
+    signal: "Signal", *, resolution: float | None = None, window: str | tuple[Any, ...] = "hann"
+) -> Spectrum:
     """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
 
     Parameters
@@ -145,8 +152,10 @@ def analytic(signal, band=None):
     return ifft(twice * fft(signal.values))
 
 
-def squared_envelope_spectrum(signal, band=None, *, window="hann"):
-    """Amplitude spectrum of the squared envelope, best of the band the kurtogram finds; unit ``(unit)^2``.
+def squared_envelope_spectrum(
+    signal: "Signal", band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
+) -> Spectrum:
+    """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
 
     ``(1 + m cos(2 pi f t))`` times a carrier of amplitude A gives ``2 m A**2`` at f and ``m**2 A**2 / 2`` at 2 f.
 

@@ -1,13 +1,23 @@
 """Lines of a spectrum: where a faulty gear shows, and how much is found there."""
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
+
+from .spectra import Spectrum
 
 BINS = 2  # on either side of an expected frequency in which a line is looked for
 
 
-def expected_lines(mesh_frequency, fault_frequency=None, carrier_frequency=None, count=3, *, harmonics=1):
+def expected_lines(
+    mesh_frequency: float,
+    fault_frequency: float | None = None,
+    carrier_frequency: float | None = None,
+    count: int = 3,
+    *,
+    harmonics: int = 1,
+) -> dict[str, float]:
     """Frequencies at which a faulty gear shows in a spectrum.
 
     Where ``f_m`` is a multiple of ``f_fault`` (S0: 280 = 7 x 40 Hz, S4: 480 = 6 x 80 Hz), harmonics of the fault fall on
@@ -22,9 +32,9 @@ def expected_lines(mesh_frequency, fault_frequency=None, carrier_frequency=None,
     carrier_frequency : float, optional
         f_carrier [Hz].
     count : int
-        Sidebands on each side and harmonics of the fault.
+        Number of sidebands on each side, and of harmonics of the fault.
     harmonics : int
-        Of the mesh.
+        Number of harmonics of the mesh.
 
     Returns
     -------
@@ -38,9 +48,10 @@ def expected_lines(mesh_frequency, fault_frequency=None, carrier_frequency=None,
     >>> expected_lines(280.0, 40.0, count=1)
     {'f_m': 280.0, 'f_m - f_fault': 240.0, 'f_m + f_fault': 320.0, 'f_fault': 40.0}
     """
-    spacings = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
+    given = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
+    spacings = {name: value for name, value in given.items() if value is not None}
     for name, value in {"f_m": mesh_frequency, **spacings}.items():
-        if value is not None and not 0 < value < math.inf:
+        if not 0 < value < math.inf:
             raise ValueError(f"{name} = {value} Hz, but give a positive number")
     if count < 0 or harmonics < 1:
         raise ValueError(f"count = {count}, harmonics = {harmonics}: give count >= 0, harmonics >= 1")
@@ -49,11 +60,11 @@ def expected_lines(mesh_frequency, fault_frequency=None, carrier_frequency=None,
         mesh = _times(n, "f_m")
         lines[mesh] = n * mesh_frequency
         for name, spacing in spacings.items():
-            for k in range(1, count + 1 if spacing else 0):
+            for k in range(1, count + 1):
                 lines[f"{mesh} - {_times(k, name)}"] = n * mesh_frequency - k * spacing
                 lines[f"{mesh} + {_times(k, name)}"] = n * mesh_frequency + k * spacing
     for name, spacing in spacings.items():
-        lines |= {_times(k, name): k * spacing for k in range(1, count + 1 if spacing else 0)}
+        lines |= {_times(k, name): k * spacing for k in range(1, count + 1)}
     return {name: value for name, value in lines.items() if value > 0}
 
 
@@ -61,7 +72,7 @@ def _times(n, name):
     return name if n == 1 else f"{n} {name}"
 
 
-def find_lines(found, lines, tolerance=None):
+def find_lines(found: Spectrum, lines: Mapping[str, float], tolerance: float | None = None) -> dict[str, tuple[float, float]]:
     """Largest bin near each expected line; bins nearer to another one (a bin or more away) do not count.
 
     Parameters

@@ -1,12 +1,18 @@
 """`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
 
+import os
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..files import save, save_as
 from ..pictures.stiffness_plots import plot_curves
 from .curve_file import content, read_fields
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,22 +41,22 @@ class StiffnessCurve:
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
 
-    phase: np.ndarray
-    k: np.ndarray
-    k_tangent: np.ndarray
-    lte: np.ndarray
-    order: np.ndarray
-    force: np.ndarray
-    pressure: np.ndarray
-    error: np.ndarray | None = None
-    meta: dict = field(default_factory=dict)
+    phase: NDArray[np.float64]
+    k: NDArray[np.float64]
+    k_tangent: NDArray[np.float64]
+    lte: NDArray[np.float64]
+    order: NDArray[np.int64]
+    force: NDArray[np.float64]
+    pressure: NDArray[np.float64]
+    error: NDArray[np.float64] | None = None
+    meta: dict[str, Any] = field(default_factory=dict)
 
     @property
-    def share(self):
+    def share(self) -> NDArray[np.float64]:
         """Load share of each pair ``(n, pairs)``, rows sum to 1."""
         return self.force / self.force.sum(axis=1, keepdims=True)
 
-    def zones(self):
+    def zones(self) -> dict[str, float]:
         """Mean stiffness [N/m] by zone: ``single``, ``double`` (or more pairs, on the path of contact), ``mean``, ``max``.
 
         A zone none of the phases falls into is left out, and so are those of helical teeth.
@@ -58,7 +64,7 @@ class StiffnessCurve:
         out = {name: float(self.k[rows].mean()) for name, rows in self._rows().items()}
         return out | {"mean": float(self.k.mean()), "max": float(self.k.max())}
 
-    def zone_errors(self):
+    def zone_errors(self) -> dict[str, float]:
         """Largest relative error estimate by the same zones; empty if none was asked for."""
         if self.error is None:
             return {}
@@ -75,16 +81,16 @@ class StiffnessCurve:
         zones = {names.get(pairs, f"{pairs} pairs"): rows for pairs, rows in ((low, ~inside), (low + 1, inside))}
         return {name: rows for name, rows in zones.items() if rows.any()}
 
-    def save(self, path):
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
         save(path, "curve", content(self))
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write a CSV table with a header of units and meta data; `from_csv` reads it back exactly if the phases rise."""
         save_as(".csv", path, content(self))
 
     @classmethod
-    def from_csv(cls, path):
+    def from_csv(cls, path: str | os.PathLike[str]) -> "StiffnessCurve":
         """Read what `to_csv` wrote.
 
         Raises
@@ -94,6 +100,6 @@ class StiffnessCurve:
         """
         return cls(**read_fields(path))
 
-    def plot(self, path=None):
+    def plot(self, path: str | os.PathLike[str] | None = None) -> "Figure":
         """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
         return plot_curves({self.meta.get("method", "k"): self}, path)

@@ -9,6 +9,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from tokenize import TokenError
+from typing import Any
 
 import numpy as np
 from numpy.lib import format as npy
@@ -35,7 +36,7 @@ def write_flexibility(path: Path, key: str, arrays: dict[str, NDArray]) -> None:
         If it cannot be written.
     """
     with written(path) as name:
-        np.savez(name, **{KEY: np.frombuffer(key.encode(), dtype=np.uint8)}, **arrays)
+        np.savez(name, **dict[str, Any](arrays | {KEY: np.frombuffer(key.encode(), dtype=np.uint8)}))
 
 
 def read_flexibility(path: Path, key: str, made_from: Callable[[dict[str, NDArray]], object]) -> object | None:

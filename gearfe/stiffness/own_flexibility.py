@@ -112,11 +112,11 @@ class OwnFlexibility:
         return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "tip", None)) for one in self.gears)
 
     @property
-    def gears(self) -> tuple:
+    def gears(self) -> tuple[Any, Any]:
         """Models of pinion and wheel."""
         return self.pinion, self.wheel
 
-    def told(self) -> dict:
+    def told(self) -> dict[str, Any]:
         """What `meta` says of it."""
         names = [one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__) for one in self.gears]
         return {"flexibility": names, "given": self.given}

@@ -1,44 +1,101 @@
 """`mesh_stiffness`: from a gear pair to its stiffness curve, by finite elements or by an energy method."""
 
 import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from numbers import Integral
+from typing import Any, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from geometry.damage.crack import Crack
+from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 
 from ..flexibility.solved import solved_gears
-from ..material import check_state
+from ..material import Material, check_state
+from .curve import StiffnessCurve
 from .inputs import by_gear, check_method, choose, overlap, phase_array, refuse, row_of, two_materials
+from .own_flexibility import OwnFlexibility
 from .plane import curve, section_solver, sum_solver, with_error
 from .pose import check_pose, in_pose
 from .provenance import damage_of, provenance
 from .solid import wide_curve
 
 
+@overload
 def mesh_stiffness(
-    pair,
-    force,
-    material,
+    pair: GearPair,
+    force: float,
+    material: Material | tuple[Material, Material],
     *,
-    method="auto",
-    phases=64,
-    span="cycle",
-    damage=None,
-    extended=True,
-    state="plane strain",
-    refine=1.0,
-    order=None,
-    teeth=None,
-    variants=None,
-    face=None,
-    groove=0.0,
-    error=False,
-    cache=True,
-    tell=None,
-    pose="mean",
-):
+    method: str | OwnFlexibility = ...,
+    phases: int | ArrayLike = ...,
+    span: str = ...,
+    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    extended: bool = ...,
+    state: str = ...,
+    refine: float = ...,
+    order: int | None = ...,
+    teeth: int | None = ...,
+    variants: Mapping[str, Any] | None = ...,
+    face: str | None = ...,
+    groove: float = ...,
+    error: bool = ...,
+    cache: bool = ...,
+    tell: Callable[[str], object] | None = ...,
+    pose: str = ...,
+) -> StiffnessCurve: ...
+
+
+@overload
+def mesh_stiffness(
+    pair: GearPair,
+    force: Sequence[float] | NDArray[np.float64],
+    material: Material | tuple[Material, Material],
+    *,
+    method: str | OwnFlexibility = ...,
+    phases: int | ArrayLike = ...,
+    span: str = ...,
+    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    extended: bool = ...,
+    state: str = ...,
+    refine: float = ...,
+    order: int | None = ...,
+    teeth: int | None = ...,
+    variants: Mapping[str, Any] | None = ...,
+    face: str | None = ...,
+    groove: float = ...,
+    error: bool = ...,
+    cache: bool = ...,
+    tell: Callable[[str], object] | None = ...,
+    pose: str = ...,
+) -> list[StiffnessCurve]: ...
+
+
+def mesh_stiffness(
+    pair: GearPair,
+    force: float | Sequence[float] | NDArray[np.float64],
+    material: Material | tuple[Material, Material],
+    *,
+    method: str | OwnFlexibility = "auto",
+    phases: int | ArrayLike = 64,
+    span: str = "cycle",
+    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    extended: bool = True,
+    state: str = "plane strain",
+    refine: float = 1.0,
+    order: int | None = None,
+    teeth: int | None = None,
+    variants: Mapping[str, Any] | None = None,
+    face: str | None = None,
+    groove: float = 0.0,
+    error: bool = False,
+    cache: bool = True,
+    tell: Callable[[str], object] | None = None,
+    pose: str = "mean",
+) -> StiffnessCurve | list[StiffnessCurve]:
     """Mesh stiffness of a gear pair over one mesh cycle.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
@@ -82,7 +139,7 @@ def mesh_stiffness(
     order : int, optional
         Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
-        For ``fe``: only so many teeth on a plain rim; default all.
+        For ``fe``: number of teeth that are modelled, on a plain rim; default: all.
     variants : dict, optional
         For ``textbook`` and ``published``: options of `gearfe.energy.closed.plain_sum.plain_sum` and of the formulas'
         ``components`` (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
@@ -121,7 +178,7 @@ def mesh_stiffness(
     forces = _forces(force)
     if teeth is not None and not (isinstance(teeth, Integral) and teeth >= 1):
         raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
-    given, cache = cache, solved_gears(cache)
+    solved = solved_gears(cache)
     materials = two_materials(material)
     check_state(state)
     check_pose(pose)
@@ -133,9 +190,15 @@ def mesh_stiffness(
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
     if pose != "mean":
-        same = {"method": own or row.name, "damage": damage, "extended": extended, "state": state, "refine": refine}
+        same: dict[str, Any] = {
+            "method": own or row.name,
+            "damage": damage,
+            "extended": extended,
+            "state": state,
+            "refine": refine,
+        }
         same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
-        same |= {"error": error, "cache": given, "tell": tell}
+        same |= {"error": error, "cache": cache, "tell": tell}
         curves = [
             in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair.p_bt, pose)
             for value in forces
@@ -149,14 +212,14 @@ def mesh_stiffness(
         case = (pair, materials, phase, cracks, pits)
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
-        options |= {"brute": row.kept == "disk", "error": error, "cache": cache, "tell": tell}
+        options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
         curves = [wide_curve(value, case, meta, **options) for value in forces]
         return curves if np.ndim(force) else curves[0]
     if row.kind == "sum":
         sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
-        numeric |= {"cracks": cracks, "extended": bool(extended), "state": state, "cache": cache, "teeth": teeth}
+        numeric |= {"cracks": cracks, "extended": bool(extended), "state": state, "cache": solved, "teeth": teeth}
         solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None

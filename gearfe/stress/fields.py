@@ -129,7 +129,7 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
     cells = np.vstack([inner.t[:3], inner.nvertices + inner.t2f])
     rim, held = inner.boundaries["rim"], inner.boundaries["held"]
     edges = np.concatenate([rim, held])
-    start, stop, middle = *inner.facets[:, edges], inner.nvertices + edges
+    (start, stop), middle = inner.facets[:, edges], inner.nvertices + edges
     lines = [np.array([start, middle]), np.array([middle, stop])]
     lines += [np.array([face[:-1], face[1:]]) for seam in mesh.seams for face in seam.faces]
     opening = [np.hypot(*(moved[:, seam.faces[0]] - moved[:, seam.faces[1]])).max() for seam in mesh.seams]

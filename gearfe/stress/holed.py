@@ -21,7 +21,7 @@ from .fields import Field
 
 SPREAD = 0.15  # of the load to either side of its line, in modules
 BEND = math.radians(40)  # edges at which the surface bends by more are drawn
-PARTS = 5  # a loaded triangle is cut into the square of so many
+PARTS = 5  # parts along each side of a loaded triangle: it is cut into the square of this number
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,11 +5,13 @@ import ctypes
 import math
 import os
 import sys
+from typing import Any
 
 import numpy as np
 
 from ..files import suffix_of, written
 from ..pictures.stiffness_plots import plot_contact
+from ..scene.load import ScenePair
 from ..stiffness.inputs import by_gear
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
@@ -33,7 +35,16 @@ FINE = {
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
 
-def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050), refine=1.0, title=""):
+def render_stress(
+    scene_pair: ScenePair,
+    path: str | os.PathLike[str],
+    *,
+    case: str | None = None,
+    phase: float | None = None,
+    size: tuple[int, int] = (1400, 1050),
+    refine: float = 1.0,
+    title: str = "",
+) -> dict[str, Any]:
     """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
 
     Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.

@@ -6,9 +6,11 @@ import os
 import pickle
 import sys
 import time
+from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from typing import Any
 
 from ..stiffness.solve import mesh_stiffness
 
@@ -23,13 +25,19 @@ class Batch:
     `elapsed` that of all, by `workers` processes.
     """
 
-    results: list
-    seconds: list
+    results: list[Any]
+    seconds: list[float]
     elapsed: float
     workers: int
 
 
-def batch(cases, *, work=None, workers=None, progress=None):
+def batch(
+    cases: Iterable[Mapping[str, Any]],
+    *,
+    work: Callable[..., Any] | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Batch:
     """Work through many cases.
 
     Parameters

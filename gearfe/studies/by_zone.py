@@ -2,12 +2,18 @@
 
 import time
 import warnings
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
+from numpy.typing import ArrayLike
+
+from ..scene.load import Scene
+from ..stiffness.curve import StiffnessCurve
 from ..stiffness.inputs import why_solid
 from ..stiffness.methods import METHODS, ROWS, fitted
 from ..stiffness.solve import mesh_stiffness
-from .own_model import own_curve, own_models
+from .own_model import OwnModel, own_curve, own_models
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
 FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # of spur gears
@@ -22,15 +28,15 @@ class Comparison:
     """
 
     pair_name: str
-    curves: dict
-    seconds: dict
+    curves: dict[str, StiffnessCurve]
+    seconds: dict[str, float]
 
     @property
-    def reference(self):
+    def reference(self) -> StiffnessCurve:
         """The curve the others are compared with."""
         return next(iter(self.curves.values()))
 
-    def rows(self):
+    def rows(self) -> Iterator[tuple[str, float, float, dict[str, tuple[float, float]]]]:
         """Rows (zone, reference k [N/m], its relative error estimate, {method: (k [N/m], relative error)})."""
         truth, doubt = self.reference.zones(), self.reference.zone_errors()
         others = {name: curve.zones() for name, curve in list(self.curves.items())[1:]}
@@ -42,7 +48,7 @@ class Comparison:
                 {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()},
             )
 
-    def table(self):
+    def table(self) -> str:
         """Markdown table: per zone the reference and every formulation with its error; last row the seconds."""
         names = list(self.curves)
         lines = [
@@ -57,7 +63,15 @@ class Comparison:
         return "\n".join(lines)
 
 
-def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
+def compare(
+    scene: Scene,
+    pair: str | None = None,
+    *,
+    case: str | None = None,
+    models: Sequence[OwnModel] | Mapping[str, OwnModel] = (),
+    phases: int | ArrayLike = 64,
+    refine: float = 1.0,
+) -> Comparison:
     """Compare every formulation that models it with the reference, on one pair of `scene`, healthy or damaged.
 
     The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`.
@@ -92,7 +106,7 @@ def compare(scene, pair=None, *, case=None, models=(), phases=64, refine=1.0):
     curves, seconds = {}, {}
     for method in methods:
         started = time.perf_counter()
-        options = {"refine": refine} if method == methods[0] else {}
+        options: dict[str, Any] = {"refine": refine} if method == methods[0] else {}
         try:
             curves[method] = mesh_stiffness(**fitted(method, run)[0], method=method, cache=False, **options)
         except ValueError as error:

@@ -2,10 +2,14 @@
 
 import csv
 import math
+import os
 import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from geometry.damage.crack import Crack, crack_path
@@ -17,7 +21,10 @@ from ..material import Material
 from ..stiffness.methods import ROWS
 from ..stiffness.solve import mesh_stiffness
 from .batches import batch
-from .own_model import own_curve
+from .own_model import OwnModel, own_curve
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # the sampled space: uniform between these ends; bores in root radii, loads F / (b m_n) in MPa on a logarithmic scale
 RANGES = {
@@ -48,20 +55,22 @@ class ErrorMap:
     are their names; `seconds` (cases,), `elapsed` and `workers` the cost.
     """
 
-    columns: dict
-    formulations: tuple
-    seconds: np.ndarray
+    columns: dict[str, NDArray[np.float64]]
+    formulations: tuple[str, ...]
+    seconds: NDArray[np.float64]
     elapsed: float
     workers: int
 
-    def rows(self, **limits):
+    def rows(self, **limits: tuple[float, float]) -> NDArray[np.bool_]:
         """Mask of the rows whose columns lie within the given ``name=(low, high)``."""
         inside = np.ones(self.columns["load"].size, dtype=bool)
         for name, (low, high) in limits.items():
             inside &= (self.columns[name] >= low) & (self.columns[name] <= high)
         return inside
 
-    def bands(self, formulation, zone="mean", **limits):
+    def bands(
+        self, formulation: str, zone: str = "mean", **limits: tuple[float, float]
+    ) -> tuple[float, float, float, float, int]:
         """Errors at 5, 50 and 95 % of the rows within `limits`, the share of them below 3 %, and their number."""
         error = self.columns[f"{formulation} {zone}"][self.rows(**limits)]
         error = error[np.isfinite(error)]
@@ -69,7 +78,7 @@ class ErrorMap:
             return (math.nan,) * 4 + (0,)
         return *np.percentile(error, [5, 50, 95]).tolist(), float((np.abs(error) < 0.03).mean()), error.size
 
-    def to_csv(self, path):
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write all columns, with a header."""
         with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
@@ -77,7 +86,14 @@ class ErrorMap:
             for row in zip(*self.columns.values(), strict=True):
                 table.writerow([f"{value:.6g}" for value in row])
 
-    def plot(self, path, formulations=None, x="load", y="bore_1", zone="mean"):
+    def plot(
+        self,
+        path: str | os.PathLike[str] | None,
+        formulations: Sequence[str] | None = None,
+        x: str = "load",
+        y: str = "bore_1",
+        zone: str = "mean",
+    ) -> "Figure":
         """Heat maps of the median error of healthy pairs over two columns, one for each formulation."""
         from ..pictures.stiffness_plots import plot_map
 
@@ -85,13 +101,21 @@ class ErrorMap:
         return plot_map(self, names, x, y, zone, path)
 
 
-def error_map(pairs=2000, *, seed=0, loads=LOADS, models=None, phases=24, workers=None, progress=None):
+def error_map(
+    pairs: int = 2000,
+    *,
+    seed: int = 0,
+    loads: Sequence[float] = LOADS,
+    models: Mapping[str, Callable[[GearPair, float, Material], OwnModel]] | None = None,
+    phases: int = 24,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> ErrorMap:
     """Errors of the closed forms, and of your own models, against `ritz` over a sample of gear pairs.
 
     A scrambled Sobol sequence over `RANGES`; samples that cannot be built or mesh, or whose crack leaves
-    the body, are passed over. Every pair is taken healthy,
-    and every second one also with a pinion crack from the 30-degree point at 45 degrees. Steel (206 GPa, 0.3), plane strain,
-    no contact beyond the path of contact, which closed forms do not know.
+    the body, are passed over. Every pair is taken healthy, and every second one also with a pinion crack from the 30-degree point
+    at 45 degrees. Steel (206 GPa, 0.3), plane strain, no contact beyond the path of contact, which closed forms do not know.
 
     Parameters
     ----------
@@ -117,7 +141,7 @@ def error_map(pairs=2000, *, seed=0, loads=LOADS, models=None, phases=24, worker
     """
     if pairs != int(pairs) or pairs < 1:
         raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")
-    shared = {"loads": tuple(loads), "models": dict(models or {}), "phases": int(phases)}
+    shared: dict[str, Any] = {"loads": tuple(loads), "models": dict(models or {}), "phases": int(phases)}
     cases = [{"sample": sample, **shared} for sample in _samples(int(pairs), seed)]
     done = batch(cases, work=_one, workers=workers, progress=progress)
     for result in done.results:

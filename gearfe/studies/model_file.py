@@ -1,11 +1,16 @@
 """A stiffness model as a text file with stated units: a table of any program, or a curve that gearfe wrote."""
 
 import math
+import os
 import re
 import warnings
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geometry.pair.gear_pair import GearPair
 
 from ..files import read_text
 from ..stiffness.curve import StiffnessCurve
@@ -44,13 +49,13 @@ class ModelFile:
 
     path: str
     abscissa: str
-    x: np.ndarray
-    k: np.ndarray
+    x: NDArray[np.float64]
+    k: NDArray[np.float64]
     per_width: bool = False
     phase_offset: float = 0.0
-    meta: dict = field(default_factory=dict)
+    meta: dict[str, Any] = field(default_factory=dict)
 
-    def total(self, pair, phase):
+    def total(self, pair: GearPair, phase: ArrayLike) -> NDArray[np.float64]:
         """Mesh stiffness at mesh phases, as the file has it: [N/m], or [N/m per m] if `per_width`.
 
         Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the
@@ -108,7 +113,7 @@ class ModelFile:
                 stacklevel=5,
             )
 
-    def single(self, pair, radius):
+    def single(self, pair: GearPair, radius: ArrayLike) -> NDArray[np.float64]:
         """Stiffness of one tooth pair touching at `radius` on the pinion [mm], linear between rows; units as `total`.
 
         Raises
@@ -127,10 +132,10 @@ class ModelFile:
             raise ValueError(
                 f"{self.path}: rows are up to {step:.4g} mm apart; sample every {COARSEST * (high - low):.4g} mm or finer"
             )
-        return np.interp(radius, self.x, self.k)
+        return np.interp(np.asarray(radius, dtype=float), self.x, self.k)
 
 
-def read_model(path, *, phase_offset=None):
+def read_model(path: str | os.PathLike[str], *, phase_offset: float | None = None) -> ModelFile:
     """Read a stiffness curve of any program, or one that gearfe wrote.
 
     Two columns separated by comma, semicolon or tab, numbers with a decimal point. Units are stated by a header line or by a

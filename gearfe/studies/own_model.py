@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..material import Material
 from ..stiffness.curve import StiffnessCurve
@@ -31,12 +32,16 @@ class PairModel:
         pair [N/m] over the whole width, shape (n,). It is asked for contacts on the path of contact only.
     """
 
-    function: Callable
+    function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse what cannot be called."""
         if not callable(self.function):
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
+
+
+# a function of the phase, or what says more of itself
+OwnModel = Callable[[NDArray[np.float64]], NDArray[np.float64]] | PairModel | OwnFlexibility | ModelFile | str | os.PathLike[str]
 
 
 def own_models(models, taken=()):

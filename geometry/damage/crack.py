@@ -25,20 +25,20 @@ class Crack:
     Parameters
     ----------
     level, length : float
-        One of them. ``0 < level < 1``.
+        Size of the crack, as a level (``0 < level < 1``) or as a length [mm]: give one of the two.
     angle : float
-        To the tooth centre-line [rad], default 45 degrees.
+        Angle between the crack and the tooth centre-line [rad], default 45 degrees.
     start : {"30deg", "root", "middle"}
-        Where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3), where the fillet meets the root
-        circle, or the middle of the fillet's arc.
+        Where it starts: where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3), where the fillet meets
+        the root circle, or in the middle of the fillet's arc.
     turning : bool
     tooth : int
         Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (see `GearPair.contacts`).
     side : {"loaded", "unloaded"}
         Flank side on which it starts.
     width : (float, float), optional
-        It is open between these heights z [mm], counted as those of a `Pit`; default the whole width, of both halves of a
-        herringbone gear.
+        Heights z [mm] between which it is open, counted as those of a `Pit`; default: the whole width, in a herringbone gear that
+        of both halves.
     ends : (float, float)
         The part of its length over which it is open at the two ends of `width`, linear in between: ``(1, 0)`` runs out.
 
@@ -61,7 +61,7 @@ class Crack:
     width: tuple[float, float] | None = None
     ends: tuple[float, float] = (1.0, 1.0)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("level", "length", "angle"):
             value = getattr(self, name)
@@ -95,7 +95,7 @@ class Crack:
             raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not both 0")
 
     @property
-    def through(self):
+    def through(self) -> bool:
         """Whether the crack is open over its whole length and over the whole width."""
         return self.width is None and self.ends == (1.0, 1.0)
 

@@ -23,18 +23,18 @@ class Pit:
     Parameters
     ----------
     radius : float
-        Of its centre: radius [mm] at which the flank touches there.
+        Radius of the flank point at its centre [mm], from the axis of the gear.
     z : float
-        Of its centre: distance [mm] from the end face at the back of the transverse section (x, y and z right-handed; the
+        Distance of its centre [mm] from the end face at the back of the transverse section (x, y and z right-handed; the
         loaded flank is on the right), from 0 to b. Of two meshing gears both are counted from the same end.
     axes : (float, float)
         Semi-axes along the profile and along the width [mm].
     depth : float
-        Along the flank normal [mm].
+        Depth along the flank normal [mm].
     angle : float
-        By which the axes are turned in the flank's tangent plane, the first from the profile towards +z [rad].
+        Angle by which the axes are turned in the flank's tangent plane, the first one from the profile towards +z [rad].
     tooth : int
-        Number of the tooth, as of a `Crack`.
+        Number of the tooth, counted as for a `Crack`.
     side : {"loaded", "unloaded"}
         Flank it lies on.
 
@@ -55,7 +55,7 @@ class Pit:
     tooth: int = 0
     side: str = "loaded"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("radius", "z", "depth", "angle"):
             object.__setattr__(self, name, _number(name, getattr(self, name)))
@@ -78,14 +78,14 @@ class Pit:
             raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
 
     @property
-    def form(self):
+    def form(self) -> tuple[float, float, float]:
         """Coefficients (A, B, C) of the edge ``A w**2 + 2 B u w + C u**2 = 1`` [1/mm**2]."""
         s, c = math.sin(self.angle), math.cos(self.angle)
         p, q = 1 / self.axes[0] ** 2, 1 / self.axes[1] ** 2
         return s * s * p + c * c * q, s * c * (p - q), c * c * p + s * s * q
 
     @property
-    def reach(self):
+    def reach(self) -> tuple[float, float]:
         """Half extents along the profile and along the width [mm]."""
         across, _, along = self.form
         area = self.axes[0] * self.axes[1]

@@ -30,11 +30,15 @@ mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shif
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..tooth.profile import cartesian, flank
+
+if TYPE_CHECKING:
+    from .gear_pair import GearPair
 
 STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
 SETTLED = 1e-7  # last step, in base pitches
@@ -51,15 +55,15 @@ class Contacts:
     formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th on the other.
     """
 
-    order: NDArray
-    nominal: NDArray
-    roll_1: NDArray
-    roll_2: NDArray
-    gap: NDArray
-    radius: NDArray
+    order: NDArray[np.int64]
+    nominal: NDArray[np.float64]
+    roll_1: NDArray[np.float64]
+    roll_2: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    radius: NDArray[np.float64]
 
 
-def contacts(pair, phase, *, extended=True) -> Contacts:
+def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Contacts:
     """Contacts of all tooth pairs of a `GearPair`.
 
     On the path of contact the gap is zero. Beyond it one tip corner slides on the other flank: the pinion's after the end, the
@@ -100,7 +104,9 @@ def contacts(pair, phase, *, extended=True) -> Contacts:
     return Contacts(order, nominal, roll_1, roll_2, gap, np.where(np.isfinite(gap) & (radius > 0), radius, 1.0))
 
 
-def approach(pair, roll, nominal, *, driver=True, start=0.0) -> tuple[NDArray, NDArray]:
+def approach(
+    pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True, start: float = 0.0
+) -> tuple[NDArray, NDArray]:
     """Approach, shared by both gears, at which a flank point touches the other flank (see the module).
 
     Parameters
@@ -133,7 +139,7 @@ def approach(pair, roll, nominal, *, driver=True, start=0.0) -> tuple[NDArray, N
     return np.where(there, gap, np.nan), np.where(there, met, np.nan)
 
 
-def opposite(pair, roll, nominal, *, driver=True) -> tuple[NDArray, NDArray]:
+def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
     """What a flank point faces when both gears stand as their contact at `nominal` has them.
 
     Parameters

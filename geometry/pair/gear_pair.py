@@ -6,11 +6,12 @@ from dataclasses import dataclass, field, replace
 from numbers import Real
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ..tooth.gear import Gear
 from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
-from .contacts import approach, contacts, opposite
+from .contacts import Contacts, approach, contacts, opposite
 from .interference import overlap, radial_assembly
 
 OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
@@ -49,10 +50,10 @@ class GearPair:
 
     gear_1: Gear
     gear_2: Gear
-    a: float | None = None
-    notes: tuple = field(default=(), init=False)
+    a: float = None  # type: ignore[assignment]  # None stands for the distance without backlash until __post_init__
+    notes: tuple[str, ...] = field(default=(), init=False)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse gears that cannot mesh; trim a ring's tip."""
         one, two = self.gear_1, self.gear_2
         if not isinstance(one, Gear) or not isinstance(two, Gear):
@@ -133,40 +134,40 @@ class GearPair:
             )
 
     @property
-    def outward(self):
+    def outward(self) -> int:
         """+1 for two external gears, -1 with a ring."""
         return self.gear_2.outward
 
     @property
-    def centre_2(self):
+    def centre_2(self) -> float:
         """Height of gear 2's centre over gear 1's [mm]: the pitch point is above gear 1."""
         return self.outward * self.a
 
     @property
-    def radial_assembly(self):
+    def radial_assembly(self) -> bool:
         """Whether the pinion can be put into its ring radially; always true without a ring."""
         return not self.gear_2.internal or radial_assembly(self)
 
     @property
-    def alpha_w(self):
+    def alpha_w(self) -> float:
         """Working transverse pressure angle [rad]."""
         return math.acos((self.gear_1.r_b * self.outward + self.gear_2.r_b) / self.a)
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Distance between the tangent points of the line of action on the two base circles [mm]."""
         return self.a * math.sin(self.alpha_w)
 
-    def mate_roll(self, roll_1):
+    def mate_roll(self, roll_1: ArrayLike) -> NDArray[np.float64]:
         """Roll length on gear 2 [mm] where the pinion touches at `roll_1`, on the line of action."""
         return self.length - self.outward * np.asarray(roll_1)
 
-    def relative_radius(self, roll_1, roll_2):
+    def relative_radius(self, roll_1: NDArray[np.float64], roll_2: NDArray[np.float64]) -> NDArray[np.float64]:
         """Relative radius of curvature [mm]."""
         return roll_1 * roll_2 / (roll_2 + self.outward * roll_1)
 
     @property
-    def backlash(self):
+    def backlash(self) -> float:
         """Normal backlash: play along the line of action [mm] (negative: the teeth overlap)."""
         one, two = self.gear_1, self.gear_2
         tooth_1 = 2 * (one.base_half_angle - inv(self.alpha_w))
@@ -174,12 +175,12 @@ class GearPair:
         return one.r_b * (2 * math.pi / one.z - tooth_1) - two.r_b * tooth_2
 
     @property
-    def p_bt(self):
+    def p_bt(self) -> float:
         """Transverse base pitch [mm]."""
         return self.gear_1.p_bt
 
     @property
-    def path(self):
+    def path(self) -> tuple[float, float]:
         """Start and end of the path of contact as roll lengths of the pinion [mm]."""
         start, end = self._overlap(self.gear_1.roll_a, self.gear_2.roll_a)
         return max(start, self.gear_1.roll_f), end
@@ -189,47 +190,47 @@ class GearPair:
         first, last = sorted((self.outward * (self.length - tip_2), self.outward * (self.length - self.gear_2.roll_f)))
         return first, min(last, tip_1)
 
-    def eps_alpha_of(self, tip_1, tip_2):
+    def eps_alpha_of(self, tip_1: float, tip_2: float) -> float:
         """Contact ratio if the flanks ended at these roll lengths [mm] and the pinion's fillet were no obstacle."""
         start, end = self._overlap(tip_1, tip_2)
         return (end - start) / self.p_bt
 
     @property
-    def eps_alpha(self):
+    def eps_alpha(self) -> float:
         """Transverse contact ratio, of the flanks that exist (tip circles, undercut)."""
         start, end = self.path
         return (end - start) / self.p_bt
 
     @property
-    def eps_beta(self):
+    def eps_beta(self) -> float:
         """Overlap ratio of the width both gears have in common, ``b tan(beta_b) / p_bt``; 0 for spur gears."""
         return self.eps_beta_of(min(self.gear_1.b, self.gear_2.b))
 
-    def eps_beta_of(self, width):
+    def eps_beta_of(self, width: float) -> float:
         """Overlap ratio of a part of the face, for example one half of a herringbone pair, `width` [mm] wide."""
         return width * math.tan(abs(self.gear_1.beta_b)) / self.p_bt
 
     @property
-    def pitch_phase(self):
+    def pitch_phase(self) -> float:
         """Phase at which the contact is at the pitch point."""
         return (self.gear_1.r_b * math.tan(self.alpha_w) - self.path[0]) / self.p_bt
 
     @property
-    def pitch_radius_1(self):
+    def pitch_radius_1(self) -> float:
         """Working pitch radius of the pinion [mm]: where its flank touches at the pitch point."""
         return self.gear_1.r_b / math.cos(self.alpha_w)
 
     @property
-    def pitch_radius_2(self):
+    def pitch_radius_2(self) -> float:
         """Working pitch radius of the wheel [mm]."""
         return self.gear_2.r_b / math.cos(self.alpha_w)
 
-    def curvature_radii(self, phase):
+    def curvature_radii(self, phase: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Radii of curvature [mm] of both flanks where the pair of `phase` touches."""
         roll = self.path[0] + np.asarray(phase) * self.p_bt
         return roll, self.mate_roll(roll)
 
-    def turn(self, nominal):
+    def turn(self, nominal: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Clockwise angles [rad] of tooth 0 of both gears for a contact at `nominal` [mm] on the line of action.
 
         Gear 1's centre is the origin, gear 2's at ``(0, centre_2)``. A ring's loaded flank faces the other way: its own
@@ -241,20 +242,24 @@ class GearPair:
         turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
         return turn_1, turn_2
 
-    def contacts(self, phase, *, extended=True):
+    def contacts(self, phase: ArrayLike, *, extended: bool = True) -> Contacts:
         """Contacts of all tooth pairs at `phase` (array), see `geometry.pair.contacts`."""
         return contacts(self, phase, extended=extended)
 
-    def opposite(self, roll, nominal, *, driver=True):
+    def opposite(
+        self, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """What a flank point faces when its pair is at `nominal` [mm], see `geometry.pair.contacts.opposite`."""
         return opposite(self, roll, nominal, driver=driver)
 
-    def approach(self, roll, nominal, *, driver=True, start=0.0):
+    def approach(
+        self, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True, start: float = 0.0
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Approach at which a flank point touches the other flank, see `geometry.pair.contacts.approach`."""
         return approach(self, roll, nominal, driver=driver, start=start)
 
 
-def free_centre_distance(one, two):
+def free_centre_distance(one: Gear, two: Gear) -> float:
     """Centre distance without backlash [mm] (ISO 21771:2007, 7.3)."""
     teeth = one.z + two.outward * two.z
     shift = one.x + two.outward * two.x

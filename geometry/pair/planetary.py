@@ -31,9 +31,9 @@ class PlanetarySet:
     planet: Gear
     ring: Gear
     n_planets: int
-    a: float | None = None
+    a: float = None  # type: ignore[assignment]  # None stands for the distance without backlash until __post_init__
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Check closure, spacing and neighbours."""
         if not self.ring.internal or self.sun.internal or self.planet.internal:
             raise ValueError("sun and planet are external gears (r_bore), the ring is given by r_rim")
@@ -60,18 +60,18 @@ class PlanetarySet:
         if self.n_planets > 1 and room <= 0:
             raise ValueError(f"{self.n_planets} planets touch each other: their tips overlap by {-room:.4g} mm; use fewer")
 
-    def closing_shift(self):
+    def closing_shift(self) -> float:
         """Profile shift of the ring [m_n] with which planet and ring mesh without backlash at `a`."""
         one, two = self.planet, self.ring
         alpha_w = math.acos((two.r_b - one.r_b) / self.a)
         return one.x + (inv(alpha_w) - inv(one.alpha_t)) * (two.z - one.z) / (2 * math.tan(one.alpha_n))
 
     @property
-    def sun_planet(self):
+    def sun_planet(self) -> GearPair:
         """The outer mesh."""
         return GearPair(self.sun, self.planet, self.a)
 
     @property
-    def planet_ring(self):
+    def planet_ring(self) -> GearPair:
         """The inner mesh."""
         return GearPair(self.planet, self.ring, self.a)
