@@ -69,20 +69,31 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
     return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))
 
 
-def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push, bent):
+def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push, bent, stepped, pushing):
     """Force of a mesh, of numbers or of arrays; see `force`.
 
-    Written without branches, so that numpy takes arrays through it and numba compiles it for numbers. `bent`: whether any
-    power is not 1. Where the flanks are apart both depths are zero, and with them the spring.
+    Written so that numpy takes arrays through it and numba compiles it for numbers. `bent`, `stepped`, `pushing`: whether any
+    power is not 1, any damping grows with depth, any flank only pushes. Where the flanks are apart both depths are zero, and
+    with them the spring.
     """
     front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
     ahead, behind = front > 0, rear > 0
     inside = ahead | behind
-    u = np.minimum((front + rear) * per_depth, 1.0)
-    share = inside * (u * u * (3 - 2 * u) + (per_depth == 0)) + (1 - inside) * film
+    full = 1.0
+    if stepped:
+        u = np.minimum((front + rear) * per_depth, 1.0)
+        full = u * u * (3 - 2 * u) + (per_depth == 0)
+    share = film + inside * (full - film)
     spring = front**power - rear**power if bent else front - rear
     out = k * spring + (damping + beta * k) * share * v
-    return push * (ahead * np.maximum(out, 0.0) + behind * np.minimum(out, 0.0)) + (1 - push) * out
+    if pushing:
+        return push * (ahead * np.maximum(out, 0.0) + behind * np.minimum(out, 0.0)) + (1 - push) * out
+    return out
+
+
+def branches(law):
+    """Which parts of `contact_force` a law needs: ``bent, stepped, pushing``."""
+    return bool((law["power"] != 1).any()), bool((law["per_depth"] != 0).any()), bool(law["push"].any())
 
 
 def force(x, v, k, law):
@@ -101,7 +112,7 @@ def force(x, v, k, law):
     law : dict of ndarray, shape (m,)
         `LAW` (see `gearfe.machine.gear_mesh.GearMesh`; ``per_depth`` is one over its depth, or 0).
     """
-    return contact_force(x, v, k, *(law[key] for key in LAW), np.any(law["power"] != 1))
+    return contact_force(x, v, k, *(law[key] for key in LAW), *branches(law))
 
 
 def slopes(x, v, k, law):

@@ -46,46 +46,40 @@ class Step:
     """
 
     def __init__(self, plan, columns=()):
-        self.width = plan.levels[0][2].shape[1]
-        self.rows = self.width if plan.affine else len(plan.P)
-        self.levels = [self._stacked(plan, *one) for one in plan.levels]
-        n, rows, wide = plan.P.shape[1], self.rows, self.width
-        self.both = np.empty((n + 3 * rows, *columns))  # z, x1, x2 or x3, x4 without the forces of the step
-        self.parts = tuple(self.both[low:high] for low, high in ((0, n), *((n + i * rows, n + (i + 1) * rows) for i in range(3))))
-        self.extra = np.empty((n, *columns))
-        self.stages = tuple(np.empty((rows, *columns)) for _ in range(3))
-        f = self.forces = np.zeros((4 * wide, *columns))  # of the stages 1, 3, 4, 2
-        self.each = tuple(f[i * wide : (i + 1) * wide] for i in (0, 3, 1, 2))
-        self.f13, self.f134 = f[: 2 * wide], f[: 3 * wide]
+        n, wide = plan.P.shape[1], plan.levels[0][2].shape[1]
+        self.width, self.rows = wide, wide if plan.affine else len(plan.P)
+        self.P = self._padded(plan.P)
+        self.levels = [self._joined(len(plan.P), *one) for one in plan.levels]
+        # f2, z, f1, f3 and f4 below each other: each stage is one product with a part of them
+        whole = np.zeros((n + 4 * wide, *columns))
+        self.all, self.upper, self.lower = whole[wide:], whole[: wide + n], whole[wide : n + 2 * wide]
+        self.z, self.longer = whole[wide : wide + n], whole[wide : n + 3 * wide]
+        self.forces = (self.all[n : n + wide], whole[:wide], self.all[n + wide : n + 2 * wide], self.all[n + 2 * wide :])
+        self.start = np.empty((self.rows, *columns))
+        self.stages = tuple(np.empty((self.rows, *columns)) for _ in range(3))
 
-    def _stacked(self, plan, E, Y, S, T, F):
-        p = len(plan.P)
+    def _padded(self, matrix):
+        return np.concatenate([matrix, np.zeros((self.rows - len(matrix), matrix.shape[1]))])
 
-        def pad(matrix):
-            return np.concatenate([matrix, np.zeros((self.rows - p, matrix.shape[1]))])
-
-        return np.concatenate([dense(E), pad(plan.P), pad(Y[:p]), pad(Y[p:])]), pad(S), pad(T), F
+    def _joined(self, p, E, Y, S, T, F):
+        parts = [Y[:p], S], [S, Y[:p]], [Y[p:], T]
+        return *(self._padded(np.hstack(one)) for one in parts), np.hstack([dense(E), F])
 
     def __call__(self, z, level, force, j):
         """State one step of `level` after `z`.
 
         ``force(x, out, i)`` fills in the forces at x ``(rows, ...)``, i half steps after that of ``i = j``, the step's start.
         """
-        whole, S, T, F = self.levels[level]
-        new, x1, y, w = self.parts
-        x2, x3, x4 = self.stages
-        f1, f2, f3, f4 = self.each
-        whole.dot(z, self.both)
+        second, third, fourth, end = self.levels[level]
+        x1, (x2, x3, x4), (f1, f2, f3, f4) = self.start, self.stages, self.forces
+        self.z[:] = z
+        self.P.dot(z, x1)
         force(x1, f1, j)
-        S.dot(f1, x2)
-        x2 += y
+        second.dot(self.lower, x2)
         force(x2, f2, j + 1)
-        S.dot(f2, x3)
-        x3 += y
+        third.dot(self.upper, x3)
         force(x3, f3, j + 1)
-        T.dot(self.f13, x4)
-        x4 += w
+        fourth.dot(self.longer, x4)
         force(x4, f4, j + 2)
         f3 += f2
-        F.dot(self.f134, self.extra)
-        return new + self.extra
+        return end.dot(self.all)

@@ -1,4 +1,4 @@
-"""What the loops compiled by numba share: tables looked up at a time, and products along memory."""
+"""What the loops compiled by numba share: tables looked up, and products along memory."""
 
 from importlib.util import find_spec
 
@@ -20,51 +20,83 @@ def _cubic(cells, place, count, at):
     return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def lookup(flat, t, now):
-    """Fill in what acts at time t: stiffnesses, errors and their rates, weights of friction rows, loads."""
-    k, e, rate, weight, load = now
-    for i in range(k.size):
-        e[i] = rate[i] = 0.0
-        if flat.twin[i] == i:
-            phase = flat.phase[i] + flat.frequency[i] * t
-            k[i] = _cubic(flat.cells, flat.place[i], flat.count[i], (phase - np.floor(phase)) * flat.count[i])
-    for j in range(flat.change_mesh.size):
-        i = flat.change_mesh[j]
-        if flat.twin[i] != i:
-            continue
-        z, own = flat.change[j, 0], flat.phase[i] + flat.frequency[i] * t - flat.change[j, 1] - flat.change[j, 2]
-        own = (own - z * np.floor(own / z)) / flat.change[j, 3]
-        if own < flat.change_count[j]:
-            k[i] += _cubic(flat.cells, flat.change_place[j], flat.change_count[j], own)
-    if flat.change_mesh.size:
-        for i in range(k.size):
-            k[i] = max(k[i], 0.0)
-    for i in range(k.size):
-        k[i] = k[flat.twin[i]]
-    for j in range(flat.error_mesh.size):
-        turn = flat.error[j, 1] * t + flat.error[j, 2]
-        e[flat.error_mesh[j]] += flat.error[j, 0] * np.sin(turn)
-        rate[flat.error_mesh[j]] += flat.error[j, 0] * flat.error[j, 1] * np.cos(turn)
-    for j in range(flat.rub_mesh.size):
-        i = flat.rub_mesh[j]
-        phase = flat.phase[i] + flat.frequency[i] * t
-        weight[j] = _cubic(flat.cells, flat.rub_place[j], flat.rub_count[j], (phase - np.floor(phase)) * flat.rub_count[j])
-    for j in range(load.size):
-        low, high = flat.knot_place[j], flat.knot_place[j + 1]
-        load[j] = np.interp(t, flat.knots[low:high, 0], flat.knots[low:high, 1])
+@njit(cache=True, error_model="numpy")
+def _load(knots, low, high, t):
+    """Straight between knots ``low <= i < high``, constant before and after them; a knot twice is a jump, and its end counts."""
+    if t >= knots[high - 1, 0]:
+        return knots[high - 1, 1]
+    if t < knots[low, 0]:
+        return knots[low, 1]
+    while high - low > 1:
+        middle = (low + high) // 2
+        if knots[middle, 0] <= t:
+            low = middle
+        else:
+            high = middle
+    return knots[low, 1] + (t - knots[low, 0]) * (knots[low + 1, 1] - knots[low, 1]) / (knots[low + 1, 0] - knots[low, 0])
 
 
 @njit(cache=True, error_model="numpy")
-def add_columns(out, columns, x):
-    """``out += columns.T @ x``, four columns at a time, along memory."""
-    n, whole = out.size, x.size // 4 * 4
-    for j in range(0, whole, 4):
-        a, b, c, d = x[j], x[j + 1], x[j + 2], x[j + 3]
-        one, two, three, four = columns[j], columns[j + 1], columns[j + 2], columns[j + 3]
+def lookup(flat, now, first, last, origin, h, low, share):
+    """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
+
+    A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
+    loads. Many times at once, for a compiled function takes its time to find the tables.
+    """
+    cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
+    change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
+    error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
+    rub_mesh, rub_place, rub_count = flat.rub_mesh, flat.rub_place, flat.rub_count
+    m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
+    for row in range(first, last):
+        t = origin + h * (low + share * (row - first))
+        for i in range(m):
+            now[row, m + i] = now[row, 2 * m + i] = 0.0
+            if twin[i] == i:
+                phase = phases[i] + frequency[i] * t
+                now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
+        for j in range(changes):
+            i = change_mesh[j]
+            if twin[i] == i:
+                z, own = change[j, 0], phases[i] + frequency[i] * t - change[j, 1] - change[j, 2]
+                own = (own - z * np.floor(own / z)) / change[j, 3]
+                if own < change_count[j]:
+                    now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
+        for i in range(m):
+            now[row, i] = now[row, twin[i]]
+            if changes:
+                now[row, i] = max(now[row, i], 0.0)
+        for j in range(error_mesh.size):
+            i, turn = error_mesh[j], error[j, 1] * t + error[j, 2]
+            now[row, m + i] += error[j, 0] * np.sin(turn)
+            now[row, 2 * m + i] += error[j, 0] * error[j, 1] * np.cos(turn)
+        for j in range(rub):
+            i = rub_mesh[j]
+            phase = phases[i] + frequency[i] * t
+            now[row, 3 * m + j] = _cubic(cells, rub_place[j], rub_count[j], (phase - np.floor(phase)) * rub_count[j])
+        for j in range(loads):
+            now[row, 3 * m + rub + j] = _load(knots, knot_place[j], knot_place[j + 1], t)
+
+
+@njit(cache=True, error_model="numpy")
+def stage(out, base, at, columns, level, x, first):
+    """``out = base[at:] + columns[level].T @ x[first:]``, four columns at a time, along memory."""
+    n, last = out.size, first + columns.shape[1]
+    for i in range(n):
+        out[i] = base[at + i]
+    j = 0
+    for k in range(first, last - 3, 4):
+        a, b, c, d = x[k], x[k + 1], x[k + 2], x[k + 3]
         for i in range(n):
-            out[i] += one[i] * a + two[i] * b + three[i] * c + four[i] * d
-    for j in range(whole, x.size):
-        value, one = x[j], columns[j]
+            out[i] += (
+                columns[level, j, i] * a
+                + columns[level, j + 1, i] * b
+                + columns[level, j + 2, i] * c
+                + columns[level, j + 3, i] * d
+            )
+        j += 4
+    for k in range(first + j, last):
+        a = x[k]
         for i in range(n):
-            out[i] += one[i] * value
+            out[i] += columns[level, j, i] * a
+        j += 1

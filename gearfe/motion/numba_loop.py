@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..machine.contact_law import LAW, contact_force
+from ..machine.contact_law import LAW, branches, contact_force
 from .exponential import UNSTABLE
-from .numba_lookup import add_columns, lookup, njit
+from .numba_lookup import lookup, njit, stage
 
+CHUNK = 64  # steps whose stiffnesses are looked up at once
 _force = njit(cache=True, error_model="numpy")(contact_force)
 
 
@@ -18,7 +19,7 @@ class Matrices(NamedTuple):
     """Those of the step by level, columns one after the other so that the loops over them run along memory.
 
     `PF` is ``P F`` below F: what the forces add to z, and to x at the end of the step. `add` and `push` are what constant loads
-    add to y and w, and to z and P z.
+    add to y and w, and to z and P z, level after level in one row.
     """
 
     E: np.ndarray
@@ -45,7 +46,7 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
         knots=np.concatenate(changing) if changing else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, changing)])
     )
     laws = np.array([machine.law[key].astype(float) for key in LAW]).T.copy()
-    kind = plan.affine, bool((machine.law["power"] != 1).any()), len(plan.P) > len(machine.meshes)
+    kind = plan.affine, len(plan.P) > len(machine.meshes), *branches(machine.law)
     linear = np.stack([plan.k, plan.c])
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
@@ -69,122 +70,138 @@ def _matrices(plan, kept, still):
         add = np.concatenate([S @ still, T @ np.concatenate([still, still])])
         push = PF @ np.concatenate([still, 2 * still, still])
         parts.append((E, Y.T, columns(S), columns(T), columns(PF), add, push))
-    return Matrices(*(np.stack([np.ascontiguousarray(part) for part in one]) for one in zip(*parts, strict=True)), plan.P)
+    E, Y, S, T, PF, add, push = (np.stack([np.ascontiguousarray(part) for part in one]) for one in zip(*parts, strict=True))
+    return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), plan.P)
 
 
 @njit(cache=True, error_model="numpy")
-def _forces(out, x, now, laws, kind, linear, rub_mesh, total):
-    """Forces of the meshes and friction rows beyond the linear part, and loads that change."""
-    k, e, rate, weight, load = now
-    affine, bent, rates = kind
-    m, rub = k.size, rub_mesh.size
-    for j in range(load.size):
-        out[m + rub + j] = load[j]
+def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total):
+    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``."""
+    affine, rates, bent, stepped, pushing = kind
+    m, rub = total.size, rub_mesh.size
+    for j in range(now.shape[1] - 3 * m - rub):
+        g[first + m + rub + j] = now[row, 3 * m + rub + j]
     if affine:  # every mesh stays closed: the same, without asking where it is
         for i in range(m):
-            out[i] = (k[i] - linear[0, i]) * x[i] - k[i] * e[i] - (laws[i, 1] + laws[i, 2] * k[i]) * rate[i]
+            k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
+            g[first + i] = (k - linear[0, i]) * x[i] - k * e - (laws[i, 1] + laws[i, 2] * k) * rate
         return
     for i in range(m):
-        v, law = x[m + i] if rates else 0.0, laws[i]
-        whole = _force(x[i] - e[i], v - rate[i], k[i], law[0], law[1], law[2], law[3], law[4], law[5], law[6], bent)
-        out[i] = whole - linear[0, i] * x[i] - linear[1, i] * v
+        v = x[m + i] if rates else 0.0
+        k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
+        law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
+        whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
+        g[first + i] = whole - linear[0, i] * x[i] - linear[1, i] * v
         total[i] = whole
     for j in range(rub):
-        out[m + j] = weight[j] * total[rub_mesh[j]]
+        g[first + m + j] = now[row, 3 * m + j] * total[rub_mesh[j]]
 
 
 @njit(cache=True, error_model="numpy")
-def _sides(side, x, e, laws):
+def _side(own, backlash):
     """1 where the front flanks touch, -1 the back ones, 0 none."""
-    for i in range(side.size):
-        own = x[i] - e[i]
-        side[i] = 1.0 if own > 0 else (-1.0 if own < -laws[i, 4] else 0.0)
+    return 1.0 if own > 0 else (-1.0 if own < -backlash else 0.0)
 
 
 @njit(cache=True, error_model="numpy")
-def _changed(side, x, e, laws):
+def _changed(side, x, now, row, laws):
     """Whether a mesh that can open is not on the side given."""
-    for i in range(side.size):
-        own = x[i] - e[i]
-        if laws[i, 4] > 0 and side[i] != (1.0 if own > 0 else (-1.0 if own < -laws[i, 4] else 0.0)):
+    m = side.size
+    for i in range(m):  # noqa: SIM110 (numba has no generators here)
+        if laws[i, 4] > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i, 4]):
             return True
     return False
 
 
 @njit(cache=True, error_model="numpy")
-def _stage(x, base, columns, f):
-    """``x = base + columns.T @ f``."""
-    for i in range(x.size):
-        x[i] = base[i]
-    add_columns(x, columns, f)
+def _losses(side, x, now, row, laws):
+    """Bring the sides up to date; how many meshes that can open have opened."""
+    m, lost = side.size, 0
+    for i in range(m):
+        seen = _side(x[i] - now[row, m + i], laws[i, 4])
+        lost += laws[i, 4] > 0 and side[i] != 0.0 and seen == 0.0
+        side[i] = seen
+    return lost
+
+
+@njit(cache=True, error_model="numpy")
+def _propagate(new, E, level, z):
+    """``new[:n] += E[level] z`` of blocks along a diagonal."""
+    if E.shape[2] == 2:
+        for j in range(E.shape[1]):
+            a, b = z[2 * j], z[2 * j + 1]
+            new[2 * j] += E[level, j, 0, 0] * a + E[level, j, 0, 1] * b
+            new[2 * j + 1] += E[level, j, 1, 0] * a + E[level, j, 1, 1] * b
+    else:
+        for i in range(z.size):
+            for j in range(z.size):
+                new[i] += E[level, 0, i, j] * z[j]
 
 
 @njit(cache=True, error_model="numpy")
 def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts):
+    """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, P = matrices
-    m, p, f, n, size, last = len(laws), P.shape[0], S.shape[1], z.size, E.shape[2], len(E) - 1
-    rub, whole, opens = flat.rub_mesh, 1 << last, last > 0
+    m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
+    whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
+    now = np.zeros((own + 3, 3 * m + f - m))
     g = np.zeros(4 * f)  # forces of the stages 1, 3, 4, 2
-    f1, f3, f4, f2, f13, f134 = g[:f], g[f : 2 * f], g[2 * f : 3 * f], g[3 * f :], g[: 2 * f], g[: 3 * f]
-    y, x, x0, new, total = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(m)
-    before, after, end = y[:p], y[p:], new[n:]
-    side, seen = np.zeros(m), np.zeros(m)
-    k, e, rate = np.zeros((3, m)), np.zeros((3, m)), np.zeros((3, m))
-    weight, load = np.zeros((3, rub.size)), np.zeros((3, f - m - rub.size))
-    low = (k[0], e[0], rate[0], weight[0], load[0])
-    middle = (k[1], e[1], rate[1], weight[1], load[1])
-    high = (k[2], e[2], rate[2], weight[2], load[2])
-    lookup(flat, start, low)
-    _sides(side, x0, e[0], laws)
-    known, edge = start, 0  # time whose values stand in `low`
+    y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
+    total, side, edge = np.zeros(m), np.zeros(m), 0
+    lookup(flat, now, 0, 1, start, h, 0.0, 0.0)
+    _losses(side, x0, now, 0, laws)
     states[0] = z
     steps = (len(states) - 1) * every
     for step in range(steps):
-        at, level = 0, 0
+        if step % CHUNK == 0:
+            if not np.isfinite(np.sum(z)):
+                return step
+            lookup(flat, now, 0, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
+        at, level, known = 0, 0, -1  # `known`: the part whose end stands in the last row
         while at < whole:
             while at & ((whole >> level) - 1):
                 level += 1
             part = whole >> level
-            own, t = h * part / whole, start + h * (step + at / whole)
-            if known != t:
-                lookup(flat, t, low)
-                known = t
-            while edges[edge] <= t + 1e-6 * own:
+            low, high = step + at / whole, step + (at + part) / whole
+            while edges[edge] <= start + h * (low + 1e-6 * (high - low)):
                 edge += 1
-            broken = opens and edges[edge] < t + (1 - 1e-6) * own
-            if level < last and broken:
+            if level < last and edges[edge] < start + h * (high - 1e-6 * (high - low)):
                 level += 1
                 counts[1] += 1
                 continue
-            lookup(flat, t + own / 2, middle)
-            lookup(flat, start + h * (step + (at + part) / whole), high)
-            _stage(y, add[level], Y[level], z)
-            _forces(f1, x0, low, laws, kind, linear, rub, total)
-            _stage(x, before, S[level], f1)
-            change = opens and _changed(side, x, middle[1], laws)
-            _forces(f2, x, middle, laws, kind, linear, rub, total)
-            _stage(x, before, S[level], f2)
-            change = change or (opens and _changed(side, x, middle[1], laws))
-            _forces(f3, x, middle, laws, kind, linear, rub, total)
-            _stage(x, after, T[level], f13)
-            change = change or (opens and _changed(side, x, high[1], laws))
-            _forces(f4, x, high, laws, kind, linear, rub, total)
+            row = 2 * (step % CHUNK)
+            if level > 0:
+                row = own
+                if known == at:
+                    for i in range(now.shape[1]):
+                        now[own, i] = now[own + 2, i]
+                else:
+                    lookup(flat, now, own, own + 1, start, h, low, 0.0)
+                lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
+                known = at + part
+            stage(y, add, 2 * p * level, Y, level, z, 0)
+            _forces(g, 0, x0, now, row, laws, kind, linear, rub, total)
+            stage(x, y, 0, S, level, g, 0)
+            change = opens and _changed(side, x, now, row + 1, laws)
+            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total)
+            stage(x, y, 0, S, level, g, 3 * f)
+            change = change or (opens and _changed(side, x, now, row + 1, laws))
+            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total)
+            stage(x, y, p, T, level, g, 0)
+            change = change or (opens and _changed(side, x, now, row + 2, laws))
+            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total)
             for i in range(f):
-                f3[i] += f2[i]
-            _stage(new, push[level], PF[level], f134)
+                g[f + i] += g[3 * f + i]
+            stage(new, push, (n + p) * level, PF, level, g, 0)
             for i in range(p):  # the loads in y are those of x4, in new those of the end
-                end[i] += after[i] - add[level, p + i]
-            if level < last and (change or _changed(side, end, high[1], laws)):
+                end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
+            if level < last and (change or _changed(side, end, now, row + 2, laws)):
                 level += 1
                 counts[1] += 1
                 continue
-            _propagate(new, E[level], z, size)
+            _propagate(new, E, level, z)
             if opens:
-                _sides(seen, end, high[1], laws)
-                for i in range(m):
-                    if laws[i, 4] > 0 and side[i] != 0.0 and seen[i] == 0.0:
-                        counts[2] += 1
-                side[:] = seen
+                counts[2] += _losses(side, end, now, row + 2, laws)
             for i in range(n):
                 z[i] = new[i]
             for i in range(p):
@@ -192,29 +209,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
             at += part
             counts[0] += 1
             level = max(0, level - 1) if at == whole else max(1, level - 1)
-            known = start + h * (step + at / whole)
-            for i in range(m):
-                k[0, i], e[0, i], rate[0, i] = k[2, i], e[2, i], rate[2, i]
-            for i in range(rub.size):
-                weight[0, i] = weight[2, i]
-            for i in range(load.shape[1]):
-                load[0, i] = load[2, i]
-        if step % 64 == 0 and not np.isfinite(np.sum(z)):
-            return step
         if (step + 1) % every == 0:
-            states[(step + 1) // every] = z
+            for i in range(n):
+                states[(step + 1) // every, i] = z[i]
     return steps if np.isfinite(np.sum(z)) else steps - 1
-
-
-@njit(cache=True, error_model="numpy")
-def _propagate(new, E, z, size):
-    """``new[:n] += E z`` of blocks along a diagonal."""
-    if size == 2:
-        for j in range(len(E)):
-            a, b = z[2 * j], z[2 * j + 1]
-            new[2 * j] += E[j, 0, 0] * a + E[j, 0, 1] * b
-            new[2 * j + 1] += E[j, 1, 0] * a + E[j, 1, 1] * b
-    else:
-        for i in range(z.size):
-            for j in range(z.size):
-                new[i] += E[0, i, j] * z[j]

@@ -6,7 +6,7 @@ A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe
 import numpy as np
 from numpy import add, multiply
 
-from ..machine.contact_law import force
+from ..machine.contact_law import LAW, branches, contact_force
 from . import excitation
 from .exponential import UNSTABLE, Step
 
@@ -89,6 +89,7 @@ class _Forces:
 
     def __init__(self, plan, machine, flat):
         self.plan, self.flat, self.law, self.m = plan, flat, machine.law, len(machine.meshes)
+        self.values = *(self.law[key] for key in LAW), *branches(self.law)
         self.rub, self.rates = len(flat.rub_mesh), len(plan.P) > len(machine.meshes)
 
     def at(self, times):
@@ -102,7 +103,7 @@ class _Forces:
         """Forces `out` at x, at the time of number i; for `gearfe.motion.exponential.Step`."""
         m, plan, rub = self.m, self.plan, self.rub
         v = x[m:] if self.rates else 0.0
-        total = force(x[:m] - self.e[i], v - self.rate[i], self.k[i], self.law)
+        total = contact_force(x[:m] - self.e[i], v - self.rate[i], self.k[i], *self.values)
         out[:m] = total - plan.k * x[:m] - (plan.c * v if self.rates else 0.0)
         if rub:
             out[m : m + rub] = self.weight[i] * total[self.flat.rub_mesh]
