@@ -52,6 +52,7 @@ _HOME = {
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",
     "mesh_stiffness": "gearfe.stiffness.solve",
+    "new_scene": "gearfe.scene.new",
     "order_spectrum": "gearfe.signal.orders",
     "phase_portrait": "gearfe.motion.portrait",
     "pitted_helical": "gearfe.machine.helical_pair",

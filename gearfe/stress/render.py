@@ -1,10 +1,7 @@
 """Pictures of stress fields (pyvista), without a screen."""
 
 import contextlib
-import ctypes
 import math
-import os
-import sys
 
 import numpy as np
 
@@ -13,12 +10,8 @@ from ..pictures.stiffness_plots import plot_contact
 from ..stiffness.inputs import by_gear
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
+from .window import drawing_library
 
-RENDERER_HELP = (
-    "rendering needs pyvista and, without a screen, EGL or OSMesa: "
-    "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
-)
-OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
@@ -70,7 +63,7 @@ def render_stress(scene_pair, path, *, case=None, phase=None, size=(1400, 1050),
     """
     suffix = suffix_of(path, "stress")
     if suffix == ".png":
-        _pyvista()
+        drawing_library()
     damage = scene_pair.case(case).get("damage")
     wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
     fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
@@ -134,19 +127,10 @@ def _text(title, told):
     return "\n".join(line for line in lines if line)
 
 
-def _pyvista():
-    try:
-        import pyvista
-    except ImportError as error:
-        raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
-    _choose_window()
-    return pyvista
-
-
 @contextlib.contextmanager
 def _picture(path, size, text, top):
     """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
-    pyvista = _pyvista()
+    pyvista = drawing_library()
     from pyvista.plotting.colors import get_cmap_safe
 
     bright = get_cmap_safe("turbo")(np.linspace(0.07, 0.97, 256), bytes=True)
@@ -264,17 +248,3 @@ def _draw_tooth(pair, fields, told, path, size):
         light = focus + 200 * gear.m_n * (view + 0.7 * up)
         plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
         plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
-
-
-def _choose_window():
-    """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none."""
-    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
-        return
-    for library, window in OFFSCREEN.items():
-        try:
-            ctypes.CDLL(library)
-        except OSError:
-            continue
-        os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = window
-        return
-    raise RuntimeError(f"no display, and neither of {', '.join(OFFSCREEN)} can be loaded: {RENDERER_HELP}")
