@@ -87,7 +87,7 @@ def check_output(path, kind):
     ----------
     path : str or path
     kind : str
-        What will be written, one of those that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``deck``.
+        What will be written, one that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``page``, ``deck``.
 
     Raises
     ------
@@ -262,5 +262,6 @@ FORMATS = {
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
     ".vtu": Format(("stress",)),
+    ".html": Format(("page",)),
     ".inp": Format(("deck",)),
 }

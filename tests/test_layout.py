@@ -24,7 +24,7 @@ FLOORS = (  # from the ground: a room imports only from floors below its own
     ("gearfe/machine",),
     ("gearfe/motion", "gearfe/stress"),
     ("gearfe/studies",),
-    ("gearfe/report", "gearfe/cli"),
+    ("gearfe/reports", "gearfe/cli"),
     ("validation",),
 )
 FLOOR = {room: number for number, rooms in enumerate(FLOORS) for room in rooms}

@@ -6,7 +6,7 @@ from .progress import working
 def report(arguments):
     """``gearfe report``."""
     from ..files import check_output
-    from ..report.page import report as run
+    from ..reports.page import report as run
 
     check_output(arguments.output, "page")
     with working("report") as tell:

@@ -176,7 +176,7 @@ def _lines(field, scale, kept=None, lift=0.0):
     return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
 
 
-def _round_up(value):
+def rounded_up(value):
     """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(value))
     return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
@@ -189,7 +189,7 @@ def _draw_gears(pair, fields, told, path, size):
     scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
     if scale:
         shown = [field for field in fields if field.opening > 0]
-    with _picture(path, size, told["text"], _round_up(max(field.root for field in shown))) as (plotter, look):
+    with _picture(path, size, told["text"], rounded_up(max(field.root for field in shown))) as (plotter, look):
         for k, field in enumerate(shown):
             plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
             plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
@@ -234,7 +234,7 @@ def _draw_tooth(pair, fields, told, path, size):
     focus = plane.T @ ((low + high) / 2)
     wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
-    with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
+    with _picture(path, size, told["text"], rounded_up(told["root"])) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
         plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
