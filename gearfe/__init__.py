@@ -2,7 +2,7 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
-`motion`, `stress`; `studies`; `cli`.
+`motion`, `stress`; `studies`; `reports`, `cli`.
 """
 
 import importlib
@@ -53,6 +53,7 @@ _HOME = {
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",
     "mesh_stiffness": "gearfe.stiffness.solve",
+    "new_scene": "gearfe.scene.new",
     "order_spectrum": "gearfe.signal.orders",
     "phase_portrait": "gearfe.motion.portrait",
     "pitted_helical": "gearfe.machine.helical_pair",
@@ -68,6 +69,7 @@ _HOME = {
     "read_model": "gearfe.studies.model_file",
     "read_signal": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
+    "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
     "spectral_kurtosis": "gearfe.signal.kurtogram",

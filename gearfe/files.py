@@ -11,6 +11,7 @@ import tempfile
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
@@ -86,7 +87,7 @@ def check_output(path, kind):
     ----------
     path : str or path
     kind : str
-        What will be written, one of those that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``deck``.
+        What will be written, one that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``page``, ``deck``.
 
     Raises
     ------
@@ -152,6 +153,20 @@ def read(path, kind):
         If its suffix holds no such content, or it cannot be read or is no file of its format.
     """
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
+
+
+def needed(name, extra):
+    """Module `name` of an optional library.
+
+    Raises
+    ------
+    RuntimeError
+        If it cannot be imported; the message has the command that installs it.
+    """
+    try:
+        return import_module(name)
+    except ImportError as error:
+        raise RuntimeError(f"this needs {name} ({error}): pip install {name}, or pip install 'gearfe[{extra}]'") from error
 
 
 def write_csv(name, content):
@@ -247,5 +262,6 @@ FORMATS = {
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
     ".vtu": Format(("stress",)),
+    ".html": Format(("page",)),
     ".inp": Format(("deck",)),
 }

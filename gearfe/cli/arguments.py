@@ -4,7 +4,7 @@ import argparse
 import os
 
 from ..stiffness.methods import NAMES, described, having
-from . import shell
+from . import shell, tools
 from . import verbs as run
 
 
@@ -82,8 +82,25 @@ def main(argv=None):
     verb.add_argument("--fault", type=float, metavar="HZ", help="how often the faulty tooth meshes")
     verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
     _analysis_arguments(verb)
+    verb = _verb(
+        verbs, "report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration"
+    )
+    verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
+    verb.add_argument("--case", metavar="NAME", help="case of damage shown beside healthy (default: the scene's first)")
+    verb.add_argument("--duration", type=float, default=0.2, metavar="S", help="of the machine's vibration [s] (default: 0.2)")
+    verb.add_argument("-o", "--output", metavar="FILE", required=True, help="the page: .html")
+    verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with comments")
+    verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
+    verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
+    verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
+    verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
+    verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
+    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
+    verb = _verb(verbs, "completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
+    verb.add_argument("shell", choices=("bash", "zsh"), help='eval "$(gearfe completion bash)" in your shell\'s start file')
+    verb.set_defaults(verbs=verbs.choices)
     _verb(verbs, "scenes", run.scenes, "list the built-in scenes with their assumptions")
-    _verb(verbs, "info", run.info, "versions, and what this machine has")
+    _verb(verbs, "info", tools.info, "versions, what this machine has, and what would make it faster")
     arguments = parser.parse_args(argv)
     return shell.run(lambda: arguments.run(arguments))
 

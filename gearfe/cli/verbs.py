@@ -1,23 +1,6 @@
 """What the verbs of the ``gearfe`` command do: one function each, no logic of its own. Heavy imports are inside."""
 
-import contextlib
-import os
-import sys
-
-
-@contextlib.contextmanager
-def _working(text):
-    """A moving bar with the seconds gone, on a terminal only; gives what prints a line above it."""
-    if not sys.stderr.isatty():
-        yield lambda line: print(f"gearfe: {line}", file=sys.stderr, flush=True)
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        progress.add_task(text, total=None)
-        yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
+from .progress import working
 
 
 def _check_outputs(arguments, **kinds):
@@ -56,7 +39,7 @@ def stiffness(arguments):
     run, left_out = fitted(arguments.method, chosen.case(arguments.case))
     for text in left_out:
         print(f"{text}\n")
-    with _working(f"stiffness by {arguments.method}") as tell:
+    with working(f"stiffness by {arguments.method}") as tell:
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
@@ -90,7 +73,7 @@ def compare(arguments):
     if every or (printed and not (arguments.pair or arguments.case or arguments.model or arguments.plot)):
         _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
         return
-    with _working("finite elements and energy methods"):
+    with working("finite elements and energy methods"):
         options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
         result = run(scene, arguments.pair, case=arguments.case, **options)
     meta = result.reference.meta
@@ -113,7 +96,7 @@ def _compare_cases(scene, arguments, cases):
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    with _working("every case by every method"):
+    with working("every case by every method"):
         result = case_table(scene, cases, compute=arguments.reference)
     print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
@@ -133,12 +116,12 @@ def render(arguments):
     scene = load_scene(arguments.scene)
     pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
     if arguments.what == "contact":
-        with _working("contact lines"):
+        with working("contact lines"):
             told = render_contact(pair, arguments.output, **options)
         print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
     else:
         name = ", ".join(part for part in (scene.name, arguments.pair, arguments.case) if part)
-        with _working("stress"):
+        with working("stress"):
             told = render_stress(pair, arguments.output, refine=arguments.refine, title=name, **options)
         print(told["text"])
         print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
@@ -158,7 +141,7 @@ def dynamics(arguments):
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     _print_scene(scene)
-    with _working("stiffness curves and response"):
+    with working("stiffness curves and response"):
         found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
@@ -232,30 +215,3 @@ def scenes(arguments):
         cases = {case for pair in scene.pairs.values() for case in pair.damage}
         print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
         _print_scene(scene)
-
-
-def info(arguments):
-    """``gearfe info``."""
-    import importlib.metadata
-    import platform
-    import shutil
-
-    from ..elements.solver import available
-    from ..stiffness.cache import folder
-
-    print(f"Python {platform.python_version()} on {platform.machine()}, {os.cpu_count()} cores")
-    for name in ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "numba"):
-        try:
-            print(f"{name} {importlib.metadata.version(name)}")
-        except importlib.metadata.PackageNotFoundError:
-            print(f"{name} is not installed")
-    from geometry.mesh.mesher import gmsh_session
-
-    try:
-        with gmsh_session():
-            print("gmsh starts")
-    except RuntimeError as error:
-        print(error)
-    print(f"solvers: sections SuperLU (scipy); three dimensions, the best first: {', '.join(available())}")
-    print(f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}")
-    print(f"cache of solved gears: {folder() or 'switched off'}")

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -190,6 +191,20 @@ class Machine:
         law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})
+
+    def __repr__(self):
+        """One line: how many of everything."""
+        meshes = ", ".join(one.name for one in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
+        speeds = ", ".join(f"{one.mesh:.4g} Hz" for one in self.stages)
+        return (
+            f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
+            f"{len(self.loads)} loads{f', mesh frequency {speeds}' if speeds else ''}>"
+        )
+
+    def _repr_html_(self):
+        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(one.name for one in self.meshes)}
+        notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
+        return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 
     def row(self, name: str) -> NDArray[np.float64]:
         """Unit row of a degree of freedom.

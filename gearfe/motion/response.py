@@ -3,6 +3,7 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from ..files import Content, save_as, suffix_of
 from ..machine.contact_law import force
 from ..machine.tables import Machine
+from ..pictures.inline import line_svg
 from . import excitation
 
 KINDS = {"velocity": "/s", "acceleration": "/s2"}
@@ -42,6 +44,20 @@ class Response:
     states: NDArray[np.float64]
     basis: NDArray[np.float64]
     stats: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self):
+        """One line: machine, time, solver."""
+        time = f"{len(self.time)} samples from {self.time[0]:.4g} to {self.time[-1]:.4g} s"
+        machine = f"{len(self.machine.dofs)} degrees of freedom, {len(self.machine.meshes)} meshes"
+        return f"<Response: {time}, {machine}, by {self.stats.get('method', '?')}; {len(self.names)} channels in .names>"
+
+    def _repr_html_(self):
+        if not self.machine.meshes:
+            return escape(repr(self))
+        name = f"force {self.machine.meshes[0].name}"
+        last = slice(-min(len(self.time), 2000), None)  # the whole would be a black band
+        drawn = line_svg(self.time[last], np.asarray(self[name])[last], "time [s]", f"{name} [{self.unit(name)}]")
+        return f"<div>{drawn}<br>{escape(repr(self))}</div>"
 
     @property
     def names(self) -> list[str]:

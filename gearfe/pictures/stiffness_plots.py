@@ -1,5 +1,6 @@
 """Plots (matplotlib) of stiffness: curves, error maps, contact lines."""
 
+import math
 import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -18,6 +19,10 @@ if TYPE_CHECKING:
     from ..contact.solid import Contact3D
 
 
+NEWTON_PER_UM = 1e6  # one N/um in N/m: the unit of k in every picture
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")  # apart for the colour-blind
+DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
+SQUASHED = 0.3  # lowest over largest stiffness from which on an axis from zero would waste the picture
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
     "bore_1": "pinion bore / root radius",
@@ -28,40 +33,98 @@ COLUMNS = {  # of an error map
 }
 
 
-def plot_curves(curves, path=None):
-    """Draw stiffness curves over the phase, each with the load share below; save to `path` if given.
+def plot_curves(curves, path=None, title=None):
+    """Draw stiffness curves over the phase [N/um], the load shares of the first below; save to `path` if given.
+
+    Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
+    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves.
 
     Parameters
     ----------
     curves : dict of str to StiffnessCurve
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
+    title : str, optional
+        Default: teeth, damage and load of the first curve, see `told`.
 
     Returns
     -------
     matplotlib.figure.Figure
+        Its ``axes`` are two.
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 5), layout="constrained")
+    figure = Figure(figsize=(7.5, 5.4), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-    for name, curve in curves.items():
-        phase, order = curve.phase, np.arange(curve.phase.size)
-        if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:  # one cycle: close it
-            phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
-        style = "-" if name == next(iter(curves)) else "--"
-        top.plot(phase, curve.k[order] / 1e9, style, label=name)
-        if style == "-":
-            share = np.where(curve.force > 0, curve.share, np.nan)
-            bottom.plot(curve.phase, share, label=[f"pair {k:+d}" for k in curve.order])
-    top.set_ylabel("mesh stiffness k [GN/m]")
-    top.set_ylim(bottom=0)
-    top.legend()
+    for number, (name, curve) in enumerate(curves.items()):
+        look = {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
+        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look)
+    first = next(iter(curves.values()))
+    share = np.where(first.force > 0, first.share, np.nan)
+    for column, order in enumerate(first.order):
+        look = {"color": COLOURS[column % len(COLOURS)], "linestyle": DASHES[column % len(DASHES)]}
+        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look)
+    k = np.concatenate([curve.k for curve in curves.values()]) / NEWTON_PER_UM
+    if k.min() < SQUASHED * k.max():
+        top.set_ylim(0, 1.06 * k.max())
+    top.set_title(told(first) if title is None else title, fontsize=10)
+    top.set_ylabel("mesh stiffness k [N/µm]")
+    top.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     bottom.set_ylabel(f"load share ({next(iter(curves))})")
     bottom.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
     bottom.set_ylim(0, 1.05)
-    bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    bottom.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=120)
+
+
+def told(curve):
+    """Teeth, damage, load and width of a curve in one line, as far as its `meta` has them."""
+    meta = curve.meta
+    parts = []
+    if "gear_1" in meta and "gear_2" in meta:
+        parts.append(f"z = {meta['gear_1']['z']} / {meta['gear_2']['z']}")
+    hurt = {side: len(found) for side, found in meta.get("damage", {}).items() if found}
+    parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
+    if "force_N" in meta and "width_mm" in meta:
+        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm")
+    return ", ".join(parts)
+
+
+def closed(curve):
+    """Phases and stiffness [N/um] as they are drawn: one cycle closed, jumps upright.
+
+    Returns
+    -------
+    phase, k : ndarray, shape (m,)
+    """
+    phase, k, order = curve.phase, curve.k / NEWTON_PER_UM, np.arange(curve.phase.size)
+    rises = phase.size > 1 and bool((np.diff(phase) > 0).all())
+    if rises and phase[-1] < phase[0] + 1 and phase[-1] - phase[0] > 0.75:  # one cycle: close it
+        phase, order = np.append(phase, phase[0] + 1), np.append(order, 0)
+    k = k[order]
+    meta = curve.meta
+    smooth = meta.get("extended", not np.isfinite(curve.force).all()) or meta.get("face") in ("helical", "herringbone")
+    if not rises or smooth or "eps_alpha" not in meta or phase.size < 4:
+        return phase, k
+    whole = np.arange(math.floor(phase[0]), math.ceil(phase[-1]) + 1)
+    places = np.concatenate([whole, whole + meta["eps_alpha"] % 1])  # a pair enters, a pair leaves
+    for place in np.sort(places[(places > phase[0]) & (places <= phase[-1])])[::-1]:
+        after = int(np.searchsorted(phase, place - 1e-9))
+        if after < phase.size - 1 and abs(phase[after] - place) < 1e-9:  # a pair that enters is there, one that leaves still is
+            after += int(place not in whole)
+        before = after - 1
+        left = _extended(phase, k, (before - 1, before), place)
+        right = _extended(phase, k, (after, after + 1), place)
+        phase, k = np.insert(phase, after, [place, place]), np.insert(k, after, [left, right])
+    return phase, k
+
+
+def _extended(phase, k, rows, place):
+    """Straight line through two samples at `place`; beside the ends of the curve the nearer sample."""
+    a, b = rows
+    if a < 0 or b >= phase.size or phase[a] == phase[b]:
+        return k[min(max(a, 0), phase.size - 1)] if a >= 0 else k[b]
+    return k[a] + (k[b] - k[a]) / (phase[b] - phase[a]) * (place - phase[a])
 
 
 def plot_map(found, formulations, x, y, zone, path=None, bins=8):

@@ -2,13 +2,15 @@
 
 import os
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import save, save_as
-from ..pictures.stiffness_plots import plot_curves
+from ..files import needed, save, save_as
+from ..pictures.inline import line_svg
+from ..pictures.stiffness_plots import NEWTON_PER_UM, plot_curves
 from .curve_file import content, read_fields
 
 if TYPE_CHECKING:
@@ -50,6 +52,58 @@ class StiffnessCurve:
     pressure: NDArray[np.float64]
     error: NDArray[np.float64] | None = None
     meta: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self):
+        """One line: method, phases, load, the range of k."""
+        meta = self.meta
+        load = f", {meta['force_N']:g} N on {meta['width_mm']:g} mm" if {"force_N", "width_mm"} <= meta.keys() else ""
+        k = self.k / NEWTON_PER_UM
+        text = f"{k.min():.4g} to {k.max():.4g} N/um, mean {k.mean():.4g}"
+        phases = f"{self.phase.size} phase{'s' if self.phase.size > 1 else ''} from {self.phase[0]:.3g} to {self.phase[-1]:.3g}"
+        return f"<StiffnessCurve by {meta.get('method', '?')}: {phases}{load}, k {text}>"
+
+    def _repr_html_(self):
+        drawn = line_svg(self.phase, self.k / NEWTON_PER_UM, "mesh phase", "k [N/um]")
+        return f"<div>{drawn}<br>{escape(repr(self))}</div>"
+
+    def to_pandas(self):
+        """Table of the curve, one row for each phase.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns with units in their names, as in the CSV table; the index is ``phase [-]``; ``attrs`` holds `meta`.
+
+        Raises
+        ------
+        RuntimeError
+            If pandas is missing; the message names what to install.
+        """
+        pandas = needed("pandas", "data")
+        columns = dict(content(self).columns)
+        index = pandas.Index(columns.pop("phase [-]"), name="phase [-]")
+        table = pandas.DataFrame(columns, index=index)
+        table.attrs = dict(self.meta)
+        return table
+
+    def to_xarray(self):
+        """Curve as arrays with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
+
+        Returns
+        -------
+        xarray.Dataset
+            ``k``, ``k_tangent``, ``lte`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
+
+        Raises
+        ------
+        RuntimeError
+            If xarray is missing; the message names what to install.
+        """
+        xarray, made = needed("xarray", "data"), content(self)
+        names = [name for name in made.arrays if name not in ("phase", "order")]
+        axes = {1: ("phase",), 2: ("phase", "order")}
+        values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
+        return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     @property
     def share(self) -> NDArray[np.float64]:
@@ -101,5 +155,11 @@ class StiffnessCurve:
         return cls(**read_fields(path))
 
     def plot(self, path: str | os.PathLike[str] | None = None) -> "Figure":
-        """Draw the curve; save to `path` if given. Returns the matplotlib figure."""
+        """Draw the curve; save to `path` if given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Its ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
+        """
         return plot_curves({self.meta.get("method", "k"): self}, path)

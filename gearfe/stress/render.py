@@ -1,10 +1,8 @@
 """Pictures of stress fields (pyvista), without a screen."""
 
 import contextlib
-import ctypes
 import math
 import os
-import sys
 from typing import Any
 
 import numpy as np
@@ -15,12 +13,8 @@ from ..scene.load import ScenePair
 from ..stiffness.inputs import by_gear
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
+from .window import drawing_library
 
-RENDERER_HELP = (
-    "rendering needs pyvista and, without a screen, EGL or OSMesa: "
-    "'pip install pyvista' and, on Debian, 'apt-get install libegl1'"
-)
-OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
@@ -81,7 +75,7 @@ def render_stress(
     """
     suffix = suffix_of(path, "stress")
     if suffix == ".png":
-        _pyvista()
+        drawing_library()
     damage = scene_pair.case(case).get("damage")
     wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
     fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
@@ -149,19 +143,10 @@ def _text(title, told):
     return "\n".join(line for line in lines if line)
 
 
-def _pyvista():
-    try:
-        import pyvista
-    except ImportError as error:
-        raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
-    _choose_window()
-    return pyvista
-
-
 @contextlib.contextmanager
 def _picture(path, size, text, top):
     """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
-    pyvista = _pyvista()
+    pyvista = drawing_library()
     from pyvista.plotting.colors import get_cmap_safe
 
     bright = get_cmap_safe("turbo")(np.linspace(0.07, 0.97, 256), bytes=True)
@@ -207,7 +192,7 @@ def _lines(field, scale, kept=None, lift=0.0):
     return pyvista.PolyData((field.points + scale * field.moved).T + np.array([0, 0, lift]), lines=cells)
 
 
-def _round_up(value):
+def rounded_up(value):
     """The next of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(value))
     return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
@@ -220,7 +205,7 @@ def _draw_gears(pair, fields, told, path, size):
     scale, shown, focus = told["enlarged"], fields, (0.9 * pair.gear_1.m_n, pair.pitch_radius_1)
     if scale:
         shown = [field for field in fields if field.opening > 0]
-    with _picture(path, size, told["text"], _round_up(max(field.root for field in shown))) as (plotter, look):
+    with _picture(path, size, told["text"], rounded_up(max(field.root for field in shown))) as (plotter, look):
         for k, field in enumerate(shown):
             plotter.add_mesh(_grid(field, scale), name=f"stress {k}", lighting=False, **look)
             plotter.add_mesh(_lines(field, scale, lift=0.02), color="black", line_width=2, lighting=False)
@@ -265,7 +250,7 @@ def _draw_tooth(pair, fields, told, path, size):
     focus = plane.T @ ((low + high) / 2)
     wide, tall = (high - low) / (0.76, 0.76)  # text above, colour bar on the right
     size = size[0], round(size[0] * min(max(tall / wide, 0.5), size[1] / size[0]))
-    with _picture(path, size, told["text"], _round_up(told["root"])) as (plotter, look):
+    with _picture(path, size, told["text"], rounded_up(told["root"])) as (plotter, look):
         plotter.add_mesh(surface, name="stress", smooth_shading=True, ambient=0.55, diffuse=0.5, specular=0.0, **look)
         kept = (np.abs(angle) < 0.5) & (deep > -DEEP)
         plotter.add_mesh(_lines(field, scale, kept), color="black", line_width=2, lighting=False)
@@ -279,17 +264,3 @@ def _draw_tooth(pair, fields, told, path, size):
         light = focus + 200 * gear.m_n * (view + 0.7 * up)
         plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
         plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
-
-
-def _choose_window():
-    """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none."""
-    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
-        return
-    for library, window in OFFSCREEN.items():
-        try:
-            ctypes.CDLL(library)
-        except OSError:
-            continue
-        os.environ["VTK_DEFAULT_OPENGL_WINDOW"] = window
-        return
-    raise RuntimeError(f"no display, and neither of {', '.join(OFFSCREEN)} can be loaded: {RENDERER_HELP}")

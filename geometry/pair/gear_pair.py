@@ -78,6 +78,15 @@ class GearPair:
             self._trim_ring()
         self._check_mesh()
 
+    def __repr__(self):
+        """Gears and centre distance: enough to make it again."""
+        return f"GearPair({self.gear_1!r}, {self.gear_2!r}, a={self.a!r})"
+
+    def _repr_html_(self):
+        from ..tooth.drawing import pair_html
+
+        return pair_html(self)
+
     def _check_distance(self):
         one, two = self.gear_1, self.gear_2
         least = self.outward * one.r_b + two.r_b

@@ -86,6 +86,16 @@ class Gear:
         self._cap_tip_radius()
         form_point(self)
 
+    def __repr__(self):
+        """All numbers that are not the default ones: enough to make it again."""
+        given = ((one.name, getattr(self, one.name)) for one in fields(self) if getattr(self, one.name) != one.default)
+        return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
+
+    def _repr_html_(self):
+        from .drawing import gear_html
+
+        return gear_html(self)
+
     def _check_numbers(self):
         if (self.r_bore is None) == (self.r_rim is None):
             raise ValueError(

@@ -1,0 +1,38 @@
+"""Verbs around the computing: a page of a scene, a scene to start from, completion, what this machine has."""
+
+from .progress import working
+
+
+def report(arguments):
+    """``gearfe report``."""
+    from ..files import check_output
+    from ..reports.page import report as run
+
+    check_output(arguments.output, "page")
+    with working("report") as tell:
+        made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration, tell=tell)
+    print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
+
+
+def new(arguments):
+    """``gearfe new``."""
+    from ..scene.new import new_scene
+
+    options = {"teeth": tuple(arguments.teeth), "module": arguments.module, "helix_deg": arguments.helix}
+    made = new_scene(arguments.output, width=arguments.width, ring=arguments.ring, **options)
+    print(f"written: {made}\n\n  gearfe stiffness {made}\n  gearfe compare {made} --case cracked")
+
+
+def completion(arguments):
+    """``gearfe completion``."""
+    from .completion import script
+
+    print(script(arguments.shell, arguments.verbs), end="")
+
+
+def info(arguments):
+    """``gearfe info``."""
+    from .machine_info import lines
+
+    for line in lines():
+        print(line)

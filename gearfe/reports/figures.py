@@ -1,0 +1,126 @@
+"""Figures of a report, made with plotly: they can be read with the pointer, and turned."""
+
+import numpy as np
+
+from ..pictures.stiffness_plots import COLOURS, NEWTON_PER_UM, closed
+from .tooth import shown_tooth, towards_flank
+
+DASH = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
+LOOK = {
+    "template": "plotly_white",
+    "font": {"size": 13, "family": "system-ui, sans-serif"},
+    "margin": {"l": 60, "r": 15, "t": 15, "b": 55},
+    "legend": {"orientation": "h", "y": -0.22, "x": 0},
+    "hovermode": "x unified",
+}
+POINTS = 4000  # of a spectrum that is drawn
+
+
+def _figure(**layout):
+    from plotly.graph_objects import Figure
+
+    figure = Figure()
+    figure.update_layout(**(LOOK | layout))
+    return figure
+
+
+def _style(number):
+    return {"color": COLOURS[number % len(COLOURS)], "dash": DASH[number % len(DASH)], "width": 2.4 if number == 0 else 1.8}
+
+
+def curves_figure(curves):
+    """Stiffness by method over the phase [N/um]; the estimate of the first as a band."""
+    figure = _figure(height=400)
+    figure.update_xaxes(title="mesh phase")
+    figure.update_yaxes(title="mesh stiffness k [N/µm]")
+    first = next(iter(curves.values()))
+    if first.error is not None:
+        low, high = ((first.k + sign * first.error) / NEWTON_PER_UM for sign in (-1, 1))
+        band = {"x": np.concatenate([first.phase, first.phase[::-1]]), "y": np.concatenate([high, low[::-1]])}
+        name = f"estimate of {next(iter(curves))}"
+        figure.add_scatter(
+            **band, fill="toself", fillcolor="rgba(0,114,178,0.25)", line={"width": 0}, name=name, hoverinfo="skip"
+        )
+    for number, (name, curve) in enumerate(curves.items()):
+        phase, k = closed(curve)
+        figure.add_scatter(x=phase, y=k, name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm")
+    return figure
+
+
+def cases_figure(curves):
+    """Stiffness of one method by case."""
+    figure = _figure(height=360)
+    figure.update_xaxes(title="mesh phase")
+    figure.update_yaxes(title="mesh stiffness k [N/µm]")
+    for number, (name, curve) in enumerate(curves.items()):
+        figure.add_scatter(
+            x=curve.phase, y=curve.k / NEWTON_PER_UM, name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm"
+        )
+    return figure
+
+
+def share_figure(curve):
+    """Load share of each tooth pair over the phase."""
+    figure = _figure(height=320)
+    figure.update_xaxes(title="mesh phase")
+    figure.update_yaxes(title="load share", range=[0, 1.05])
+    share = np.where(curve.force > 0, curve.share, np.nan)
+    for number, order in enumerate(curve.order):
+        if np.isfinite(share[:, number]).any():
+            name = f"pair {order:+d}"
+            figure.add_scatter(
+                x=curve.phase, y=share[:, number], name=name, line=_style(number), hovertemplate="%{y:.3f}", connectgaps=False
+            )
+    return figure
+
+
+def spectra_figure(found):
+    """Spectra of an `Analysis` by case, its expected lines marked and named."""
+    figure = _figure(height=460, hovermode="closest", margin=LOOK["margin"] | {"t": 70})
+    end = 1.15 * max(found.lines.values()) if found.lines else None
+    for number, (name, one) in enumerate(found.spectra.items()):
+        last = one.frequency.size if end is None else int(np.searchsorted(one.frequency, end)) + 1
+        rows = slice(1, min(last, POINTS))
+        figure.add_scatter(
+            x=one.frequency[rows], y=one.values[rows], name=name, line=_style(number) | {"width": 1.3},
+            hovertemplate="%{x:.2f} Hz: %{y:.3g} " + one.unit,
+        )  # fmt: skip
+    names = {}
+    for name, value in found.lines.items():
+        names.setdefault(round(value, 3), []).append(name)
+    for value, together in names.items():
+        figure.add_vline(x=value, line={"color": "#777777", "dash": "dot", "width": 1})
+        figure.add_annotation(
+            x=value,
+            y=1,
+            yref="paper",
+            text=", ".join(together),
+            textangle=-90,
+            yanchor="bottom",
+            showarrow=False,
+            font={"size": 10},
+        )
+    largest = max(one.values[1:].max() for one in found.spectra.values())
+    figure.update_yaxes(title=f"amplitude [{found.unit}]", type="log", range=[np.log10(largest) - 5, np.log10(largest) + 0.2])
+    figure.update_xaxes(title="frequency [Hz]", range=None if end is None else [0, end])
+    return figure
+
+
+def tooth_figure(pressed, field, scale, largest):
+    """The loaded tooth in three dimensions, coloured by von Mises stress up to `largest` [MPa]."""
+    points, faces, mises = shown_tooth(pressed, field, scale)
+    figure = _figure(height=560, margin={"l": 0, "r": 0, "t": 0, "b": 0}, hovermode="closest", dragmode="orbit")
+    x, y, z = points.astype(np.float32)
+    i, j, k = faces.astype(np.int32)
+    bar = {"title": {"text": "von Mises<br>[MPa]"}, "len": 0.7, "thickness": 14}
+    figure.add_mesh3d(
+        x=x, y=y, z=z, i=i, j=j, k=k, intensity=mises.astype(np.float32), cmin=0, cmax=largest, colorscale="Cividis",
+        colorbar=bar, lighting={"ambient": 0.6, "diffuse": 0.6, "specular": 0.05, "roughness": 0.9}, flatshading=False,
+        hovertemplate="%{intensity:.0f} MPa<extra></extra>",
+    )  # fmt: skip
+    view, up = towards_flank(pressed.sector.gear)
+    camera = {"eye": dict(zip("xyz", 1.7 * view, strict=True)), "up": dict(zip("xyz", up, strict=True))}
+    camera["projection"] = {"type": "orthographic"}
+    axes = {f"{name}axis": {"visible": False} for name in "xyz"}
+    figure.update_layout(scene={"aspectmode": "data", "camera": camera, **axes})
+    return figure

@@ -1,0 +1,120 @@
+"""What a report shows, computed: comparisons of all pairs, the loaded tooth, the machine's vibration; with what each cost."""
+
+import time
+import warnings
+from dataclasses import dataclass, field
+
+from ..scene.load import load_scene
+from ..stress.holed import pressed_tooth, tooth_field
+from ..studies.by_zone import compare
+from ..studies.vibration import analysis, responses
+
+
+@dataclass(slots=True)
+class Findings:
+    """All results of one scene.
+
+    Attributes
+    ----------
+    scene : Scene
+    case : str or None
+        Of damage, shown beside healthy.
+    comparisons : dict of (str, str or None) to gearfe.studies.by_zone.Comparison
+        By pair and case.
+    tooth : tuple or None
+        ``(pair name, Pressed, Field)``: the tooth in three dimensions.
+    vibration : gearfe.studies.vibration.Analysis or None
+    responses : dict of str to Response
+    notes : list of str
+        Warnings, and what could not be shown and why.
+    seconds : dict of str to float
+        Wall time of each part.
+    """
+
+    scene: object
+    case: str | None
+    comparisons: dict = field(default_factory=dict)
+    tooth: tuple | None = None
+    vibration: object | None = None
+    responses: dict = field(default_factory=dict)
+    notes: list = field(default_factory=list)
+    seconds: dict = field(default_factory=dict)
+
+    @property
+    def hurt_pair(self):
+        """Name of the first pair that the case damages; without one the first pair."""
+        return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))
+
+
+def find(scene, case=None, *, duration=0.2, phases=64, step=lambda text, done, total: None):
+    """Compute all that a report shows.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+    case : str, optional
+        Default: the first case of damage of the scene, if it has one.
+    duration : float
+        Of the vibration of the scene's machine [s]; 0 leaves it out.
+    phases : int
+        Of the stiffness curves.
+    step : callable
+        Gets a text, the steps done and their number before each step.
+
+    Returns
+    -------
+    Findings
+    """
+    scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
+    cases = list(dict.fromkeys(name for pair in scene.pairs.values() for name in pair.damage))
+    if case is not None and case not in cases:
+        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(cases) or 'none'}")
+    found = Findings(scene, case or (cases[0] if cases else None))
+    wanted = [(name, None) for name in scene.pairs]
+    wanted += [(name, found.case) for name, pair in scene.pairs.items() if found.case in pair.damage]
+    total = len(wanted) + 1 + bool(scene.machine and duration)
+    for number, (name, which) in enumerate(wanted):
+        step(f"{name}, {which or 'healthy'}", number, total)
+        with _counted(found, f"stiffness of {name}, {which or 'healthy'}"):
+            found.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
+    step("loaded tooth", len(wanted), total)
+    with _counted(found, "tooth in three dimensions"):
+        found.tooth = _tooth(found)
+    if scene.machine and duration:
+        step("vibration", len(wanted) + 1, total)
+        with _counted(found, "vibration of the machine"):
+            found.responses = responses(scene, found.case, duration=duration)
+            found.vibration = analysis(found.responses)
+    found.notes = list(dict.fromkeys(found.notes))
+    return found
+
+
+class _counted:  # noqa: N801
+    """Seconds of a part, and its warnings, into the findings."""
+
+    def __init__(self, found, name):
+        self.found, self.name, self.caught = found, name, warnings.catch_warnings(record=True)
+
+    def __enter__(self):
+        self.told, self.started = self.caught.__enter__(), time.perf_counter()
+        warnings.simplefilter("always", UserWarning)
+
+    def __exit__(self, *error):
+        self.found.seconds[self.name] = time.perf_counter() - self.started
+        self.caught.__exit__(*error)
+        self.found.notes += [f"{self.name}: {one.message}" for one in self.told]
+
+
+def _tooth(found):
+    """The damaged tooth with its load in three dimensions; None, with a note, for damage that cannot be drawn so."""
+    chosen = found.scene.pair(found.hurt_pair)
+    case = found.case if found.case in chosen.damage else None
+    run = chosen.case(case)
+    try:
+        pressed = pressed_tooth(
+            chosen.pair, chosen.force, chosen.materials, run.get("damage"), face=chosen.face, groove=chosen.groove
+        )
+    except ValueError as error:
+        found.notes.append(f"no tooth in three dimensions: {error}")
+        return None
+    return found.hurt_pair, pressed, tooth_field(pressed)

@@ -1,0 +1,204 @@
+"""`report`: a page of a scene in one file that needs no network."""
+
+import base64
+import contextlib
+import tempfile
+import time
+from importlib import resources
+from pathlib import Path
+
+from ..files import check_output, needed, written
+from ..stiffness.methods import METHODS
+from ..stiffness.provenance import provenance
+from ..stress.render import enlarged, render_stress, rounded_up
+from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
+from .findings import find
+
+PICTURE = (1120, 840)  # of stress [px]
+CONFIG = {"responsive": True, "displaylogo": False}
+
+
+def report(scene, path, case=None, *, duration=0.2, phases=64, tell=None):
+    """Write one self-contained page of a scene: assumptions, errors, curves, shares, stress, vibration, and how all was made.
+
+    Parameters
+    ----------
+    scene : Scene, str or path
+        As of `gearfe.load_scene`, or a name or file of one.
+    path : path
+        A ``.html`` file.
+    case : str, optional
+        Case of damage shown beside healthy; default the first of the scene.
+    duration : float
+        Of the vibration of the scene's machine that is kept [s]; 0 leaves the machine out.
+    phases : int
+        Of the stiffness curves, per mesh cycle.
+    tell : callable, optional
+        Its ``step(text, done, total)`` is called before each step of the work.
+
+    Returns
+    -------
+    pathlib.Path
+        Of the page.
+
+    Raises
+    ------
+    ValueError
+        If the page could not be written, or there is no such scene or case.
+    RuntimeError
+        If plotly or jinja2 is missing; the message has the command that installs them.
+    """
+    check_output(path, "page")
+    jinja2, plotly = needed("jinja2", "report"), needed("plotly", "report")
+    needed("plotly.graph_objects", "report")
+    started = time.perf_counter()
+    found = find(scene, case, duration=duration, phases=phases, step=getattr(tell, "step", lambda *_: None))
+    with _part(found, "stress pictures"):
+        pictures = _pictures(found)
+    texts = resources.files("gearfe.reports")
+    maker = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    template = maker.from_string((texts / "page.html").read_text(encoding="utf-8"))
+    figures = _Figures(plotly)
+    page = template.render(
+        found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), tooth=_tooth(found, figures),
+        pictures=pictures,
+        vibration=_vibration(found, figures), methods=_methods(found), versions=_versions(found), duration=duration,
+        seconds=found.seconds, total=time.perf_counter() - started, style=(texts / "page.css").read_text(encoding="utf-8"),
+        turning=(texts / "page.js").read_text(encoding="utf-8"), plotly=needed("plotly.offline", "report").get_plotlyjs(),
+    )  # fmt: skip
+    with written(path) as name:
+        Path(name).write_text(page, encoding="utf-8")
+    return Path(path)
+
+
+class _Figures:
+    """Figures as text of a page, numbered."""
+
+    def __init__(self, plotly):
+        self.plotly, self.number = plotly, 0
+
+    def __call__(self, figure):
+        self.number += 1
+        options = {"include_plotlyjs": False, "full_html": False, "config": CONFIG, "div_id": f"figure-{self.number}"}
+        return {"name": f"figure-{self.number}", "html": figure.to_html(**options)}
+
+
+@contextlib.contextmanager
+def _part(found, name):
+    started = time.perf_counter()
+    yield
+    found.seconds[name] = time.perf_counter() - started
+
+
+def _pairs(found, figures):
+    """What is shown of each pair: numbers, comparisons healthy and damaged, curves and shares."""
+    out = []
+    for name, chosen in found.scene.pairs.items():
+        pair = chosen.pair
+        facts = {
+            "teeth": f"{pair.gear_1.z} / {pair.gear_2.z}{' (ring)' if pair.gear_2.internal else ''}",
+            "normal module": f"{pair.gear_1.m_n:g} mm",
+            "centre distance": f"{pair.a:.5g} mm",
+            "contact ratio, overlap": f"{pair.eps_alpha:.4g}, {pair.eps_beta:.3g}",
+            "face widths": f"{pair.gear_1.b:g} / {pair.gear_2.b:g} mm",
+            "force along the line of action": f"{chosen.force:g} N",
+        }
+        parts = [_comparison(found.comparisons[key], key[1], figures) for key in found.comparisons if key[0] == name]
+        out.append({"name": name, "drawing": pair._repr_html_(), "facts": facts, "parts": parts, "notes": pair.notes})
+        if found.case in chosen.damage:
+            out[-1]["cases"] = figures(cases_figure(_both(found, name)))
+    return out
+
+
+def _both(found, name):
+    """Curves of a pair, healthy and damaged, by one method and over the same phases."""
+    from ..stiffness.solve import mesh_stiffness
+
+    chosen = found.scene.pairs[name]
+    reference = found.comparisons[name, found.case].reference
+    method = "ritz" if reference.meta["method"] == "fe" else reference.meta["method"]
+    healthy = mesh_stiffness(**chosen.case(None), method=method, phases=reference.phase)
+    return {f"healthy ({method})": healthy, f"{found.case} ({reference.meta['method']})": reference}
+
+
+def _comparison(one, case, figures):
+    rows = [
+        {"zone": zone, "truth": truth / 1e6, "doubt": 100 * doubt, "others": [(k / 1e6, 100 * e) for k, e in others.values()]}
+        for zone, truth, doubt, others in one.rows()
+    ]
+    names = list(one.curves)
+    return {
+        "case": case or "healthy",
+        "names": names,
+        "rows": rows,
+        "seconds": [one.seconds[name] for name in names],
+        "curves": figures(curves_figure(one.curves)),
+        "share": figures(share_figure(one.reference)),
+        "why": one.reference.meta.get("why", ""),
+    }
+
+
+def _pictures(found):
+    """Pictures of stress, healthy and damaged, as data of the page; without a renderer what is missing."""
+    name = found.hurt_pair
+    chosen, out = found.scene.pair(name), []
+    for case in dict.fromkeys([None, found.case if found.case in chosen.damage else None]):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "stress.png"
+            title = f"{found.scene.name}, {name}, {case or 'healthy'}"
+            try:
+                told = render_stress(chosen, file, case=case, size=PICTURE, refine=0.7, title=title)
+            except (RuntimeError, ValueError) as error:
+                out.append({"missing": f"{title}: {error}"})
+                continue
+            data = base64.b64encode(file.read_bytes()).decode()
+        out.append({"data": data, "title": title, "told": told})
+    return out
+
+
+def _tooth(found, figures):
+    if found.tooth is None:
+        return None
+    name, pressed, field = found.tooth
+    scale = enlarged(field.opening, pressed.sector.gear.m_n)
+    return {
+        "figure": figures(tooth_figure(pressed, field, scale, rounded_up(field.root))),
+        "pair": name,
+        "gear": pressed.gear,
+        "phase": float(pressed.contact.phase[0]),
+        "load": float(pressed.load[0]),
+        "root": field.root,
+        "enlarged": scale,
+        "unknowns": pressed.unknowns,
+    }
+
+
+def _vibration(found, figures):
+    if found.vibration is None:
+        return None
+    return {
+        "figure": figures(spectra_figure(found.vibration)),
+        "lines": _table(found.vibration.lines_text()),
+        "indicators": _table(found.vibration.indicators_text()),
+        "stats": {case: one.stats for case, one in found.responses.items()},
+        "machine": repr(next(iter(found.responses.values())).machine),
+    }
+
+
+def _table(markdown):
+    """Rows of a Markdown table, the head first."""
+    rows = [
+        [cell.strip() for cell in line.strip().strip("|").split("|")] for line in markdown.splitlines() if line.startswith("|")
+    ]
+    return [row for row in rows if not all(set(cell) <= set("-: ") for cell in row)]
+
+
+def _methods(found):
+    """Methods that were used, and what each is."""
+    used = dict.fromkeys(name for one in found.comparisons.values() for name in one.curves)
+    return {name: METHODS[name] for name in used if name in METHODS}
+
+
+def _versions(found):
+    one = next(iter(found.scene.pairs.values()))
+    return provenance(one.pair, one.materials, "", {})["versions"]

@@ -1,0 +1,132 @@
+"""`new_scene`: a commented scene file of one's own to start from."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+from geometry.pair.gear_pair import GearPair
+from geometry.tooth.gear import Gear
+
+from ..files import written
+
+TEXT = """\
+# A gear pair of your own. Lengths in mm, forces in N, angles in degrees: the unit stands in each name.
+# Try it:  gearfe stiffness {name}        gearfe compare {name}        gearfe compare {name} --case cracked
+
+title = "{title}"
+source = "own gear pair"  # where its numbers come from
+
+[material.steel]
+E_MPa = 206000.0
+nu = 0.3
+
+[gear.pinion]
+z = {z_1}
+m_n_mm = {m_n}
+alpha_n_deg = 20.0
+beta_deg = {beta}  # helix angle; the mate of an external pair has the opposite hand
+b_mm = {width}
+x = 0.0  # profile shift
+addendum = 1.0  # of the tooth, in modules; with dedendum and tip_radius the basic rack of ISO 53, profile A
+dedendum = 1.25
+tip_radius = 0.38
+r_bore_mm = {bore}  # held here: the bore changes k by tens of percent, so give the true one
+material = "steel"
+
+[gear.wheel]
+z = {z_2}
+m_n_mm = {m_n}
+alpha_n_deg = 20.0
+beta_deg = {mate_beta}
+b_mm = {width}
+x = 0.0
+{wheel_rack}{wheel_support}
+material = "steel"
+
+[pair.stage]
+gear_1 = "pinion"
+gear_2 = "wheel"
+force_N = {force}  # along the transverse line of action: torque of the pinion over its base radius of {r_b} mm
+# a_mm = {a}  # centre distance; left out: the one without backlash
+{face}
+# What you had to assume; it is printed with every result, until you change the values it holds for.
+[[assumption]]
+what = "{bores}"
+why = "a start: give the true ones"
+holds = {{ "gear.pinion.r_bore_mm" = {bore}, {held} }}
+
+# Damage, by case. A root crack at 45 degrees; at a level of 0.5 it reaches the centre-line of the tooth.
+[[crack]]
+case = "cracked"
+gear = "pinion"
+level = 0.3
+"""
+FACE = 'face = "helical"  # or "herringbone" with groove_mm, the relief groove as part of b_mm\n'
+RING_RACK = "addendum = 0.8  # a full one may reach into the pinion's fillet\ndedendum = 1.25\ntip_radius = 0.2\n"
+RACK = "addendum = 1.0\ndedendum = 1.25\ntip_radius = 0.38\n"
+
+
+def new_scene(
+    path: str | Path,
+    *,
+    teeth: tuple[int, int] = (21, 31),
+    module: float = 2.0,
+    helix_deg: float = 0.0,
+    width: float = 20.0,
+    ring: bool = False,
+) -> Path:
+    """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
+
+    Parameters
+    ----------
+    path : path
+        Of the new file, ``.toml``. An existing file is not overwritten.
+    teeth : (int, int)
+        Of pinion and wheel.
+    module : float
+        Normal module [mm].
+    helix_deg : float
+        Helix angle of the pinion [degrees].
+    width : float
+        Face width [mm].
+    ring : bool
+        The wheel is an internal gear.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    ValueError
+        If the file exists or cannot be written, or if such a pair cannot be.
+    """
+    path = Path(path)
+    if path.suffix != ".toml":
+        raise ValueError(f"{path}: a scene is a .toml file; give a name such as my.toml")
+    if path.exists():
+        raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
+    rack: dict[str, Any] = {"m_n": module, "alpha_n": math.radians(20), "b": width}
+    blank = [Gear(z=z, beta=math.radians(helix_deg), r_bore=0.1 * module, **rack) for z in teeth]
+    bores = [round(0.5 * gear.r_f, 1) for gear in blank]
+    beta = math.radians(helix_deg)
+    pinion = Gear(z=teeth[0], beta=beta, r_bore=bores[0], **rack)
+    if ring:
+        rim = round(0.5 * module * teeth[1] / math.cos(beta) + 5 * module, 1)
+        wheel = Gear(z=teeth[1], beta=beta, r_rim=rim, addendum=0.8, tip_radius=0.2, **rack)
+        support, held = f"r_rim_mm = {rim}  # outer radius of the rim, held there", f'"gear.wheel.r_rim_mm" = {rim}'
+    else:
+        wheel = Gear(z=teeth[1], beta=-beta, r_bore=bores[1], **rack)
+        support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
+    pair = GearPair(pinion, wheel)
+    text = TEXT.format(
+        name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
+        beta=float(helix_deg), mate_beta=math.degrees(wheel.beta) + 0.0, width=float(width), bore=bores[0],
+        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, force=round(100.0 * width, 1), r_b=f"{pinion.r_b:.4g}",
+        a=f"{pair.a:.4f}", face=FACE if helix_deg else "", held=held,
+        bores=f"bore {bores[0]} mm (pinion) and {'rim ' + str(rim) if ring else 'bore ' + str(bores[1])} mm (wheel), held",
+    )  # fmt: skip
+    with written(path) as name:
+        Path(name).write_text(text, encoding="utf-8")
+    return path
