@@ -1,0 +1,87 @@
+"""How the documentation is built: ``python -m sphinx gearfe/docs .site`` from the top of the repository."""
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+from sphinx_gallery.scrapers import figure_rst
+
+HERE = Path(__file__).parent
+TOP = HERE.parents[1]
+MADE = HERE / "_made"  # all that the build writes among the sources
+sys.path.insert(0, str(TOP))
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import gearfe  # noqa: E402  the checkout's own, and on one thread
+
+PAGES = MADE / "validation"
+shutil.rmtree(PAGES, ignore_errors=True)
+shutil.copytree(TOP / "validation" / "pages", PAGES)
+(PAGES / "index.md").write_text(
+    "# All pages of the validation\n\nThese pages are made by `python -m validation`, and kept in the repository.\n\n"
+    "```{toctree}\n:glob:\n\n*\n```\n",
+    encoding="utf-8",
+)
+
+
+class Pictures:
+    """What a script of the gallery draws: the png files it has written beside itself."""
+
+    def __repr__(self):
+        """Equal for every build, so that unchanged scripts are not run again."""
+        return "pictures written as png files"
+
+    def __call__(self, block, block_vars, gallery_conf):
+        """Move the new pictures of a block to the site, and show them."""
+        written = sorted(Path(block_vars["src_file"]).parent.glob("*.png"), key=lambda path: path.stat().st_mtime_ns)
+        places = [next(block_vars["image_path_iterator"]) for _ in written]
+        for path, place in zip(written, places, strict=True):
+            shutil.move(path, place)
+        return figure_rst(places, gallery_conf["src_dir"])
+
+
+project = "gearfe"
+author = copyright = "The gearfe developers"  # noqa: A001
+release = version = __import__("importlib.metadata").metadata.version("gearfe")
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx_gallery.gen_gallery",
+]
+exclude_patterns = ["tutorials/*", "gallery/*", "_made/**/*.ipynb", "_made/**/*.py", "_made/**/sg_execution_times.rst"]
+myst_enable_extensions = ["dollarmath", "deflist", "amsmath"]
+myst_heading_anchors = 3
+default_role = "py:obj"  # `name` in a docstring is a link where there is something of that name
+napoleon_google_docstring = False
+napoleon_use_rtype = False
+autosummary_generate = True
+autodoc_typehints = "none"  # the docstrings say types, shapes and units
+autodoc_member_order = "bysource"
+suppress_warnings = ["config.cache", "myst.header", "autosummary.import_cycle"]
+templates_path = ["templates"]
+
+sphinx_gallery_conf = {
+    "examples_dirs": [str(HERE / "tutorials"), str(HERE / "gallery")],
+    "gallery_dirs": ["_made/tutorials", "_made/gallery"],
+    "filename_pattern": r"\.py$",
+    "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": (Pictures(),),
+    "reset_modules": (),
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "min_reported_time": 0,
+    "show_signature": False,
+    "write_computation_times": False,
+}
+
+html_theme = "furo"
+html_title = "gearfe"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_show_sourcelink = False
+html_copy_source = False
