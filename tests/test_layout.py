@@ -37,7 +37,13 @@ HOME = {  # where heavy libraries may be imported
 LOADERS = ("import_module", "__import__")  # only the public face, `gearfe/__init__.py`, and the table of methods load by name
 TABLE = "gearfe/stiffness/methods.py"
 PACKAGES = ("geometry", "gearfe")
-FILES = {str(path.relative_to(ROOT)): path for top in (*PACKAGES, "validation") for path in sorted(ROOT.glob(f"{top}/**/*.py"))}
+SITE = ROOT / "gearfe" / "docs"  # scripts of the documentation, no part of the package
+FILES = {
+    str(path.relative_to(ROOT)): path
+    for top in (*PACKAGES, "validation")
+    for path in sorted(ROOT.glob(f"{top}/**/*.py"))
+    if SITE not in path.parents
+}
 SHIPPED = [name for name in FILES if name.startswith(PACKAGES)]
 
 

@@ -14,7 +14,6 @@ sys.path.insert(0, str(TOP))
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
 os.environ.setdefault("MPLBACKEND", "Agg")
 
-import gearfe  # noqa: E402  the checkout's own, and on one thread
 
 PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)
@@ -43,7 +42,7 @@ class Pictures:
 
 
 project = "gearfe"
-author = copyright = "The gearfe developers"  # noqa: A001
+author = copyright = "The gearfe developers"
 release = version = __import__("importlib.metadata").metadata.version("gearfe")
 extensions = [
     "myst_parser",

@@ -22,7 +22,7 @@ conventions = {
     "turning at the centre-line": {"turning": True},
     "on the unloaded side": {"side": "unloaded"},
 }
-levels = (0.1, 0.3, 0.5, 0.6)
+levels = (0.1, 0.2, 0.3, 0.4)
 healthy = gf.mesh_stiffness(pair, **run).k
 figure, axes = plt.subplots(layout="constrained")
 for name, options in conventions.items():

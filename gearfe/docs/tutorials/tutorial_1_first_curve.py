@@ -41,8 +41,8 @@ curve.plot("first_curve.png")
 #
 # Numbers
 # -------
-# The curve holds arrays in SI units. ``zones`` gives means over the phases in which one pair carries, in which two carry, and over
-# the whole cycle, and the largest value.
+# The curve holds arrays in SI units. ``zones`` gives means over the phases in which one pair carries, in which two carry, and
+# over the whole cycle, and the largest value.
 
 for zone, k in curve.zones().items():
     print(f"{zone:7s} {k / 1e6:6.1f} N/um, estimated error {100 * curve.zone_errors()[zone]:.2f} %")
@@ -61,8 +61,8 @@ for method in ("ritz", "fe", "coupled", "textbook"):
     print(f"{method:9s} one pair {k['single'] / 1e6:6.1f}   two pairs {k['double'] / 1e6:6.1f} N/um")
 
 # %%
-# The textbook formula is close with one pair in contact and far too stiff with two: it adds up pairs of teeth as if each stood on a
-# body of its own. (``extended=False`` leaves out contact of tip corners, which the formulas do not know.)
+# The textbook formula is close with one pair in contact and far too stiff with two: it adds up pairs of teeth as if each stood on
+# a body of its own. (``extended=False`` leaves out contact of tip corners, which the formulas do not know.)
 #
 # Keep it
 # -------

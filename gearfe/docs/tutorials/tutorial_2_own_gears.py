@@ -8,8 +8,8 @@ What a gear needs, what it is refused for, and which of its dimensions decide ho
 # %%
 # A rack, two gears
 # -----------------
-# ``addendum``, ``dedendum`` and ``tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53. ``x`` is the
-# profile shift.
+# ``addendum``, ``dedendum`` and ``tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53. ``x`` is
+# the profile shift.
 
 from dataclasses import replace
 from math import radians
@@ -36,7 +36,8 @@ except ValueError as error:
 # %%
 # What decides
 # ------------
-# Stiffness depends on the load and on the bore, so both have to be stated with every number. Several loads cost little more than one.
+# Stiffness depends on the load and on the bore, so both have to be stated with every number. Several loads cost little more than
+# one.
 
 curves = gf.mesh_stiffness(pair, force=[500.0, 2000.0, 8000.0], material=steel)
 for curve in curves:
@@ -51,8 +52,8 @@ for r_bore in (6.0, 12.0, 20.0):
 # %%
 # Rings
 # -----
-# An internal gear has the radius ``r_rim`` of its outside, which is held, in place of a bore. Its addendum is often shortened: what
-# would reach into the planet's fillet is cut off, and a warning says by how much.
+# An internal gear has the radius ``r_rim`` of its outside, which is held, in place of a bore. Its addendum is often shortened:
+# what would reach into the planet's fillet is cut off, and a warning says by how much.
 
 ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
 planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)
@@ -63,8 +64,8 @@ print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {k.mean() / 1e
 # %%
 # A scene file
 # ------------
-# Gears, pairs, damage, a machine and what you had to assume can be written into one text file, a *scene*. Every verb of the command
-# line takes one (``gearfe stiffness my.toml``), and says by name what it does not understand.
+# Gears, pairs, damage, a machine and what you had to assume can be written into one text file, a *scene*. Every verb of the
+# command line takes one (``gearfe stiffness my.toml``), and says by name what it does not understand.
 
 SCENE = """
 title = "My pair"

@@ -38,8 +38,8 @@ np.savetxt("cosine.csv", np.transpose([phase, k]), delimiter=",", header="phase,
 # %%
 # The table
 # ---------
-# ``compare`` computes the finite elements, the energy model and the closed forms of the literature for the same pair and load, and
-# puts yours beside them.
+# ``compare`` computes the finite elements, the energy model and the closed forms of the literature for the same pair and load,
+# and puts yours beside them.
 
 result = gf.compare(scene, models=[square_wave, gf.PairModel(parabola), "cosine.csv"])
 for zone, fe, _, others in result.rows():
@@ -61,8 +61,9 @@ plt.close(figure)
 #
 # A model of how one gear gives
 # -----------------------------
-# The best place for a model of your own is further inside: how one gear gives way between its contacts. gearfe then adds the local
-# contact and who carries how much, exactly as for its own methods. Here, teeth as bars of constant thickness on rigid bodies:
+# The best place for a model of your own is further inside: how one gear gives way between its contacts. gearfe then adds the
+# local contact and who carries how much, exactly as for its own methods. Here, teeth as bars of constant thickness on rigid
+# bodies:
 
 
 def bar(gear, material, radius, tooth):
@@ -73,7 +74,11 @@ def bar(gear, material, radius, tooth):
 
 
 pair, steel = scene.pair().pair, scene.pair().materials
-methods = {"two gears of bars": gf.OwnFlexibility(bar), "bars on a real wheel": gf.OwnFlexibility(bar, "ritz"), "two real gears": "ritz"}
+methods = {
+    "two gears of bars": gf.OwnFlexibility(bar),
+    "bars on a real wheel": gf.OwnFlexibility(bar, "ritz"),
+    "two real gears": "ritz",
+}
 for name, method in methods.items():
     curve = gf.mesh_stiffness(pair, 2000.0, steel, method=method, extended=False)
     print(f"{name:21s} mean {curve.k.mean() / 1e6:6.1f} N/um")

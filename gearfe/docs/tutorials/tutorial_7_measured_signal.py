@@ -8,8 +8,8 @@ Units, spectra, orders, envelope and kurtogram of a signal from a file.
 # %%
 # A file
 # ------
-# In place of a measurement, a signal that we know: two gears at 480 Hz, a tooth that knocks 20 times a second and lets the housing
-# ring at 6 kHz, and noise. A file's header states the units; gearfe never guesses them.
+# In place of a measurement, a signal that we know: two gears at 480 Hz, a tooth that knocks 20 times a second and lets the
+# housing ring at 6 kHz, and noise. A file's header states the units; gearfe never guesses them.
 
 import numpy as np
 

@@ -52,10 +52,12 @@ print(f"{type(failed).__name__}: {failed}")
 # %%
 # Where may a formula be used?
 # ----------------------------
-# ``error_map`` draws gears at random, by a fixed seed, and compares the closed forms with the converged energy model. Eight pairs are
-# a taste; the map in :doc:`/_made/validation/map` has two thousand.
+# ``error_map`` draws gears at random, by a fixed seed, and compares the closed forms with the converged energy model. Eight pairs
+# are a taste; the map in :doc:`/_made/validation/map` has two thousand.
 
 found = gf.error_map(8, phases=12, workers=1)
 for name in ("textbook", "published", "coupled"):
     low, middle, high, _, rows = found.bands(name, crack=(0.0, 0.0))
-    print(f"{name:10s} mean of k: {100 * low:+5.1f} / {100 * middle:+5.1f} / {100 * high:+5.1f} % at 5, 50 and 95 % of {rows} rows")
+    print(
+        f"{name:10s} mean of k: {100 * low:+5.1f} / {100 * middle:+5.1f} / {100 * high:+5.1f} % at 5, 50 and 95 % of {rows} rows"
+    )
