@@ -23,11 +23,10 @@ def test_scripts_are_found():
     assert {path.stem for path in RECORD.glob("*.txt")} <= {path.stem for path in SCRIPTS}
 
 
-@pytest.mark.parametrize(
-    "script",
-    [pytest.param(path, marks=pytest.mark.slow if path.stem in SLOW else ()) for path in SCRIPTS],
-    ids=lambda path: path.stem,
-)
+PARAMETERS = [pytest.param(path, id=path.stem, marks=pytest.mark.slow if path.stem in SLOW else ()) for path in SCRIPTS]
+
+
+@pytest.mark.parametrize("script", PARAMETERS)
 def test_script_prints_what_is_on_record(script, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(script))
