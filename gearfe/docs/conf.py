@@ -5,15 +5,14 @@ import shutil
 import sys
 from pathlib import Path
 
-from sphinx_gallery.scrapers import figure_rst
-
 HERE = Path(__file__).parent
 TOP = HERE.parents[1]
 MADE = HERE / "_made"  # all that the build writes among the sources
-sys.path.insert(0, str(TOP))
+sys.path[:0] = [str(TOP), str(HERE)]
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+from site_pictures import pictures  # noqa: E402
 
 PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)
@@ -23,22 +22,6 @@ shutil.copytree(TOP / "validation" / "pages", PAGES)
     "```{toctree}\n:glob:\n\n*\n```\n",
     encoding="utf-8",
 )
-
-
-class Pictures:
-    """What a script of the gallery draws: the png files it has written beside itself."""
-
-    def __repr__(self):
-        """Equal for every build, so that unchanged scripts are not run again."""
-        return "pictures written as png files"
-
-    def __call__(self, block, block_vars, gallery_conf):
-        """Move the new pictures of a block to the site, and show them."""
-        written = sorted(Path(block_vars["src_file"]).parent.glob("*.png"), key=lambda path: path.stat().st_mtime_ns)
-        places = [next(block_vars["image_path_iterator"]) for _ in written]
-        for path, place in zip(written, places, strict=True):
-            shutil.move(path, place)
-        return figure_rst(places, gallery_conf["src_dir"])
 
 
 project = "gearfe"
@@ -69,7 +52,7 @@ sphinx_gallery_conf = {
     "gallery_dirs": ["_made/tutorials", "_made/gallery"],
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
-    "image_scrapers": (Pictures(),),
+    "image_scrapers": (pictures,),
     "reset_modules": (),
     "abort_on_example_error": True,
     "download_all_examples": False,
