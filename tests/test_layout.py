@@ -39,7 +39,13 @@ LOADERS = ("import_module", "__import__")  # only the public face, `gearfe/__ini
 TABLE = "gearfe/stiffness/methods.py"
 OPTIONAL = "gearfe/files.py"  # `needed`: libraries of others that an extra brings
 PACKAGES = ("geometry", "gearfe")
-FILES = {str(path.relative_to(ROOT)): path for top in (*PACKAGES, "validation") for path in sorted(ROOT.glob(f"{top}/**/*.py"))}
+SITE = ROOT / "gearfe" / "docs"  # scripts of the documentation, no part of the package
+FILES = {
+    str(path.relative_to(ROOT)): path
+    for top in (*PACKAGES, "validation")
+    for path in sorted(ROOT.glob(f"{top}/**/*.py"))
+    if SITE not in path.parents
+}
 SHIPPED = [name for name in FILES if name.startswith(PACKAGES)]
 
 

@@ -36,6 +36,7 @@ PAGES = {
     "hard_dynamics": "hard cases of the dynamics, each with its outcome",
     "own_model": "the example of a curve exported by MATLAB",
     "readme": "the table and the program output in the README",
+    "tutorials": "what the scripts of the documentation print, for their test",
 }
 
 LONG_RUNS = ("pairs_three", "herringbone")  # pages whose finite elements --reference computes

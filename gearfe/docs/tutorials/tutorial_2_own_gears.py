@@ -1,0 +1,105 @@
+"""
+2. Your own gears
+=================
+
+What a gear needs, what it is refused for, and which of its dimensions decide how stiff it is.
+"""
+
+# %%
+# A rack, two gears
+# -----------------
+# ``addendum``, ``dedendum`` and ``tip_radius`` are those of the rack, in modules; the defaults are profile A of ISO 53. ``x`` is
+# the profile shift.
+
+from dataclasses import replace
+from math import radians
+
+import gearfe as gf
+
+rack = dict(m_n=3.0, alpha_n=radians(20), b=30.0, addendum=1.0, dedendum=1.25, tip_radius=0.38)
+pinion = gf.Gear(z=19, r_bore=12.0, x=0.3, **rack)
+wheel = gf.Gear(z=43, r_bore=30.0, x=0.1, **rack)
+pair = gf.GearPair(pinion, wheel)
+steel = gf.Material(E=206e3, nu=0.3)
+print(f"tip {pinion.r_a:.3f}, reference {pinion.r:.3f}, base {pinion.r_b:.3f}, root {pinion.r_f:.3f} mm; a = {pair.a:.3f} mm")
+
+# %%
+# What cannot be
+# --------------
+# A message says what was given, why it cannot be, and what to do.
+
+try:
+    gf.Gear(z=19, r_bore=27.5, **rack)
+except ValueError as error:
+    print(error)
+
+# %%
+# What decides
+# ------------
+# Stiffness depends on the load and on the bore, so both have to be stated with every number. Several loads cost little more than
+# one.
+
+curves = gf.mesh_stiffness(pair, force=[500.0, 2000.0, 8000.0], material=steel)
+for curve in curves:
+    print(f"{curve.meta['force_N']:6.0f} N: mean {curve.k.mean() / 1e6:6.1f} N/um")
+
+# %%
+for r_bore in (6.0, 12.0, 20.0):
+    bored = gf.GearPair(replace(pinion, r_bore=r_bore), wheel)
+    k = gf.mesh_stiffness(bored, force=2000.0, material=steel).k
+    print(f"pinion bore of {r_bore:4.1f} mm: mean {k.mean() / 1e6:6.1f} N/um")
+
+# %%
+# Rings
+# -----
+# An internal gear has the radius ``r_rim`` of its outside, which is held, in place of a bore. Its addendum is often shortened:
+# what would reach into the planet's fillet is cut off, and a warning says by how much.
+
+ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
+planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)
+inner = gf.GearPair(planet, ring, a=52.0)
+k = gf.mesh_stiffness(inner, force=2000.0, material=steel).k
+print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {k.mean() / 1e6:.1f} N/um")
+
+# %%
+# A scene file
+# ------------
+# Gears, pairs, damage, a machine and what you had to assume can be written into one text file, a *scene*. Every verb of the
+# command line takes one (``gearfe stiffness my.toml``), and says by name what it does not understand.
+
+SCENE = """
+title = "My pair"
+source = "drawing 4711"
+
+[material.steel]
+E_MPa = 206000.0
+nu = 0.3
+
+[gear.pinion]
+z = 19
+m_n_mm = 3.0
+alpha_n_deg = 20.0
+b_mm = 30.0
+r_bore_mm = 12.0
+x = 0.3
+material = "steel"
+
+[gear.wheel]
+z = 43
+m_n_mm = 3.0
+alpha_n_deg = 20.0
+b_mm = 30.0
+r_bore_mm = 30.0
+x = 0.1
+material = "steel"
+
+[pair.mine]
+gear_1 = "pinion"
+gear_2 = "wheel"
+force_N = 2000.0
+"""
+with open("my.toml", "w", encoding="utf-8") as file:
+    file.write(SCENE)
+mine = gf.load_scene("my.toml").pair("mine")
+k = gf.mesh_stiffness(mine.pair, mine.force, mine.materials).k
+print(f"from the scene: mean {k.mean() / 1e6:.1f} N/um")

@@ -1,0 +1,70 @@
+"""The site: every public name is in its reference, sources name only pages and files that exist, and Sphinx builds it."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import unquote, urldefrag
+
+import pytest
+
+import gearfe as gf
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "gearfe" / "docs"
+PAGES = sorted(path for path in SITE.glob("**/*.md") if "_made" not in path.parts)
+
+
+def test_reference_has_every_public_name():
+    named = re.findall(r"^   (\w+)$", (SITE / "reference" / "index.md").read_text(encoding="utf-8"), re.M)
+    assert sorted(named) == sorted(gf.__all__)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: str(path.relative_to(SITE)))
+def test_pages_name_what_exists(page):
+    for place in re.findall(r"\{doc\}`(?:[^`<]*<)?([^`>]+)>?`", page.read_text(encoding="utf-8")):
+        target = SITE / place.lstrip("/") if place.startswith("/") else page.parent / place
+        name = target.resolve().relative_to(SITE.resolve()).as_posix()
+        if name.startswith("_made/validation/"):
+            source = ROOT / "validation" / "pages" / f"{target.name}.md"
+        elif name.startswith("_made/"):
+            folder, stem = name.split("/")[1:]
+            source = SITE / folder / ("GALLERY_HEADER.rst" if stem == "index" else f"{stem}.py")
+        else:
+            source = target.with_name(f"{target.name}.md")
+        assert source.exists(), f"{page.name} names {place}"
+
+
+@pytest.mark.parametrize("page", [SITE / "where.md", ROOT / "README.md"], ids=lambda path: path.name)
+def test_map_names_files_that_exist(page):
+    for name in re.findall(r"`((?:gearfe|geometry|tests|validation)/[\w/.]*)`", page.read_text(encoding="utf-8")):
+        assert (ROOT / name).exists(), name
+
+
+@pytest.mark.slow
+def test_site_builds_and_its_links_lead_somewhere(tmp_path):
+    """Without running the scripts; every link inside the site leads to a page and a place in it."""
+    pytest.importorskip("sphinx_gallery", reason='pip install ".[docs]"')
+    top = tmp_path / "top"
+    for name in ("gearfe", "geometry", "validation"):
+        shutil.copytree(ROOT / name, top / name, ignore=shutil.ignore_patterns("_made", "__pycache__"))
+    command = [sys.executable, "-m", "sphinx", "-q", "-D", "plot_gallery=0", top / "gearfe" / "docs", tmp_path / "site"]
+    subprocess.run(command, check=True, cwd=top)
+    assert broken(tmp_path / "site") == []
+
+
+def broken(site):
+    """Links of a built site that lead nowhere, as (page, link)."""
+    pages = {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html")}
+    places = {path: set(re.findall(r'\sid="([^"]+)"', text)) for path, text in pages.items()}
+    out = []
+    for path, text in pages.items():
+        for link in re.findall(r'(?:href|src)="([^"]+)"', text):
+            if re.match(r"[a-z]+:|//", link):
+                continue
+            name, place = urldefrag(unquote(link))
+            target = (path.parent / name).resolve() if name else path
+            if not target.exists() or (place and target.suffix == ".html" and place not in places[target]):
+                out.append((str(path.relative_to(site)), link))
+    return out
