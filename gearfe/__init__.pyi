@@ -44,6 +44,7 @@ from .pictures.stiffness_plots import plot_contact as plot_contact
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
+from .reports.page import report as report
 from .scene.load import load_scene as load_scene
 from .signal.demodulation import demodulate as demodulate
 from .signal.housing import housing_signal as housing_signal
@@ -75,3 +76,5 @@ from .studies.own_model import PairModel as PairModel
 __all__: list[str]
 
 def __dir__() -> list[str]: ...
+
+from .scene.new import new_scene as new_scene

@@ -2,12 +2,15 @@
 
 import base64
 import contextlib
+import os
 import tempfile
 import time
+from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
 from ..files import check_output, needed, written
+from ..scene.load import Scene
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
@@ -18,7 +21,15 @@ PICTURE = (1120, 840)  # of stress [px]
 CONFIG = {"responsive": True, "displaylogo": False}
 
 
-def report(scene, path, case=None, *, duration=0.2, phases=64, tell=None):
+def report(
+    scene: Scene | str | os.PathLike[str],
+    path: str | os.PathLike[str],
+    case: str | None = None,
+    *,
+    duration: float = 0.2,
+    phases: int = 64,
+    tell: Callable[[str], object] | None = None,
+) -> Path:
     """Write one self-contained page of a scene: assumptions, errors, curves, shares, stress, vibration, and how all was made.
 
     Parameters

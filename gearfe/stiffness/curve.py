@@ -66,7 +66,7 @@ class StiffnessCurve:
         drawn = line_svg(self.phase, self.k / NEWTON_PER_UM, "mesh phase", "k [N/um]")
         return f"<div>{drawn}<br>{escape(repr(self))}</div>"
 
-    def to_pandas(self):
+    def to_pandas(self) -> Any:
         """Table of the curve, one row for each phase.
 
         Returns
@@ -79,14 +79,14 @@ class StiffnessCurve:
         RuntimeError
             If pandas is missing; the message names what to install.
         """
-        pandas = needed("pandas", "data")
+        library = needed("pandas", "data")
         columns = dict(content(self).columns)
-        index = pandas.Index(columns.pop("phase [-]"), name="phase [-]")
-        table = pandas.DataFrame(columns, index=index)
+        index = library.Index(columns.pop("phase [-]"), name="phase [-]")
+        table = library.DataFrame(columns, index=index)
         table.attrs = dict(self.meta)
         return table
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """Curve as arrays with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
 
         Returns
@@ -99,11 +99,11 @@ class StiffnessCurve:
         RuntimeError
             If xarray is missing; the message names what to install.
         """
-        xarray, made = needed("xarray", "data"), content(self)
+        library, made = needed("xarray", "data"), content(self)
         names = [name for name in made.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}
         values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
-        return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
+        return library.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     @property
     def share(self) -> NDArray[np.float64]:
