@@ -46,6 +46,7 @@ from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
 from .reports.page import report as report
 from .scene.load import load_scene as load_scene
+from .scene.new import new_scene as new_scene
 from .signal.demodulation import demodulate as demodulate
 from .signal.housing import housing_signal as housing_signal
 from .signal.indicators import indicator_table as indicator_table
@@ -76,5 +77,3 @@ from .studies.own_model import PairModel as PairModel
 __all__: list[str]
 
 def __dir__() -> list[str]: ...
-
-from .scene.new import new_scene as new_scene
