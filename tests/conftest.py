@@ -36,7 +36,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
         "test_literature.py::test_verdict_on_a_printed_number[helical_pitting-contact_ratios",
         "test_literature.py::test_verdict_on_a_printed_number[herringbone_machine-mesh_frequency",
     ),
-    "layout": ("test_layout.py",),
+    "layout": ("test_layout.py", "test_types.py"),
 }
 
 
