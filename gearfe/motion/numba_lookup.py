@@ -8,7 +8,7 @@ if find_spec("numba"):
     from numba import njit
 else:
 
-    def njit(**options):  # type: ignore[no-redef]
+    def njit(**options):
         """Leave the loops as they are: the same numbers, slowly (`gearfe.simulate` then uses `gearfe.motion.numpy_loop`)."""
         return lambda function: function
 
