@@ -25,6 +25,12 @@ def _print_scene(scene):
     print()
 
 
+def _title(scene, arguments, *more):
+    """Of a picture: scene, pair, case and what else is said."""
+    pair = arguments.pair or next(iter(scene.pairs))
+    return ", ".join(text for text in (scene.name, pair, arguments.case or "healthy", *more) if text)
+
+
 def stiffness(arguments):
     """``gearfe stiffness``."""
     from ..scene.load import load_scene
@@ -54,7 +60,9 @@ def stiffness(arguments):
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
     if arguments.plot:
-        curve.plot(arguments.plot)
+        from ..pictures.stiffness_plots import told
+
+        curve.plot(arguments.plot, _title(scene, arguments, told(curve)))
         print(f"written: {arguments.plot}")
 
 
@@ -84,9 +92,9 @@ def compare(arguments):
     for text in printed_stiffness(scene, result.pair_name, arguments.case):
         print(text)
     if arguments.plot:
-        from ..pictures.stiffness_plots import plot_curves
+        from ..pictures.stiffness_plots import plot_curves, told
 
-        plot_curves(result.curves, arguments.plot)
+        plot_curves(result.curves, arguments.plot, _title(scene, arguments, told(result.reference)))
         print(f"\nwritten: {arguments.plot}")
 
 
@@ -117,12 +125,11 @@ def render(arguments):
     pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
     if arguments.what == "contact":
         with working("contact lines"):
-            told = render_contact(pair, arguments.output, **options)
+            told = render_contact(pair, arguments.output, title=_title(scene, arguments), **options)
         print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
     else:
-        name = ", ".join(part for part in (scene.name, arguments.pair, arguments.case) if part)
         with working("stress"):
-            told = render_stress(pair, arguments.output, refine=arguments.refine, title=name, **options)
+            told = render_stress(pair, arguments.output, refine=arguments.refine, title=_title(scene, arguments), **options)
         print(told["text"])
         print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
     print(f"written: {arguments.output}")
@@ -191,7 +198,7 @@ def _print_analysis(report, arguments):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram)
+        plot_kurtogram(kurtogram, arguments.kurtogram, f"{last.name}, {report.channel}")
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
         report.plot(arguments.plot)

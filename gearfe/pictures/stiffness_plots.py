@@ -211,7 +211,12 @@ def plot_lengths(phase, lengths, others=None, path=None):
 
 
 def plot_contact(
-    pair: GearPair, contact: "Contact3D", phase: int = 0, path: str | os.PathLike[str] | None = None, pits: Sequence[Pit] = ()
+    pair: GearPair,
+    contact: "Contact3D",
+    phase: int = 0,
+    path: str | os.PathLike[str] | None = None,
+    pits: Sequence[Pit] = (),
+    title: str = "",
 ) -> "Figure":
     """Contact lines of one phase on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
 
@@ -225,6 +230,8 @@ def plot_contact(
         Picture file; its suffix decides (png, svg, pdf).
     pits : sequence of Pit
         Of the pinion, to be drawn; only the line of their own tooth pair is cut by them.
+    title : str
+        What is shown: scene, pair, case.
 
     Returns
     -------
@@ -243,7 +250,7 @@ def plot_contact(
         ends = np.array([z - cells.width[at] / 2, z + cells.width[at] / 2])
         along = np.interp(ends, z, radius)
         segments += [[(a, r), (b, s)] for a, b, r, s in zip(*ends, *along, strict=True)]
-    drawn = LineCollection(segments, cmap="plasma", linewidths=5, zorder=2)
+    drawn = LineCollection(segments, cmap="viridis", linewidths=5, zorder=2)
     drawn.set_array(np.concatenate([cells.pressure[at] for at in _lines_of(cells)]))
     top.add_collection(drawn)
     for pit in pits:
@@ -255,7 +262,8 @@ def plot_contact(
         top.annotate(name, (0.005, limit), xycoords=("axes fraction", "data"), fontsize=7, color="gray", va="bottom")
     top.set_ylabel("contact radius on the pinion [mm]")
     force = contact.load[phase].sum()
-    top.set_title(f"contact lines, phase {contact.phase[phase]:.3g}, {force:.0f} N in the transverse plane", fontsize=10)
+    where = f"contact lines, phase {contact.phase[phase]:.3g}, {force:.0f} N in the transverse plane"
+    top.set_title(f"{title}: {where}" if title else where, fontsize=10)
     figure.colorbar(drawn, ax=top, label="Hertz pressure [MPa]")
     for at in _lines_of(cells):
         order = int(cells.order[at[0]])

@@ -23,6 +23,7 @@ def plot_spectra(
     top: float | None = None,
     *,
     dpi: int = 120,
+    title: str = "",
 ) -> "Figure":
     """Draw spectra of one unit below each other, expected lines dotted and named; save to `path` if given.
 
@@ -36,6 +37,8 @@ def plot_spectra(
         Largest frequency or order; default 1.2 times the last line.
     dpi : int
         Dots per inch of the picture.
+    title : str
+        What is shown: scene, case, channel.
     """
     from matplotlib.figure import Figure
 
@@ -50,6 +53,8 @@ def plot_spectra(
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
     for name, value in (lines or {}).items():
         rows[0].annotate(name, (value, 1), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom")
+    if title:
+        figure.suptitle(title, fontsize=10)
     end = 1.2 * max(lines.values()) if lines and top is None else top
     rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
     rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
@@ -72,9 +77,9 @@ def plot_waves(signals, path, seconds=0.25, *, dpi=60):
     figure.savefig(path, dpi=dpi)
 
 
-def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None) -> "Figure":
-    """Draw a `gearfe.signal.kurtogram.Kurtogram`, the best band framed; save to `path` if given."""
-    from matplotlib import colormaps
+def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed; save to `path` if given."""
+    from matplotlib import cm, colormaps, colors
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 4), layout="constrained")
@@ -86,14 +91,17 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
         own = kurtogram.level == level
         shades = colormaps["viridis"](np.clip(kurtogram.kurtosis[own] / max(top, 1e-300), 0, 1))
         axes.barh(row, kurtogram.bandwidth[own], 1.0, left=low[own], color=shades, align="center")
+    scale = cm.ScalarMappable(colors.Normalize(0, max(top, 1e-300)), "viridis")
+    figure.colorbar(scale, ax=axes, label="spectral kurtosis [-] (0: noise; below it as 0)")
     best = kurtogram.best
     row = int(np.searchsorted(levels, kurtogram.level[best]))
-    axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="red", linewidth=1.5)
+    axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="#d55e00", linewidth=2)
     axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
     axes.invert_yaxis()
     axes.set_xlabel("frequency [Hz]")
     axes.set_ylabel("level")
-    axes.set_title(f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz", fontsize=9)
+    found = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
+    axes.set_title(f"{title}: {found}" if title else found, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
 

@@ -114,12 +114,12 @@ def tooth_figure(pressed, field, scale, largest):
     i, j, k = faces.astype(np.int32)
     bar = {"title": {"text": "von Mises<br>[MPa]"}, "len": 0.7, "thickness": 14}
     figure.add_mesh3d(
-        x=x, y=y, z=z, i=i, j=j, k=k, intensity=mises.astype(np.float32), cmin=0, cmax=largest, colorscale="Cividis",
+        x=x, y=y, z=z, i=i, j=j, k=k, intensity=mises.astype(np.float32), cmin=0, cmax=largest, colorscale="Viridis",
         colorbar=bar, lighting={"ambient": 0.6, "diffuse": 0.6, "specular": 0.05, "roughness": 0.9}, flatshading=False,
         hovertemplate="%{intensity:.0f} MPa<extra></extra>",
     )  # fmt: skip
     view, up = towards_flank(pressed.sector.gear)
-    camera = {"eye": dict(zip("xyz", 1.7 * view, strict=True)), "up": dict(zip("xyz", up, strict=True))}
+    camera = {"eye": dict(zip("xyz", 1.15 * view, strict=True)), "up": dict(zip("xyz", up, strict=True))}
     camera["projection"] = {"type": "orthographic"}
     axes = {f"{name}axis": {"visible": False} for name in "xyz"}
     figure.update_layout(scene={"aspectmode": "data", "camera": camera, **axes})

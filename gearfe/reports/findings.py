@@ -83,8 +83,11 @@ def find(scene, case=None, *, duration=0.2, phases=64, step=lambda text, done, t
     if scene.machine and duration:
         step("vibration", len(wanted) + 1, total)
         with _counted(found, "vibration of the machine"):
-            found.responses = responses(scene, found.case, duration=duration)
-            found.vibration = analysis(found.responses)
+            made = responses(scene, found.case, duration=duration)
+            try:
+                found.vibration, found.responses = analysis(made), made
+            except ValueError as error:  # too short to tell its lines apart; all else of the page stands
+                found.notes.append(f"no vibration of {duration:g} s is shown: {error}")
     found.notes = list(dict.fromkeys(found.notes))
     return found
 

@@ -71,11 +71,11 @@ def report(
     template = maker.from_string((texts / "page.html").read_text(encoding="utf-8"))
     figures = _Figures(plotly)
     page = template.render(
-        found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), tooth=_tooth(found, figures),
-        pictures=pictures,
-        vibration=_vibration(found, figures), methods=_methods(found), versions=_versions(found), duration=duration,
-        seconds=found.seconds, total=time.perf_counter() - started, style=(texts / "page.css").read_text(encoding="utf-8"),
-        turning=(texts / "page.js").read_text(encoding="utf-8"), plotly=needed("plotly.offline", "report").get_plotlyjs(),
+        found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
+        tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
+        versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
+        style=(texts / "page.css").read_text(encoding="utf-8"), turning=(texts / "page.js").read_text(encoding="utf-8"),
+        plotly=needed("plotly.offline", "report").get_plotlyjs(),
     )  # fmt: skip
     with written(path) as name:
         Path(name).write_text(page, encoding="utf-8")
@@ -192,7 +192,7 @@ def _vibration(found, figures):
         "lines": _table(found.vibration.lines_text()),
         "indicators": _table(found.vibration.indicators_text()),
         "stats": {case: one.stats for case, one in found.responses.items()},
-        "machine": repr(next(iter(found.responses.values())).machine),
+        "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),
     }
 
 

@@ -154,12 +154,12 @@ class StiffnessCurve:
         """
         return cls(**read_fields(path))
 
-    def plot(self, path: str | os.PathLike[str] | None = None) -> "Figure":
-        """Draw the curve; save to `path` if given.
+    def plot(self, path: str | os.PathLike[str] | None = None, title: str | None = None) -> "Figure":
+        """Draw the curve under a `title` (default: teeth, damage and load); save to `path` if given.
 
         Returns
         -------
         matplotlib.figure.Figure
             Its ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
         """
-        return plot_curves({self.meta.get("method", "k"): self}, path)
+        return plot_curves({self.meta.get("method", "k"): self}, path, title)

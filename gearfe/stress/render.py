@@ -15,6 +15,7 @@ from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
 from .window import drawing_library
 
+COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
 OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
@@ -88,7 +89,7 @@ def render_stress(
     return told
 
 
-def render_contact(scene_pair, path, *, case=None, phase=None):
+def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
     """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
 
     Parameters as of `render_stress`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
@@ -105,7 +106,7 @@ def render_contact(scene_pair, path, *, case=None, phase=None):
     phases = None if phase is None else [phase]
     run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
     found = contact_of(*run, order)
-    plot_contact(scene_pair.pair, found, path=path, pits=pits[0])
+    plot_contact(scene_pair.pair, found, path=path, pits=pits[0], title=title or (case or ""))
     pressure = found.cells[0].pressure
     corner = np.isnan(pressure)
     largest = math.nan if corner.all() else float(pressure[~corner].max())
@@ -147,14 +148,10 @@ def _text(title, told):
 def _picture(path, size, text, top):
     """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
     pyvista = drawing_library()
-    from pyvista.plotting.colors import get_cmap_safe
-
-    bright = get_cmap_safe("turbo")(np.linspace(0.07, 0.97, 256), bytes=True)
-    colours = ["#{:02x}{:02x}{:02x}".format(*row[:3]) for row in bright]
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
     try:
         plotter.set_background("white")
-        look = {"scalars": MISES, "clim": [0, top], "cmap": colours, "above_color": "#6b0000", "show_scalar_bar": False}
+        look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
         yield plotter, look
         scale = (size[0] / 1400) ** 0.7  # small pictures keep letters that can be read
         mapper = next(actor.mapper for name, actor in plotter.actors.items() if name.startswith("stress"))
@@ -198,6 +195,26 @@ def rounded_up(value):
     return next(s * power for s in (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10) if s * power >= value * (1 - 1e-9))
 
 
+def _length_scale(plotter, size, up, view):
+    """A bar of a round length at the lower left, in the plane of the picture, nearer than all else."""
+    import pyvista
+
+    up, view, focus = np.array(up), np.array(view), np.array(plotter.camera.focal_point)
+    right, half = np.cross(up, view), plotter.camera.parallel_scale
+    wide = half * size[0] / size[1]
+    target = 0.3 * wide
+    power = 10.0 ** math.floor(math.log10(target))
+    length = max(s * power for s in STEPS if s * power <= target)
+    near = 0.4 * np.linalg.norm(np.array(plotter.camera.position) - focus)
+    start = focus - 0.95 * wide * right - 0.93 * half * up + near * view
+    plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
+    plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
+    words = plotter.actors[next(reversed(plotter.actors))].prop
+    words.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
+    words.SetBackgroundColor(1.0, 1.0, 1.0)
+    words.SetBackgroundOpacity(0.8)
+
+
 def _draw_gears(pair, fields, told, path, size):
     """Both gears; if displacements are enlarged the cracked one alone, and in grey where both were without load."""
     import pyvista
@@ -221,6 +238,7 @@ def _draw_gears(pair, fields, told, path, size):
         plotter.camera.position = (*focus, 1)
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = half
+        _length_scale(plotter, size, (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
 def _draw_tooth(pair, fields, told, path, size):
@@ -264,3 +282,4 @@ def _draw_tooth(pair, fields, told, path, size):
         light = focus + 200 * gear.m_n * (view + 0.7 * up)
         plotter.add_light(pyvista.Light(position=light, focal_point=focus, intensity=1.0))
         plotter.camera.clipping_range = (10 * gear.m_n, 500 * gear.m_n)
+        _length_scale(plotter, size, plane[1], view)

@@ -51,11 +51,11 @@ class Analysis:
         """Indicators as Markdown, increments against healthy in brackets."""
         return table_text(self.indicators)
 
-    def plot(self, path=None):
-        """Spectra below each other; returns the figure."""
+    def plot(self, path=None, title=""):
+        """Spectra below each other under a `title` (default: the channel); returns the figure."""
         from ..pictures.vibration_plots import plot_spectra
 
-        return plot_spectra(self.spectra, self.lines, path)
+        return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
 
 
 def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):

@@ -1,0 +1,81 @@
+"""A report is one file that draws all its figures without a network and without a complaint of the browser."""
+
+import re
+import shutil
+import subprocess
+
+import pytest
+
+import gearfe as gf
+from gearfe.reports.findings import find
+
+pytest.importorskip("plotly")
+pytest.importorskip("jinja2")
+HOSTILE = "</script><script>document.title='broken'</script>"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    scene = gf.new_scene(folder / "own.toml", teeth=(17, 23), width=8.0)
+    scene.write_text(scene.read_text().replace('title = "Pair 17/23', f'title = "{HOSTILE}Pair 17/23'))
+    return gf.report(scene, folder / "page.html", phases=12)
+
+
+def test_page_is_one_file_with_all_its_parts(page):
+    text = page.read_text(encoding="utf-8")
+    assert page.stat().st_size < 15e6
+    own = re.sub(r"<script>/\*\*.*?</script>", "", text, flags=re.DOTALL)  # without plotly itself
+    assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own), "loads something"
+    for part in ("assumed", "errors", "stress", "tooth", "made"):
+        assert f'<section id="{part}">' in text
+    assert HOSTILE not in text
+    assert "No picture of" in text or text.count("data:image/png;base64,") == 2
+    assert "cracked" in text
+
+
+def test_numbers_of_the_page_are_those_of_compare(page):
+    text = page.read_text(encoding="utf-8")
+    found = gf.compare(gf.load_scene(page.parent / "own.toml"), case="cracked", phases=12)
+    for _, truth, _, others in found.rows():
+        assert f"<td>{truth / 1e6:.1f}</td>" in text
+        for k, error in others.values():
+            assert f"<td>{k / 1e6:.1f}</td>" in text
+            assert f">{100 * error:+.1f} %</td>" in text
+
+
+def test_surface_of_the_tooth_points_outwards(page):
+    import numpy as np
+
+    from gearfe.reports.tooth import surface
+
+    cube = np.array([[0, 1, 0, 1, 0, 1, 0, 1], [0, 0, 1, 1, 0, 0, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]], dtype=float)
+    tets = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]]).T
+    faces = surface(tets, cube)
+    assert faces.shape == (3, 12)
+    a, b, c = cube[:, faces].transpose(1, 0, 2)
+    volume = (a * np.cross(b, c, axis=0)).sum() / 6  # by the divergence theorem
+    np.testing.assert_allclose(volume, 1.0, rtol=1e-12)
+
+
+def test_unknown_case_and_suffix_are_refused_before_work(tmp_path):
+    with pytest.raises(ValueError, match="no case 'worn'"):
+        find("planetary_pitting", "worn")
+    with pytest.raises(ValueError, match=r"\.html"):
+        gf.report("planetary_pitting", tmp_path / "page.docx")
+
+
+@pytest.mark.skipif(shutil.which("chromium") is None, reason="no chromium")
+def test_browser_draws_all_figures_without_errors(page, tmp_path):
+    options = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-logging=stderr"]
+    options += [f"--user-data-dir={tmp_path}", "--host-resolver-rules=MAP * ~NOTFOUND", "--virtual-time-budget=10000"]
+    run = ["chromium", *options, "--window-size=900,900", "--dump-dom", f"file://{page}"]
+    done = subprocess.run(run, capture_output=True, text=True, timeout=300, check=True)
+    drawn = re.findall(r'id="(figure-\d+)" class="[^"]*js-plotly-plot', done.stdout)
+    assert len(drawn) == len(
+        set(re.findall(r'data-figure="(figure-\d+)"|id="(figure-\d+)"', page.read_text(encoding="utf-8"))) or drawn
+    )
+    assert len(drawn) >= 6
+    assert "<title>" in done.stdout
+    assert "<title>broken" not in done.stdout
+    assert not [line for line in done.stderr.splitlines() if ":CONSOLE" in line and ("Error" in line or "error" in line)]
