@@ -5,10 +5,10 @@ import pytest
 import gearfe as gf
 from gearfe.cli import main
 
+OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)})
 
-@pytest.mark.parametrize(
-    "options", [{}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)}]
-)
+
+@pytest.mark.parametrize("options", OPTIONS)
 def test_written_scene_is_the_pair_asked_for(options, tmp_path):
     scene = gf.load_scene(gf.new_scene(tmp_path / "my.toml", **options))
     pair = scene.pair().pair
