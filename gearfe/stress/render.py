@@ -205,8 +205,12 @@ def _length_scale(plotter, size, up, view):
     target = 0.3 * wide
     power = 10.0 ** math.floor(math.log10(target))
     length = max(s * power for s in STEPS if s * power <= target)
-    near = 0.4 * np.linalg.norm(np.array(plotter.camera.position) - focus)
+    near = 0.15 * np.linalg.norm(np.array(plotter.camera.position) - focus)
     start = focus - 0.95 * wide * right - 0.93 * half * up + near * view
+    middle = start + length / 2 * right - 0.1 * near * view
+    corners = np.array([middle + i * 0.58 * length * right + j * 0.025 * half * up for j in (-1, 1) for i in (-1, 1)])
+    sheet = pyvista.PolyData(corners, faces=[4, 0, 1, 3, 2])
+    plotter.add_mesh(sheet, color="white", lighting=False)
     plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
     plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
     words = plotter.actors[next(reversed(plotter.actors))].prop
@@ -230,8 +234,8 @@ def _draw_gears(pair, fields, told, path, size):
             plotter.add_mesh(_lines(field, 0, lift=0.01), color="#9a9a9a", line_width=1.5, lighting=False)
         half = (2.6 if scale else 3.6) * pair.gear_1.m_n
         wide = half * size[0] / size[1]
-        middle = (focus[0] + 0.9 * wide, focus[1], 0.1)
-        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.21 * wide, j_size=3 * half)  # behind the colour bar
+        middle = (focus[0] + 0.83 * wide, focus[1], 0.1)
+        strip = pyvista.Plane(center=middle, direction=(0, 0, 1), i_size=0.36 * wide, j_size=3 * half)  # behind the colour bar
         plotter.add_mesh(strip, color="white", lighting=False)
         plotter.view_xy()
         plotter.camera.focal_point = (*focus, 0)
