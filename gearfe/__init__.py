@@ -2,7 +2,7 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
-`motion`, `stress`; `studies`; `reports`, `cli`.
+`motion`, `stress`; `studies`; `reports`; `cli`.
 """
 
 import importlib

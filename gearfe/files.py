@@ -11,7 +11,6 @@ import tempfile
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
@@ -155,18 +154,9 @@ def read(path, kind):
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
 
 
-def needed(name, extra):
-    """Module `name` of an optional library.
-
-    Raises
-    ------
-    RuntimeError
-        If it cannot be imported; the message has the command that installs it.
-    """
-    try:
-        return import_module(name)
-    except ImportError as error:
-        raise RuntimeError(f"this needs {name} ({error}): pip install {name}, or pip install 'gearfe[{extra}]'") from error
+def missing(name, extra, error):
+    """Return what to raise where the optional library `name` cannot be imported: a RuntimeError with the command for it."""
+    return RuntimeError(f"this needs {name} ({error}): pip install {name}, or pip install 'gearfe[{extra}]'")
 
 
 def write_csv(name, content):

@@ -9,8 +9,7 @@ from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
-from ..files import check_output, needed, written
-from ..scene.load import Scene
+from ..files import check_output, missing, written
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
@@ -60,8 +59,11 @@ def report(
         If plotly or jinja2 is missing; the message has the command that installs them.
     """
     check_output(path, "page")
-    jinja2, plotly = needed("jinja2", "report"), needed("plotly", "report")
-    needed("plotly.graph_objects", "report")
+    try:
+        import jinja2
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise missing(f"{error.name}", "report", error) from error
     started = time.perf_counter()
     found = find(scene, case, duration=duration, phases=phases, step=getattr(tell, "step", lambda *_: None))
     with _part(found, "stress pictures"):
@@ -69,13 +71,13 @@ def report(
     texts = resources.files("gearfe.reports")
     maker = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
     template = maker.from_string((texts / "page.html").read_text(encoding="utf-8"))
-    figures = _Figures(plotly)
+    figures = _Figures()
     page = template.render(
         found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
         versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
         style=(texts / "page.css").read_text(encoding="utf-8"), turning=(texts / "page.js").read_text(encoding="utf-8"),
-        plotly=needed("plotly.offline", "report").get_plotlyjs(),
+        plotly=get_plotlyjs(),
     )  # fmt: skip
     with written(path) as name:
         Path(name).write_text(page, encoding="utf-8")
@@ -85,8 +87,8 @@ def report(
 class _Figures:
     """Figures as text of a page, numbered."""
 
-    def __init__(self, plotly):
-        self.plotly, self.number = plotly, 0
+    def __init__(self):
+        self.number = 0
 
     def __call__(self, figure):
         self.number += 1

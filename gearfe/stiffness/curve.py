@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import needed, save, save_as
+from ..files import missing, save, save_as
 from ..pictures.inline import line_svg
 from ..pictures.stiffness_plots import NEWTON_PER_UM, plot_curves
 from .curve_file import content, read_fields
@@ -79,7 +79,10 @@ class StiffnessCurve:
         RuntimeError
             If pandas is missing; the message names what to install.
         """
-        library = needed("pandas", "data")
+        try:
+            import pandas
+        except ImportError as error:
+            raise missing("pandas", "data", error) from error
         columns = dict(content(self).columns)
         index = library.Index(columns.pop("phase [-]"), name="phase [-]")
         table = library.DataFrame(columns, index=index)
@@ -99,7 +102,11 @@ class StiffnessCurve:
         RuntimeError
             If xarray is missing; the message names what to install.
         """
-        library, made = needed("xarray", "data"), content(self)
+        try:
+            import xarray
+        except ImportError as error:
+            raise missing("xarray", "data", error) from error
+        made = content(self)
         names = [name for name in made.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}
         values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}

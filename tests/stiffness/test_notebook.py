@@ -62,7 +62,7 @@ def test_tables_hold_the_numbers(curve):
 def test_jumps_are_drawn_where_pairs_enter_and_leave(pair):
     made = gf.mesh_stiffness(pair, 2000.0, gf.Material(E=207e3, nu=0.25), method="textbook", phases=16)
     phase, k = closed(made)
-    steep = phase[1:][np.diff(phase) == 0]
+    steep = np.unique(phase[1:][np.diff(phase) == 0])
     np.testing.assert_allclose(steep, [pair.eps_alpha - 1, 1.0])
     assert np.abs(np.diff(k)[np.diff(phase) > 0]).max() < 0.1 * np.abs(np.diff(k)).max(), "no slope stands for a jump"
 

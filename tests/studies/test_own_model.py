@@ -204,4 +204,4 @@ def test_own_models_are_drawn():
         warnings.simplefilter("error")
         figure = plot_curves({"textbook": by_textbook(50), "mine": curve_of(lambda phase: 3e8 + 0 * phase)})
     lines = {line.get_label(): line.get_ydata() for line in figure.axes[0].lines}
-    assert_allclose(lines["mine"], 0.3, rtol=1e-14)
+    assert_allclose(lines["mine"], 300.0, rtol=1e-14)
