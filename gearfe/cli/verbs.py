@@ -153,6 +153,8 @@ def dynamics(arguments):
         print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
         if "switched" in stats:
             print(f"  {case}: reference used because {stats['switched']}")
+        if "chaotic" in stats:
+            print(f"  {case}: {stats['chaotic']}")
     _print_analysis(analysis(found, arguments.channel), arguments)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
