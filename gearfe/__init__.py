@@ -32,6 +32,7 @@ _HOME = {
     "batch": "gearfe.studies.batches",
     "compare": "gearfe.studies.by_zone",
     "demodulate": "gearfe.signal.demodulation",
+    "decimate": "gearfe.signal.series",
     "envelope": "gearfe.signal.series",
     "build_machine": "gearfe.machine.of_scene",
     "compound_planetary": "gearfe.machine.compound_planetary",

@@ -158,8 +158,12 @@ def dynamics(arguments):
         stats = one.stats
         doubt = f", error about {100 * stats['error']:.2g} % of the range" if "error" in stats else ""
         print(f"  {case}: {len(made.dofs)} degrees of freedom, {stats['seconds']:.2f} s by {stats['method']}{doubt}")
+        left = f"free vibrations at {stats['free']:.1g} of their start"
+        print(f"  {case}: recorded after {stats['settled']:.3g} s, {left}")
         if "switched" in stats:
             print(f"  {case}: reference used because {stats['switched']}")
+        if "chaotic" in stats:
+            print(f"  {case}: {stats['chaotic']}")
     _print_analysis(analysis(found, arguments.channel), arguments)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)

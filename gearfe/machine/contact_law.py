@@ -115,6 +115,22 @@ def force(x, v, k, law):
     return contact_force(x, v, k, *(law[key] for key in LAW), *branches(law))
 
 
+def sides(x, law):
+    """On which flanks each mesh touches at compressions `x` ``(..., m)``: 1 the front ones, -1 the back ones, 0 none."""
+    return (x > 0).astype(np.int8) - (x < -law["backlash"])
+
+
+def sided_force(x, v, k, law, side):
+    """`force` of meshes that stay on the flanks `side` says, whatever x: smooth where `force` has its kinks.
+
+    An integrator that steps up to the time at which a flank is left sees a smooth law on all its way. (Flanks that only push,
+    `push`, keep the kink at which their force reaches zero.)
+    """
+    depth = np.where(side == 0, 0.0, np.where(side < 0, x + law["backlash"], x))
+    depth = np.where(law["push"], np.where(side < 0, np.minimum(depth, 0.0), np.maximum(depth, 0.0)), depth)
+    return force(depth, v, k, law | {"backlash": np.zeros_like(law["backlash"])})
+
+
 def slopes(x, v, k, law):
     """Derivatives of `force` by x and v, of the branch the state is on (shapes as there)."""
     back = x < -law["backlash"]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files import Content, save_as, suffix_of
-from ..machine.contact_law import force
+from ..machine.contact_law import force, sided_force
 from ..machine.tables import Machine
 from ..pictures.inline import line_svg
 from . import excitation
@@ -154,11 +154,12 @@ class Response:
         return self.machine.dofs.index(head)
 
 
-def acceleration(machine, flat, t, q, v):
-    """Accelerations at times `t` from displacements and velocities ``(..., n)``."""
+def acceleration(machine, flat, t, q, v, side=None):
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``; of meshes held on a `side` if given."""
     k, phase = excitation.stiffness(flat, t)
     e, rate = excitation.errors(flat, t)
-    total = force(q @ machine.G.T - e, v @ machine.G.T - rate, k, machine.law)
+    law, x, speed = machine.law, q @ machine.G.T - e, v @ machine.G.T - rate
+    total = force(x, speed, k, law) if side is None else sided_force(x, speed, k, law, side)
     out = -q @ machine.K - v @ machine.C - total @ machine.G
     rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
     if rub:

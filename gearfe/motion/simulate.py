@@ -2,21 +2,22 @@
 
 import math
 import time
+import warnings
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 from ..machine.tables import Machine
-from . import excitation
 from .fixed_step import fixed_steps
-from .response import Response, acceleration
-from .step_control import WANTED_OPEN, chosen_step, default_step, difference
+from .reference import SOLVERS, reference
+from .response import Response
+from .step_control import WANTED_OPEN, chosen_step, default_step, difference, estimate
 
-SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 FINER = 3  # times the step of a whole run is halved where contact is lost
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
+COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
+NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
 def simulate(
@@ -24,14 +25,21 @@ def simulate(
     duration: float,
     *,
     method: str = "fast",
+    rate: float | None = None,
+    step: float | None = None,
     dt: float | None = None,
     initial: tuple[ArrayLike, ArrayLike] | None = None,
+    start: float = 0.0,
     every: int = 1,
     rtol: float = 1e-8,
-    error: bool = False,
+    error: bool | None = None,
     numba: bool | None = None,
 ) -> Response:
-    """Response of a machine from time 0.
+    """Response of a machine.
+
+    What is kept and how it is integrated are two things: `rate` is the first, `step` the second. The states kept are those of
+    the integrator at these times, exact to its error, not filtered: what vibrates above half of `rate` appears folded in a
+    spectrum. For a spectrum at a low rate keep a high one and bring the channel down by `gearfe.decimate`, which filters first.
 
     Parameters
     ----------
@@ -40,20 +48,28 @@ def simulate(
         [s]
     method : str
         ``"fast"``: `gearfe.motion.exponential`, fixed steps that are halved about changes of contact. Or a method of
-        `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``).
+        `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
+    rate : float, optional
+        Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
+    step : float, optional
+        Longest step of the fast path [s]; rounded down to divide the interval of the output. Its error is estimated. Default: a
+        step whose error on a short stretch is at most 7e-4 of the range (`gearfe.motion.step_control.chosen_step`); where
+        contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
+        disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
+        ``stats["chaotic"]`` says; otherwise the reference takes over, which ``stats["switched"]`` says.
     dt : float, optional
-        Step of the fast path, and interval of the output [s]; rounded down to divide `duration`. Default: a step whose error on
-        a short stretch is at most 7e-4 of the range (`gearfe.motion.step_control.chosen_step`); where contact is lost the whole
-        run is repeated at half the step until both agree within 1e-2, and if they never do the reference takes over, which
-        ``stats["switched"]`` says.
+        Step and interval of the output in one [s]; rounded down to divide `duration`.
     initial : (ndarray, ndarray), optional
-        Displacements and velocities ``(n,)``; default: at rest under the loads of time 0 (`Machine.rest`).
+        Displacements and velocities ``(n,)``; default: at rest under the loads at the start (`Machine.rest`).
+    start : float
+        Time of the first state [s].
     every : int
-        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step.
+        Keep every n-th output. Without `dt` the outputs counted are `default_step` apart, whatever the step. Not with `rate`.
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
-    error : bool
-        Fast path: integrate once more with half the step; ``stats["error"]`` is then of the whole run.
+    error : bool, optional
+        Fast path: True integrates once more with half the step, ``stats["error"]`` is then of the whole run; False leaves a
+        given step unestimated.
     numba : bool, optional
         Fast path: use the compiled loop; default: if numba is installed.
 
@@ -62,7 +78,7 @@ def simulate(
     Response
         Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
         step, over their ranges (`gearfe.motion.step_control.difference`), on the first ``stats["error_seconds"]`` of a run about
-        the worst damaged tooth, or of the whole run. A given `dt` without ``error=True`` has none.
+        the worst damaged tooth, or of the whole run.
 
     Raises
     ------
@@ -70,59 +86,101 @@ def simulate(
         If an input is impossible.
     RuntimeError
         If the response grows beyond all bounds, or the reference gives up.
+
+    Warns
+    -----
+    UserWarning
+        If the estimate of a given step is above a tenth of the range.
     """
-    _check(machine, duration, method, dt, every)
+    _check(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
-        state = np.concatenate([machine.rest(), np.zeros(len(machine.dofs))])
+        state = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     else:
         state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
     if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
+    if rate is not None:
+        count = math.floor(duration * rate * (1 + 1e-12))
+        duration = count / rate
+    else:
+        count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
     if method != "fast":
-        return _reference(machine, duration, _outputs(machine, duration, dt, every), state, method, rtol)
-    if dt is None:
-        return _controlled(machine, duration, state, initial is not None, every, error, numba)
-    steps = every * _outputs(machine, duration, dt, every)
-    out = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
-    if not error:
-        return out
-    finer = fixed_steps(machine, duration, 2 * steps, state, every=2 * every, numba=numba)
-    stats = {"error": max(difference(out, finer)), "seconds": out.stats["seconds"] + finer.stats["seconds"]}
-    return replace(out, stats=out.stats | stats | {"error_seconds": float(duration)})
+        return reference(machine, duration, count, state, method, rtol, start)
+    own = state if initial is not None and not start else None
+    run = _Runs(machine, duration, count, state, own, start, numba)
+    if step is None and dt is None:
+        return run.controlled(error)
+    return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
 
 
-def _controlled(machine, duration, state, given, every, error, numba):
-    """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
-    started = time.perf_counter()
-    dt, doubt, length = chosen_step(machine, duration, state if given else None, numba)
-    outputs = _outputs(machine, duration, None, every)
-    every = math.ceil(duration / outputs / dt * (1 - 1e-9))
-    steps = every * outputs
-    out = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
-    if not (out.stats["losses"] or error):
+class _Runs:
+    """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
+
+    def __init__(self, machine, duration, count, state, own, start, numba):
+        self.machine, self.duration, self.count, self.state = machine, duration, count, state
+        self.own, self.start, self.numba = own, start, numba
+
+    def __call__(self, every, state=None):
+        """Run of `every` steps for each output."""
+        state = self.state if state is None else state
+        options = {"every": every, "numba": self.numba, "start": self.start}
+        return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
+
+    def given(self, every, error):
+        """Run of steps that the caller chose, with their estimate unless `error` is False."""
+        started = time.perf_counter()
+        out = self(every)
+        if error is False:
+            return out
+        if error:
+            doubt, length = max(difference(out, self(2 * every))), float(self.duration)
+        else:
+            try:
+                doubt, _, length = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
+            except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
+                doubt, length = math.inf, float(self.duration)
+        if not doubt <= COARSE:
+            warnings.warn(
+                f"a step of {out.stats['dt']:.3g} s is too long for this machine: its error is about {100 * doubt:.2g} % of the "
+                "range of the motion; leave the step open and state the rate of the output by rate=",
+                stacklevel=3,
+            )
         stats = {"error": doubt, "error_seconds": length, "seconds": time.perf_counter() - started}
         return replace(out, stats=out.stats | stats)
-    for _ in range(FINER):
-        steps, every = 2 * steps, 2 * every
-        finer = fixed_steps(machine, duration, steps, state, every=every, numba=numba)
-        doubt = max(difference(out, finer))
-        out = finer
-        if doubt <= ALLOWED or not out.stats["losses"]:
-            stats = {"error": doubt, "error_seconds": float(duration), "seconds": time.perf_counter() - started}
-            return replace(out, stats=out.stats | stats)
-    why = f"contact is lost and two runs of the fast path, with steps of {2 * duration / steps:.3g} s and half of it, differ by"
-    want = _reference(machine, duration, len(out.time) - 1, state, "DOP853", 1e-8)
-    stats = {"switched": f"{why} {doubt:.2g} of the range", "error": max(difference(out, want)), "error_seconds": float(duration)}
-    return replace(want, stats=want.stats | stats | {"seconds": time.perf_counter() - started})
+
+    def controlled(self, error):
+        """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
+        started = time.perf_counter()
+
+        def told(one, **more):
+            return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
+
+        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba)
+        every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
+        out = self(every)
+        if not (out.stats["losses"] or error):
+            return told(out, error=doubt, error_seconds=length)
+        length = float(self.duration)
+        for _ in range(FINER):
+            every *= 2
+            finer = self(every)
+            doubt = max(difference(out, finer))
+            out = finer
+            if doubt <= ALLOWED or not out.stats["losses"]:
+                return told(out, error=doubt, error_seconds=length)
+        h = out.stats["dt"]
+        why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
+        rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
+        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest)), out))
+        if grown > GROWN:
+            why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
+            why += " for so long; trust its averages and spectra, or shorten the run"
+            return told(out, chaotic=why, error=doubt, error_seconds=length)
+        want = reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, self.start)
+        return told(want, switched=f"{why} of the range", error=max(difference(out, want)), error_seconds=length)
 
 
-def _outputs(machine, duration, dt, every):
-    """Number of intervals between outputs."""
-    dt = min(default_step(machine), duration) if dt is None else dt
-    return math.ceil(duration / dt / every * (1 - 1e-12))
-
-
-def _check(machine, duration, method, dt, every):
+def _check(machine, duration, method, rate, step, dt, start, every):
     if not isinstance(machine, Machine):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
@@ -131,45 +189,16 @@ def _check(machine, duration, method, dt, every):
         raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:
         raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
-    if dt is not None and not (math.isfinite(dt) and 0 < dt <= duration):
-        raise ValueError(f"dt = {dt} s, but it must be positive and no longer than the duration")
+    for name, value in {"dt": dt, "step": step}.items():
+        if value is not None and not (math.isfinite(value) and 0 < value <= duration):
+            raise ValueError(f"{name} = {value} s, but it must be positive and no longer than the duration")
+    if rate is not None and not (math.isfinite(rate) and duration * rate * (1 + 1e-12) >= 1):
+        raise ValueError(f"rate = {rate} Hz, but give a positive number that keeps one sample or more in {duration:g} s")
+    if dt is not None and (rate is not None or step is not None):
+        raise ValueError("dt is both the step and the interval of the output: give rate and step instead, or one of them")
+    if rate is not None and every != 1:
+        raise ValueError(f"rate = {rate} Hz and every = {every}: both thin out the output; give a lower rate alone")
+    if not math.isfinite(start):
+        raise ValueError(f"start = {start} s, but it must be a time")
     if isinstance(every, bool) or every != int(every) or every < 1:
         raise ValueError(f"every = {every!r}, but give a whole number >= 1")
-
-
-def _reference(machine, duration, count, state, method, rtol):
-    started = time.perf_counter()
-    n = len(machine.dofs)
-    at = np.linspace(0.0, duration, count + 1)
-    flat = excitation.flatten(machine, np.linspace(0.0, duration, 20 * count + 1))
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-    unit = max(2 * math.pi * highest, 1.0)  # velocities of the size of the displacements
-    scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
-    rest = machine.rest()
-    size = np.abs(scale * np.concatenate([rest, 0 * rest])).max() or np.abs(scale * state).max() or 1.0
-
-    def rate(t, y):
-        u = y / scale
-        return scale * np.concatenate([u[n:], acceleration(machine, flat, np.asarray(t), u[:n], u[n:])])
-
-    edges = np.unique(np.concatenate([[0.0, duration], *(one.breaks for one in machine.loads)]))
-    edges = edges[(edges >= 0) & (edges <= duration)]
-    y, states, calls = scale * state, [state[None]], 0
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
-        inside = at[(at > low) & (at <= high)]
-        done = solve_ivp(
-            rate,
-            (low, high),
-            y,
-            method,
-            t_eval=np.union1d(inside, [high]),
-            rtol=rtol,
-            atol=1e-3 * rtol * size,
-            max_step=1 / (8 * highest) if highest else np.inf,
-        )
-        if not done.success or not np.isfinite(done.y).all():
-            raise RuntimeError(f"{method} gave up at t = {done.t[-1] if done.t.size else low:.4g} s: {done.message}")
-        y, calls = done.y[:, -1], calls + done.nfev
-        states.append((done.y[:, : inside.size] / scale[:, None]).T)
-    stats = {"method": method, "rtol": rtol, "calls": calls, "seconds": time.perf_counter() - started, "dofs": n}
-    return Response(machine, at, np.concatenate(states), np.eye(2 * n), stats)

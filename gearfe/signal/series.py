@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
+from scipy.signal import resample_poly
 
 from .indicators import indicators
 from .spectra import analytic
@@ -114,6 +116,37 @@ def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
         signal.angle,
         signal.shaft_frequency,
     )
+
+
+def decimate(signal: Signal, rate: float) -> Signal:
+    """The signal at a lower rate, filtered first so that nothing above half of it folds down.
+
+    A linear-phase filter without delay (`scipy.signal.resample_poly`, Kaiser's window): half of the amplitude is left at half
+    the new rate, 53 dB are taken off from 1.16 of it on. The ends, ten new samples long, see a record that goes on as a line.
+
+    Parameters
+    ----------
+    signal : Signal
+    rate : float
+        [Hz]; a ratio of small whole numbers to that of the signal.
+
+    Returns
+    -------
+    Signal
+
+    Raises
+    ------
+    ValueError
+        If the rate is higher than that of the signal, or no such ratio.
+    """
+    ratio = Fraction(rate / signal.rate).limit_denominator(1000) if 0 < rate <= signal.rate else Fraction(0)
+    if not ratio or abs(ratio * signal.rate / rate - 1) > 1e-9:
+        raise ValueError(
+            f"rate = {rate} Hz, but {signal.name} has {signal.rate:g} Hz: give that over a whole number, or p/q of it up to 1"
+        )
+    values = resample_poly(signal.values, ratio.numerator, ratio.denominator, window=("kaiser", 5.0), padtype="line")
+    angle = None if signal.angle is None else np.interp(np.arange(values.size) / rate, signal.time, signal.angle)
+    return Signal(values, rate, signal.unit, signal.name, angle, signal.shaft_frequency)
 
 
 def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:

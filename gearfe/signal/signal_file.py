@@ -36,7 +36,7 @@ def read_signal(
       above the numbers, names the columns and their units: ``time [s], housing [m/s^2]``; time in s, ms or us, a shaft's
       ``angle`` in rad or deg. Comments may state ``# rate = 61440 Hz``, ``# unit = m/s^2``, ``# shaft_frequency = 16.7 Hz``.
     - .mat (up to version 7) and .npz: vectors by name, ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency``
-      [Hz]; text ``unit``.
+      [Hz]; text ``unit``. A response that gearfe wrote (``values``, ``names``, ``units``): columns by channel.
 
     Parameters
     ----------
@@ -217,6 +217,7 @@ def _bad_row(path, rows, separator, count):
 def _from_arrays(path, arrays):
     """Vectors, their units, and what scalars and text state."""
     vectors, stated = {}, {}
+    arrays, named = _channels(arrays)
     for name, value in arrays.items():
         if value.dtype.kind in "US" and value.size == 1:
             stated[_plain(name)] = str(value.reshape(-1)[0])
@@ -228,4 +229,16 @@ def _from_arrays(path, arrays):
         kinds = ", ".join(f"{name} {value.dtype}{list(value.shape)}" for name, value in arrays.items())
         raise ValueError(f"{path}: no vector of real numbers; it has {kinds or 'nothing'}")
     units = {name: "s" if _plain(name) in TIMES else "rad" if _plain(name) in ANGLES else "" for name in vectors}
-    return vectors, units, stated
+    return vectors, units | named, stated
+
+
+def _channels(arrays):
+    """Columns of ``values`` as vectors by ``names``, and their ``units``: a response as `gearfe.Response.save` writes it."""
+    if not {"values", "names", "units"} <= arrays.keys() or arrays["values"].ndim != 2:
+        return arrays, {}
+    names, units = ([str(np.ravel(one)[0]).strip() for one in arrays[key].reshape(-1)] for key in ("names", "units"))
+    if not len(names) == len(units) == arrays["values"].shape[1]:
+        return arrays, {}
+    columns = dict(zip(names, arrays["values"].T, strict=True))
+    rest = {key: value for key, value in arrays.items() if key not in ("values", "names", "units")}
+    return rest | columns, dict(zip(names, units, strict=True))

@@ -11,12 +11,15 @@ from geometry.damage.pit import Pit
 
 from ..machine.of_scene import build_machine
 from ..motion.simulate import simulate
+from ..motion.step_control import default_step
 from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import expected_lines, find_lines
 
-SETTLE = 0.5  # of the duration, before it, left out
+FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
+UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
+LONGEST = 20.0  # s left out at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +69,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     scene : Scene
     case : str, optional
     duration : float
-        Kept, after half as much in which the motion settles [s].
+        Kept [s], from when the free vibrations have fallen to a thousandth (`recorded`).
     method : str
         Of `gearfe.simulate`.
     phases : int
@@ -87,20 +90,52 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
         warnings.warn(
             "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
         )
-    out = {}
-    for name in ("healthy", *([case] if case else [])):
-        made = build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
-        out[name] = settled(simulate(made, (1 + SETTLE) * duration, method=method))
-    return out
+    made = {
+        name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+        for name in ("healthy", *([case] if case else []))
+    }
+    rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
+    return {name: recorded(one, duration, rate, method=method) for name, one in made.items()}
 
 
-def settled(whole):
-    """The part of a response after its first `SETTLE` / (1 + `SETTLE`), counted in samples.
+def recorded(machine, duration, rate, *, method="fast"):
+    """Response of a machine from when the free vibrations that its start sets off have died out.
 
-    Two runs of one duration and one number of samples keep equally many, whatever the rounding of their times.
+    The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
+    ``stats["settled"]`` is that time [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take longer
+    than `LONGEST`, or for ever.
+
+    Parameters
+    ----------
+    machine : Machine
+    duration, rate : float
+        Of what is kept [s, Hz].
+    method : str
+        Of `gearfe.simulate`.
+
+    Returns
+    -------
+    Response
     """
-    first = math.ceil(SETTLE / (1 + SETTLE) * (len(whole.time) - 1) - 1e-6)
-    return replace(whole, time=whole.time[first:], states=whole.states[first:])
+    decay = slowest_decay(machine)
+    need = -math.log(FREE) / decay if decay else math.inf
+    settle = min(need, LONGEST) if decay else UNDAMPED * duration
+    before = simulate(machine, settle, rate=1 / settle)
+    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
+    stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
+    return replace(out, stats=out.stats | stats)
+
+
+def slowest_decay(machine):
+    """Rate at which the least damped vibration of a machine dies out, meshes at their mean stiffness [1/s]; 0 if it does not."""
+    n = len(machine.dofs)
+    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
+    K, C, _, _ = machine.linear(x)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
+    values = np.linalg.eigvals(A)
+    slow = 1e-6 * np.abs(values).max()  # turning as a whole, not vibrating
+    decays = -values.real[values.imag > slow]
+    return float(max(decays.min(), 0.0)) if decays.size and decays.min() > 1e-9 * np.abs(values).max() else 0.0
 
 
 def analysis(found, channel=None):

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.studies.vibration import analysis, responses, settled
+from gearfe.studies.vibration import analysis, recorded, responses, slowest_decay
 
 SCENE = gf.load_scene("compound_planetary")
 
@@ -80,11 +80,22 @@ def test_command_line(tmp_path, capsys):
     assert "it has crack10" in capsys.readouterr().err
 
 
-def test_runs_of_one_duration_keep_equally_many_samples():
-    """Times of two runs differ by rounding; of a plan with 24/30/84 teeth 9782 and 9783 samples were kept of them."""
-    machine = gf.single_mesh(1.0, 1e8, 300.0, force=100.0)
-    for count in (7, 96, 29348, 29349):
-        for nudge in (1 - 1e-15, 1.0, 1 + 1e-15):
-            time = np.linspace(0.0, 0.45, count + 1) * nudge
-            one = gf.Response(machine, time, np.zeros((count + 1, 2)), np.eye(2))
-            assert len(settled(one).time) == count + 1 - -(-count // 3), (count, nudge)
+def test_a_record_begins_when_free_vibrations_have_died_out():
+    """One mass on its mesh at 100 Hz, damped so that half a record is a sixth of what it needs; nothing but the mesh is left."""
+    mass, stiff, damping = 1.0, (200 * np.pi) ** 2, 6.0
+    curve = stiff * (1 + 0.05 * np.cos(2 * np.pi * np.arange(64) / 64))
+    machine = gf.single_mesh(mass, curve, 37.0, force=100.0, damping=damping)
+    assert_allclose(slowest_decay(machine), damping / 2 / mass, rtol=1e-9)
+    got = recorded(machine, 1.0, 2000.0)
+    assert_allclose(got.stats["free"], 1e-3, rtol=1e-9)
+    assert len(got.time) == 2001
+    signal = gf.Signal(got["force mesh"][:-1], 2000.0, "N")
+    found = gf.find_lines(gf.spectrum(signal), {"mesh": 37.0, "free": 100.0})
+    assert found["free"][1] < 2e-3 * found["mesh"][1]
+
+
+def test_a_record_of_what_never_settles_says_so():
+    machine = gf.single_mesh(1.0, 4e5, 37.0, force=100.0)
+    got = recorded(machine, 0.1, 2000.0)
+    assert got.stats["free"] == 1.0
+    assert_allclose(got.stats["settled"], 0.05, rtol=1e-12)

@@ -1,0 +1,73 @@
+"""What is kept and how it is integrated are two things: rate and step of `simulate`."""
+
+import numpy as np
+import pytest
+from machines import two_masses
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.motion.simulate import simulate
+from gearfe.motion.step_control import difference
+
+FAST = {"numba": False}
+
+
+def test_a_low_rate_keeps_the_step_and_its_error():
+    """At 2 kHz, a quarter of what one mesh cycle of 500 Hz needs as a step, the states are those of a fine run."""
+    machine = two_masses()
+    got = simulate(machine, 0.02, rate=2e3, **FAST)
+    want = simulate(machine, 0.02, dt=5e-4, method="DOP853", rtol=1e-10)
+    assert_allclose(got.time, np.arange(41) / 2e3, rtol=1e-12)
+    assert got.stats["dt"] < 1e-4
+    assert max(difference(got, want)) < 1e-3
+
+
+def test_a_given_step_is_estimated_and_warned_of():
+    machine = two_masses()
+    with pytest.warns(UserWarning, match="too long for this machine"):
+        got = simulate(machine, 0.02, dt=5e-4, **FAST)
+    want = simulate(machine, 0.02, dt=5e-4, method="DOP853", rtol=1e-10)
+    assert got.stats["error"] > 0.1
+    assert max(difference(got, want)) > 0.1
+    fine = simulate(machine, 0.02, rate=2e3, step=2e-5, **FAST)
+    assert 0 < fine.stats["error"] < 1e-2
+    assert fine.stats["dt"] <= 2e-5
+    assert max(difference(fine, want)) < max(1.5 * fine.stats["error"], 1e-6)
+    assert "error" not in simulate(machine, 0.002, dt=1e-5, error=False, **FAST).stats
+
+
+def test_the_motion_goes_on_from_any_time():
+    machine = two_masses()
+    whole = simulate(machine, 0.004, rate=1e4, step=1e-5, **FAST)
+    half = simulate(machine, 0.002, rate=1e4, step=1e-5, start=0.002, initial=(whole.q[20], whole.v[20]), error=False, **FAST)
+    assert_allclose(half.time, whole.time[20:], rtol=1e-12)
+    assert_allclose(half.q, whole.q[20:], atol=1e-9 * np.abs(whole.q).max())
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"rate": 0.0}, "rate = 0.0 Hz"),
+        ({"rate": 10.0}, "keeps one sample"),
+        ({"rate": 1e3, "dt": 1e-5}, "give rate and step instead"),
+        ({"rate": 1e3, "every": 2}, "give a lower rate alone"),
+        ({"step": -1.0}, "step = -1.0"),
+        ({"start": np.nan}, "start = nan"),
+    ],
+)
+def test_what_contradicts_itself_is_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        simulate(two_masses(), 0.01, **options)
+
+
+def test_decimation_keeps_what_is_below_and_takes_out_what_is_above():
+    t = np.arange(40000) / 40e3
+    whole = gf.Signal(3 + 2 * np.sin(2 * np.pi * 300 * t) + 5 * np.sin(2 * np.pi * 3600 * t), 40e3, "N")
+    low = gf.decimate(whole, 4e3)
+    assert low.rate == 4e3
+    inside = slice(100, -100)
+    want = 3 + 2 * np.sin(2 * np.pi * 300 * low.time)
+    assert np.abs(whole.values[::10] - want)[inside].max() > 4  # folded to 400 Hz without a filter
+    assert_allclose(low.values[inside], want[inside], atol=0.01)
+    with pytest.raises(ValueError, match="rate = 80000"):
+        gf.decimate(whole, 80e3)
