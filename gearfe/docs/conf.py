@@ -32,8 +32,8 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.autosummary",
     "sphinx.ext.napoleon",
-    "sphinx.ext.mathjax",
     "sphinx_gallery.gen_gallery",
+    "site_formulas",
 ]
 exclude_patterns = ["tutorials/*", "gallery/*", "_made/**/*.ipynb", "_made/**/*.py", "_made/**/sg_execution_times.rst"]
 myst_enable_extensions = ["dollarmath", "deflist", "amsmath"]
@@ -53,6 +53,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": (pictures,),
+    "capture_repr": (),
     "reset_modules": (),
     "abort_on_example_error": True,
     "download_all_examples": False,
@@ -62,6 +63,7 @@ sphinx_gallery_conf = {
 }
 
 html_theme = "furo"
+html_math_renderer = "mathml"
 html_title = "gearfe"
 html_static_path = ["static"]
 html_css_files = ["site.css"]

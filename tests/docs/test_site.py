@@ -64,6 +64,7 @@ def broken(site):
             if re.match(r"[a-z]+:|//", link):
                 continue
             name, place = urldefrag(unquote(link))
+            name = name.partition("?")[0]
             target = (path.parent / name).resolve() if name else path
             if not target.exists() or (place and target.suffix == ".html" and place not in places[target]):
                 out.append((str(path.relative_to(site)), link))

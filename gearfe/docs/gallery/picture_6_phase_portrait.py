@@ -2,7 +2,7 @@
 A phase portrait
 ================
 
-One gear pair on its line of action, with backlash, near resonance: displacement and velocity of the steady motion.
+One gear pair on its line of action, near resonance: displacement and velocity of the steady motion.
 """
 
 import numpy as np

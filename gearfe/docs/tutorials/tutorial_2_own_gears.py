@@ -58,8 +58,9 @@ for r_bore in (6.0, 12.0, 20.0):
 ring = gf.Gear(z=84, m_n=2.0, alpha_n=radians(20), b=20.0, r_rim=95.0, x=-0.4617, addendum=0.859, tip_radius=0.2)
 planet = gf.Gear(z=31, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=11.4)
 inner = gf.GearPair(planet, ring, a=52.0)
-k = gf.mesh_stiffness(inner, force=2000.0, material=steel).k
-print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {k.mean() / 1e6:.1f} N/um")
+curve = gf.mesh_stiffness(inner, force=2000.0, material=steel)
+curve.plot("planet_in_ring.png")
+print(f"planet in ring: contact ratio {inner.eps_alpha:.3f}, mean {curve.k.mean() / 1e6:.1f} N/um")
 
 # %%
 # A scene file

@@ -22,6 +22,7 @@ pair = gf.GearPair(gf.Gear(z=21, r_bore=8.0, **rack), gf.Gear(z=31, r_bore=12.0,
 steel = gf.Material(E=206e3, nu=0.3)
 print(f"contact ratio {pair.eps_alpha:.3f} in the transverse section and {pair.eps_beta:.3f} by the helix")
 curve = gf.mesh_stiffness(pair, force=1200.0, material=steel, phases=12)
+curve.plot("helical.png")
 print(curve.meta["why"])
 print(f"mean {curve.k.mean() / 1e6:.1f} N/um, from {curve.k.min() / 1e6:.1f} to {curve.k.max() / 1e6:.1f}")
 
