@@ -56,6 +56,7 @@ from .signal.orders import order_spectrum as order_spectrum
 from .signal.orders import residual_signal as residual_signal
 from .signal.orders import synchronous_average as synchronous_average
 from .signal.series import Signal as Signal
+from .signal.series import decimate as decimate
 from .signal.series import envelope as envelope
 from .signal.series import integrate as integrate
 from .signal.signal_file import read_signal as read_signal

@@ -37,7 +37,6 @@ HOME = {  # where heavy libraries may be imported
 }
 LOADERS = ("import_module", "__import__")  # only the public face, `gearfe/__init__.py`, and the table of methods load by name
 TABLE = "gearfe/stiffness/methods.py"
-OPTIONAL = "gearfe/files.py"  # `needed`: libraries of others that an extra brings
 PACKAGES = ("geometry", "gearfe")
 SITE = ROOT / "gearfe" / "docs"  # scripts of the documentation, no part of the package
 FILES = {
@@ -82,7 +81,7 @@ def _asked(name):
         elif isinstance(node, ast.Call) and getattr(node.func, "attr", getattr(node.func, "id", "")) in LOADERS:
             if name == TABLE:
                 yield from ((node.lineno, row.home.partition(":")[0]) for row in ROWS)
-            seen = name in ("gearfe/__init__.py", TABLE, OPTIONAL) or name not in SHIPPED
+            seen = name in ("gearfe/__init__.py", TABLE) or name not in SHIPPED
             assert seen, f"{name}, line {node.lineno}: write an import as such, so that it is seen here"
 
 

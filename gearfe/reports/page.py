@@ -10,6 +10,7 @@ from importlib import resources
 from pathlib import Path
 
 from ..files import check_output, missing, written
+from ..scene.load import Scene
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up

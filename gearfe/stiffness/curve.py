@@ -84,8 +84,8 @@ class StiffnessCurve:
         except ImportError as error:
             raise missing("pandas", "data", error) from error
         columns = dict(content(self).columns)
-        index = library.Index(columns.pop("phase [-]"), name="phase [-]")
-        table = library.DataFrame(columns, index=index)
+        index = pandas.Index(columns.pop("phase [-]"), name="phase [-]")
+        table = pandas.DataFrame(columns, index=index)
         table.attrs = dict(self.meta)
         return table
 
@@ -110,7 +110,7 @@ class StiffnessCurve:
         names = [name for name in made.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}
         values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
-        return library.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
+        return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     @property
     def share(self) -> NDArray[np.float64]:
