@@ -3,11 +3,13 @@
 import math
 import time
 from dataclasses import replace
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
+from ..elements.solver import free_memory
 from ..machine.tables import Machine
 from . import excitation
 from .fixed_step import fixed_steps
@@ -16,6 +18,7 @@ from .step_control import WANTED_OPEN, chosen_step, default_step, difference
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 FINER = 3  # times the step of a whole run is halved where contact is lost
+DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 
 
@@ -78,6 +81,8 @@ def simulate(
         state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
     if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
+    if initial is not None:
+        _check_initial(machine, state)
     if method != "fast":
         return _reference(machine, duration, _outputs(machine, duration, dt, every), state, method, rtol)
     if dt is None:
@@ -89,6 +94,17 @@ def simulate(
     finer = fixed_steps(machine, duration, 2 * steps, state, every=2 * every, numba=numba)
     stats = {"error": max(difference(out, finer)), "seconds": out.stats["seconds"] + finer.stats["seconds"]}
     return replace(out, stats=out.stats | stats | {"error_seconds": float(duration)})
+
+
+def _check_initial(machine, state):
+    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
+    n = len(machine.dofs)
+    deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
+    if deep > DEEPEST or fast > FASTEST:
+        raise ValueError(
+            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
+            f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
+        )
 
 
 def _controlled(machine, duration, state, given, every, error, numba):
@@ -119,7 +135,14 @@ def _controlled(machine, duration, state, given, every, error, numba):
 def _outputs(machine, duration, dt, every):
     """Number of intervals between outputs."""
     dt = min(default_step(machine), duration) if dt is None else dt
-    return math.ceil(duration / dt / every * (1 - 1e-12))
+    count = math.ceil(duration / dt / every * (1 - 1e-12))
+    memory, free = 32.0 * count * len(machine.dofs), free_memory()  # states, and a copy
+    if memory > free:
+        raise ValueError(
+            f"duration = {duration:g} s: {count:.3g} outputs, every {dt * every:.3g} s, need about {memory / 1e9:.3g} GB, but "
+            f"{free / 1e9:.3g} GB are free: give a shorter duration, or a larger every"
+        )
+    return count
 
 
 def _check(machine, duration, method, dt, every):
@@ -127,6 +150,8 @@ def _check(machine, duration, method, dt, every):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
         )
+    if isinstance(duration, bool) or not isinstance(duration, Real):
+        raise ValueError(f"duration = {duration!r}, but give a number of seconds")
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:
