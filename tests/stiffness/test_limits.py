@@ -32,8 +32,9 @@ def test_loads_beyond_small_strains_are_refused_and_large_ones_said(pair, steel)
     for method in ("textbook", "ritz"):
         with pytest.raises(ValueError, match=r"force = 1e\+07 N.*% of the module"):
             gf.mesh_stiffness(force=1e7, method=method, **run)
-        with pytest.warns(UserWarning, match="more than teeth bear"):
-            gf.mesh_stiffness(force={"textbook": 6e4, "ritz": 3.5e4}[method], method=method, **run)
+        with pytest.warns(UserWarning) as said:
+            gf.mesh_stiffness(force=6e4, method=method, **run)
+        assert any("more than teeth bear" in str(one.message) for one in said)
         gf.mesh_stiffness(force=2e4, method=method, **run)  # 500 N/mm per mm of module: a word would be an error here
     soft = gf.Material(E=3000.0, nu=0.4)
     with pytest.warns(UserWarning, match="dents"):
