@@ -87,6 +87,10 @@ __all__ = sorted(_HOME)
 
 def __getattr__(name):
     """Load the public names on first use, so that ``gearfe --help`` stays quick."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("gearfe")
     if name not in _HOME:
         raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(__all__)}")
     value = getattr(importlib.import_module(_HOME[name]), name)

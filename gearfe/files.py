@@ -32,7 +32,7 @@ class Content:
     meta : dict
         All that is needed to repeat it; JSON.
     units : dict of str to str
-        Of the arrays, in JSON files.
+        Of the arrays: a table in JSON files, JSON text ``units_json`` in the others.
     """
 
     title: str
@@ -169,17 +169,23 @@ def write_csv(name, content):
 
 
 def write_npz(name, content):
-    """Write a numpy archive; ``meta`` is a JSON string."""
+    """Write a numpy archive; ``meta`` and ``units_json`` are JSON strings."""
     with open(name, "wb") as file:
-        np.savez(file, **content.arrays, meta=json.dumps(content.meta))
+        np.savez(file, **content.arrays, **_told(content))
 
 
 def write_mat(name, content):
-    """Write a MATLAB 5 file; ``meta`` is a JSON string (``jsondecode`` reads it), rows of text are cell arrays."""
+    """Write a MATLAB 5 file; ``meta`` and ``units_json`` are JSON (``jsondecode``), rows of text are cell arrays."""
     from scipy.io import savemat
 
     arrays = {key: value.astype(object) if value.dtype.kind == "U" else value for key, value in content.arrays.items()}
-    savemat(name, arrays | {"meta": json.dumps(content.meta)}, appendmat=False, oned_as="column")
+    savemat(name, arrays | _told(content), appendmat=False, oned_as="column")
+
+
+def _told(content):
+    """Meta data and units of all arrays as JSON text."""
+    units = {key: content.units.get(key, "-") for key in content.arrays}
+    return {"meta": json.dumps(content.meta), "units_json": json.dumps(units)}
 
 
 def write_json(name, content):
@@ -221,7 +227,17 @@ def read_mat(path):
             return {name: value for name, value in loadmat(file).items() if not name.startswith("__")}
         except NotImplementedError as error:
             raise ValueError(f"{path} is a MATLAB file of version 7.3 (HDF5): save it with '-v7'") from error
-        except (MatReadError, ValueError, TypeError, EOFError, zlib.error) as error:
+        except (
+            MatReadError,
+            ValueError,
+            TypeError,
+            EOFError,
+            IndexError,
+            KeyError,
+            OverflowError,
+            MemoryError,
+            zlib.error,
+        ) as error:
             raise ValueError(f"{path} is not a MATLAB file: {error}") from error
 
 

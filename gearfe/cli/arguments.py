@@ -14,6 +14,7 @@ def main(argv=None):
     parser = argparse.ArgumentParser(
         prog="gearfe", description="Gear mesh stiffness with its error: finite elements beside energy methods."
     )
+    parser.add_argument("--version", action=_Version, help="show the version and leave")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     verb = _verb(verbs, "stiffness", run.stiffness, "compute a stiffness curve; print it by zone, save it, draw it")
     _scene_arguments(verb)
@@ -103,6 +104,19 @@ def main(argv=None):
     _verb(verbs, "info", tools.info, "versions, what this machine has, and what would make it faster")
     arguments = parser.parse_args(argv)
     return shell.run(lambda: arguments.run(arguments))
+
+
+class _Version(argparse.Action):
+    """Prints the version; looked up only if asked for, because that takes time."""
+
+    def __init__(self, option_strings, dest, help=None):
+        super().__init__(option_strings, dest, nargs=0, help=help)
+
+    def __call__(self, parser, *_):
+        from importlib.metadata import version
+
+        print(f"gearfe {version('gearfe')}")
+        parser.exit()
 
 
 def _verb(verbs, name, function, text):

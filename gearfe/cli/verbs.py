@@ -104,8 +104,8 @@ def _compare_cases(scene, arguments, cases):
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    with working("every case by every method"):
-        result = case_table(scene, cases, compute=arguments.reference)
+    with working("every case by every method") as tell:
+        result = case_table(scene, cases, compute=arguments.reference, progress=tell)
     print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
     print(result.table())

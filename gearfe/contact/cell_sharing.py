@@ -16,7 +16,7 @@ FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
 
 
-def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=None, local=None, faces=None):
+def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=None, local=None, faces=None, floor=None):
     """Share a load over cells of contact lines that can push but not pull.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
@@ -71,13 +71,18 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
             "block": None if block is None else block[able],
             "local": None if local is None else lambda along: local(_spread(along, able, gap.size, along.mean()))[able],
             "faces": None if faces is None else (faces[0][:, able], *faces[1:]),
+            "floor": None if floor is None else floor[able],
         }
         found, approach = line_cells(*few, **options)
         return np.append(_spread(found[: able.size], able, gap.size), found[able.size :]), approach
     n, length = gap.size, ends[1] - ends[0]
     force = load * length / length.sum()
-    mean = smoother(ends, line, SMOOTH * half_width(load / length.sum(), radius.mean(), modulus))
-    widest = pieces(ends, line) / 2  # a piece shorter than it is wide acts as one as wide as it is long
+    flat, part = np.ones(n, dtype=bool), line
+    if floor is not None and (floor > 0).any():
+        flat = floor == floor.min()
+        part = np.unique(np.array([line, floor]), axis=1, return_inverse=True)[1].ravel()
+    mean = smoother(ends, part, SMOOTH * half_width(load / length[flat].sum(), radius[flat].mean(), modulus))
+    widest = pieces(ends, part) / 2  # a piece shorter than it is wide acts as one as wide as it is long
     number = np.zeros(n, dtype=int) if block is None else block
     if faces is not None:
         matrix = np.block([[matrix, faces[0].T], [faces[0], faces[1]]])

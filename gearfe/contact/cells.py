@@ -31,7 +31,7 @@ class Cells:
     it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
     `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0,
     or 1 or 2 for the gear whose tip corner touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's
-    [MPa], nan at a corner.
+    [MPa], nan at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`).
     """
 
     half: NDArray[np.int64]
@@ -44,6 +44,7 @@ class Cells:
     roll_2: NDArray[np.float64]
     gap: NDArray[np.float64]
     corner: NDArray[np.int64]
+    floor: NDArray[np.float64]
     load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
     pressure: NDArray[np.float64] = None  # type: ignore[assignment]
 
@@ -52,7 +53,7 @@ class Piece(NamedTuple):
     """A part of a contact line between two depths [mm].
 
     `roll` is the abscissa of its line at depth 0 [mm], `corner` as of `Cells`; `ends` says which of its ends (first, last) end
-    contact, so that the pressure rises there.
+    contact, so that the pressure rises there; `floor` as of `Cells`.
     """
 
     half: int
@@ -62,6 +63,7 @@ class Piece(NamedTuple):
     first: float
     last: float
     ends: tuple
+    floor: float = 0.0
 
 
 def touching(pair, nominal):
@@ -94,8 +96,10 @@ def beyond(pair, reach):
     return tuple(float(np.interp(reach, gap, away)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
-def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
+def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
     """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
+
+    Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor.
 
     Parameters
     ----------
@@ -108,6 +112,8 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
     beta_b : float
     further : (float, float)
         Of `beyond`.
+    closing : float
+        Normal approach [mm] that closes shallower pits.
 
     Returns
     -------
@@ -126,8 +132,42 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0)):
             for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
                 ends = (low == 0, high == width) if any(further) else (True, True)
                 pieces.append(Piece(half, order, roll, corner, low, high, ends))
-    taken = _taken(pair, pits, bands, pieces, slope)
-    return [part for piece, own in zip(pieces, taken, strict=True) for part in _left(piece, own, width)]
+    deep, *shallow = _by_depth(pits, closing)
+    taken = _taken(pair, deep, bands, pieces, slope)
+    pieces = [part for piece, own in zip(pieces, taken, strict=True) for part in _left(piece, own, width)]
+    if not shallow:
+        return pieces
+    floors = [(gear, depth, _taken(pair, own, bands, pieces, slope)) for gear, depth, own in shallow]
+    own = [[(gear, depth, *part) for gear, depth, found in floors for part in found[k]] for k in range(len(pieces))]
+    return [part for piece, above in zip(pieces, own, strict=True) for part in _on_floors(piece, above, width)]
+
+
+def _by_depth(pits, closing):
+    """Pits of both gears deeper than `closing`; then (gear, depth, pits of both gears) of each depth that is not."""
+    out = [tuple(tuple(pit for pit in own if pit.depth > closing) for own in pits)]
+    for gear, own in enumerate(pits):
+        for depth in sorted({pit.depth for pit in own if pit.depth <= closing}):
+            alike = tuple(pit for pit in own if pit.depth == depth)
+            out.append((gear, depth, ((), alike) if gear else (alike, ())))
+    return out
+
+
+def _on_floors(piece, above, width):
+    """Parts of a piece under pits `above` (gear, depth, first, last): of one gear the deepest counts, of both their sum."""
+    edges = np.unique(np.clip([piece.first, piece.last, *(at for one in above for at in one[2:])], piece.first, piece.last))
+    edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
+    edges[-1] = piece.last
+    middles = (edges[1:] + edges[:-1]) / 2
+    floors = [
+        sum(max((depth for gear, depth, a, b in above if gear == side and a < at < b), default=0.0) for side in (0, 1))
+        for at in middles.tolist()
+    ]
+    kept = [0, *(k for k in range(1, len(floors)) if floors[k] != floors[k - 1])]
+    out = []
+    for k, after in zip(kept, [*kept[1:], len(floors)], strict=True):
+        ends = piece.ends[0] if k == 0 else True, piece.ends[1] if after == len(floors) else True
+        out.append(piece._replace(first=float(edges[k]), last=float(edges[after]), ends=ends, floor=floors[k]))
+    return out
 
 
 def _parts(roll, slope, width, limits, slack):
@@ -195,13 +235,25 @@ def cells_of(pair, pieces, bands, slope, step):
         z = first + math.copysign(1, last - first) * middle
         same = np.ones(z.size)
         rows.append(
-            np.array([piece.half * same, piece.order * same, z, width, middle, piece.roll - slope * middle, piece.corner * same])
+            np.array(
+                [
+                    piece.half * same,
+                    piece.order * same,
+                    z,
+                    width,
+                    middle,
+                    piece.roll - slope * middle,
+                    piece.corner * same,
+                    piece.floor * same,
+                ]
+            )
         )
-    half, order, z, width, depth, nominal, corner = np.hstack(rows)
+    half, order, z, width, depth, nominal, corner, floor = np.hstack(rows)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
     there = corner > 0
     if there.any():
         roll_1[there], roll_2[there], gap[there] = touching(pair, nominal[there])
-    whole = (half.astype(int), order.astype(int), z, width, depth, nominal, roll_1, roll_2, gap, corner.astype(int))
+    gap = gap + floor * math.sqrt(1 + slope**2)  # pits are measured along the normal
+    whole = (half.astype(int), order.astype(int), z, width, depth, nominal, roll_1, roll_2, gap, corner.astype(int), floor)
     kept = np.isfinite(gap)
     return Cells(*(values[kept] for values in whole)) if not kept.all() else Cells(*whole)

@@ -15,6 +15,7 @@ from .corner import CornerLaw
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
+DEEPEST = 0.01  # modules: the floor of a pit that covers a whole line is looked for so deep
 REACH = 1.3  # initial search radius for gaps, in approaches of the phase before
 
 
@@ -36,6 +37,8 @@ class PhaseContact:
 
     def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, cache=True):
         self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
+        self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
+        self.deepest = DEEPEST * pair.gear_1.m_n
         self.bands = bands_of(pair, face, groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
         self.beta_b = abs(pair.gear_1.beta_b)
@@ -72,22 +75,29 @@ class PhaseContact:
         RuntimeError
             If there is no contact; the message says at which phase.
         """
-        reach = self.reach if reach is None else reach
+        reach, closing = self.reach if reach is None else reach, 0.0
         while True:
-            cells = self._cells(phase, reach)
+            cells = self._cells(phase, reach, closing)
             if cells is not None:
                 cells, approach, closed = self._carried(cells, bodies)
+                normal = approach * math.cos(self.beta_b)
+                if any(closing < depth < normal for depth in self.floors):
+                    closing = normal  # shallow pits: solved again with their floors, which can only make it stiffer
+                    continue
                 if not self.extended or approach <= reach or reach > self.furthest:
                     return cells, approach, closed
             if reach > self.furthest:
+                if cells is None and any(closing < depth <= self.deepest for depth in self.floors):
+                    closing = self.deepest
+                    continue
                 raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
             reach = 2 * reach if cells is None else approach  # fewer cells approach more: enough
 
-    def _cells(self, phase, reach):
-        pieces = pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, self._further(reach))
+    def _cells(self, phase, reach, closing):
+        pieces = pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, self._further(reach), closing)
         if not pieces:
             return None
-        length = sum(piece.last - piece.first for piece in pieces)
+        length = sum(piece.last - piece.first for piece in pieces if not piece.floor or all(one.floor for one in pieces))
         finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus))
         return cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest))
 
@@ -111,7 +121,7 @@ class PhaseContact:
             at = self.law.ends(self.pair, cells)
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
         case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
-        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies)}
+        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies), "floor": cells.floor}
         load, approach = line_cells(*case, **options)
         load, closed = load[: line.size], bool(load[line.size :].any())
         pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
@@ -127,10 +137,10 @@ def _alike(cells, first):
     one, two = _some(cells, first), _some(cells, ~first)
     if one.z.size != two.z.size:
         return False
-    names = ("order", "width", "depth", "nominal")
+    names = ("order", "width", "depth", "nominal", "gap")
     return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=ALIKE) for name in names)
 
 
 def _some(cells, which):
-    names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner")
+    names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor")
     return Cells(*(getattr(cells, name)[which] for name in names))

@@ -136,7 +136,8 @@ class Response:
         columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(found.items(), units, strict=True)}
         values = np.array(list(found.values())).T
         arrays = {"time": self.time, "values": values, "names": np.array(list(found)), "units": np.array(units)}
-        return Content("gearfe response, version 1", columns, arrays, self.stats)
+        told = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
+        return Content("gearfe response, version 1", columns, arrays, self.stats, told)
 
     def _columns(self, names):
         names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)

@@ -4,10 +4,12 @@ import math
 import time
 import warnings
 from dataclasses import replace
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..elements.solver import free_memory
 from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .reference import SOLVERS, reference
@@ -15,6 +17,7 @@ from .response import Response
 from .step_control import WANTED_OPEN, chosen_step, default_step, difference, estimate
 
 FINER = 3  # times the step of a whole run is halved where contact is lost
+DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
@@ -99,11 +102,14 @@ def simulate(
         state = np.concatenate([np.asarray(part, dtype=float) for part in initial])
     if state.shape != (2 * len(machine.dofs),) or not np.isfinite(state).all():
         raise ValueError(f"initial: give displacements and velocities, {len(machine.dofs)} finite numbers each")
+    if initial is not None:
+        _check_initial(machine, state)
     if rate is not None:
         count = math.floor(duration * rate * (1 + 1e-12))
         duration = count / rate
     else:
         count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
+    _check_memory(machine, duration, count)
     if method != "fast":
         return reference(machine, duration, count, state, method, rtol, start)
     own = state if initial is not None and not start else None
@@ -111,6 +117,27 @@ def simulate(
     if step is None and dt is None:
         return run.controlled(error)
     return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
+
+
+def _check_initial(machine, state):
+    """Refuse initial states in which flanks lie in each other by more than teeth are high, or move as fast as no gear does."""
+    n = len(machine.dofs)
+    deep, fast = (float(np.abs(machine.G @ part).max(initial=0.0)) for part in (state[:n], state[n:]))
+    if deep > DEEPEST or fast > FASTEST:
+        raise ValueError(
+            f"initial: the flanks of a mesh would be {deep:.3g} m in or off each other and move at {fast:.3g} m/s, but give less "
+            f"than {DEEPEST:g} m and {FASTEST:g} m/s: displacements in m and rad, velocities in m/s and rad/s"
+        )
+
+
+def _check_memory(machine, duration, count):
+    """Refuse more outputs than memory holds, before they are computed."""
+    memory, free = 32.0 * count * len(machine.dofs), free_memory()  # states, and a copy
+    if memory > free:
+        raise ValueError(
+            f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
+            f"but {free / 1e9:.3g} GB are free: give a shorter duration, or a lower rate"
+        )
 
 
 class _Runs:
@@ -185,6 +212,8 @@ def _check(machine, duration, method, rate, step, dt, start, every):
         raise ValueError(
             f"machine = {type(machine).__name__}, but give a Machine: gf.build_machine of a scene, gf.planetary, gf.gear_pair..."
         )
+    if isinstance(duration, bool) or not isinstance(duration, Real):
+        raise ValueError(f"duration = {duration!r}, but give a number of seconds")
     if not (math.isfinite(duration) and duration > 0):
         raise ValueError(f"duration = {duration} s, but it must be positive")
     if method != "fast" and method not in SOLVERS:

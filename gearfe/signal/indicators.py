@@ -29,6 +29,10 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
+LABELS = {
+    "rms": "rms (with the mean)",
+    "peak": "peak (from the mean)",
+}  # in tables: rms may be the larger, of a signal with a mean
 LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
 GREAT = 1e8  # percent: beyond, there was nothing to grow from
 
@@ -263,7 +267,7 @@ def table_text(table):
     """
     names = list(next(iter(table.values())))
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [[name, *(_cell(*row[name]) for row in table.values())] for name in names]
+    lines += [[LABELS.get(name, name), *(_cell(*row[name]) for row in table.values())] for name in names]
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 

@@ -6,7 +6,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..files import missing, save, save_as
 from ..pictures.inline import line_svg
@@ -111,6 +111,42 @@ class StiffnessCurve:
         axes = {1: ("phase",), 2: ("phase", "order")}
         values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
+
+    def __call__(self, phase: ArrayLike) -> NDArray:
+        """Secant stiffness [N/m] at any phases, straight between those of the curve; for models of dynamics.
+
+        Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``)
+        are not: what comes before and after it is another tooth.
+
+        Parameters
+        ----------
+        phase : float or ndarray
+            Mesh phases, any shape.
+
+        Returns
+        -------
+        ndarray
+            Of the same shape.
+
+        Raises
+        ------
+        ValueError
+            If the curve has no value there, or `phase` holds no finite numbers.
+        """
+        wanted = np.asarray(phase)
+        if wanted.dtype.kind not in "iuf" or not np.isfinite(wanted).all():
+            raise ValueError(f"phase = {phase!r}, but give finite numbers")
+        order = np.argsort(self.phase)
+        own, k = self.phase[order], self.k[order]
+        steps = np.diff(own)
+        if own.size > 1 and 0 < own[0] + 1 - own[-1] <= 1.5 * steps.max():
+            return np.interp(wanted, own, k, period=1.0)
+        if wanted.size and (wanted.min() < own[0] or wanted.max() > own[-1]):
+            raise ValueError(
+                f"phase from {wanted.min():g} to {wanted.max():g}, but it is known from {own[0]:g} to {own[-1]:g} and goes "
+                "round no cycle: compute one with span='cycle' for a healthy pair"
+            )
+        return np.interp(wanted, own, k)
 
     @property
     def share(self) -> NDArray[np.float64]:

@@ -1,9 +1,9 @@
 """What `mesh_stiffness` is given, checked and brought into one form; errors say what was given and what to do."""
 
 import math
+import warnings
 from dataclasses import replace
 from inspect import signature
-from numbers import Real
 
 import numpy as np
 
@@ -12,12 +12,15 @@ from geometry.damage.pit import Pit
 
 from ..energy.closed.plain_sum import plain_sum
 from ..material import Material
+from .limits import check_count, check_range, is_number, numbers
 from .methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, Method, having
 from .own_flexibility import OwnFlexibility
 
 NO_VARIANTS = (
     *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
 )
+
+CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 
 def two_materials(material):
@@ -41,14 +44,14 @@ def phase_array(phases, span, pair, overlap=0.0):
     if span not in ("cycle", "tooth"):
         raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
     if np.ndim(phases) == 0:
-        if not isinstance(phases, Real) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
-            raise ValueError(f"phases = {phases}, but give a number of phases >= 1, or an array of phases")
+        phases = check_count(phases)
         if span == "tooth":
-            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / int(phases)
-        return np.arange(int(phases)) / int(phases)
-    phases = np.asarray(phases, dtype=float)
+            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
+        return np.arange(phases) / phases
+    phases = numbers("phases", phases, "")
     if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
         raise ValueError("phases must be a non-empty array of finite numbers")
+    check_range(phases, pair.eps_alpha + overlap)
     return phases
 
 
@@ -131,22 +134,74 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
     if variants and not row.variants:
         raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")
+    if variants is not None and not isinstance(variants, dict):
+        raise ValueError(f"variants = {variants!r}, but give a dict: {{'foundation': 'none'}}")
     for name in variants or ():
         known = [*signature(plain_sum).parameters, *signature(row.load().components).parameters]
         known = sorted(set(known) - set(NO_VARIANTS))
         if name not in known:
             raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
+        value = variants[name]
+        if name == "theta_f" and value is not None and not (is_number(value) and 0 < value < math.pi / 2):
+            raise ValueError(f"variants: theta_f = {value!r}, but a root half angle lies between 0 and pi/2 rad")
+        if name == "crack_model" and value not in CRACK_MODELS:
+            raise ValueError(f"variants: crack_model = {value!r}, but it must be one of {', '.join(CRACK_MODELS)}")
+
+
+def forces_of(pair, force, torque):
+    """Forces along the line of action [N] as a list: given, or from torques on the pinion [N m], ``T / r_b``."""
+    if (force is None) == (torque is None):
+        raise ValueError(
+            f"force = {force!r}, torque = {torque!r}, but give one of them: the force along the line of action [N] or the torque "
+            "on the pinion [N m]"
+        )
+    name, unit, given = ("force", " N", force) if torque is None else ("torque", " N m", torque)
+    found = np.atleast_1d(numbers(name, given, f" [{unit.strip()}]"))
+    if found.ndim > 1 or found.size == 0:
+        raise ValueError(f"{name} = {given!r}, but give one {name} or a non-empty list of {name}s [{unit.strip()}]")
+    for value in found.tolist():
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"{name} = {value}{unit}, but a mesh is pressed together: give a finite {name} > 0")
+    return (found if torque is None else found * (1e3 / pair.gear_1.r_b)).tolist()
+
+
+def refuse_numeric(row, *, refine, order, error, state):
+    """Raise ValueError for an option of the discretisation that the method of a `row` has not: none is ignored in silence."""
+    method = f"method = {row.name!r}"
+    if order is not None and row.order is None:
+        raise ValueError(f"order = {order!r} with {method}, which has no polynomials: only {having('order')} have an order")
+    if order is not None and (not is_number(order) or not 2 <= order <= 8 or order != int(order)):
+        raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")
+    if refine != 1 and not row.converged:
+        raise ValueError(f"refine = {refine:g} with {method}, which has no mesh: only {having('converged')} can be refined")
+    if error and not row.error:
+        raise ValueError(f"error = True with {method}, which has no estimate: only {having('error')} estimate their error")
+    if state != "plane strain" and row.kind != "section":
+        raise ValueError(f"state = {state!r} with {method}, which is no plane section: leave it out")
+
+
+def said_of_face(pair, face):
+    """Warn if the teeth are called helical, but are straight."""
+    if face in ("helical", "herringbone") and not pair.gear_1.beta:
+        warnings.warn(f"face = {face!r}, but the gears have no helix angle (beta = 0): their teeth are straight", stacklevel=3)
 
 
 def by_gear(pair, damage):
     """Cracks and pits of pinion and wheel, numbered in each gear's own frame."""
     damage = {} if damage is None else damage
+    if not isinstance(damage, dict):
+        kind = type(damage).__name__
+        raise ValueError(
+            f"damage is a {kind}, but say of which gear: damage = {{'pinion': [Crack(...), Pit(...)], 'wheel': [...]}}"
+        )
     unknown = set(damage) - {"pinion", "wheel"}
     if unknown:
         raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
     cracks, pits = [], []
     for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
         given = damage.get(name) or ()
+        if not isinstance(given, (Crack, Pit, list, tuple)):
+            raise ValueError(f"damage of the {name}: {given!r}, but give a Crack, a Pit or a list of them")
         given = (given,) if isinstance(given, (Crack, Pit)) else tuple(given)
         for one in given:
             if not isinstance(one, (Crack, Pit)):

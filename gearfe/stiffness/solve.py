@@ -1,9 +1,7 @@
 """`mesh_stiffness`: from a gear pair to its stiffness curve, by finite elements or by an energy method."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from numbers import Integral
 from typing import Any, overload
 
 import numpy as np
@@ -13,12 +11,26 @@ from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 
-from ..flexibility.solved import solved_gears
+from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
 from .curve import StiffnessCurve
-from .inputs import by_gear, check_method, choose, overlap, phase_array, refuse, row_of, two_materials
+from .inputs import (
+    by_gear,
+    check_method,
+    choose,
+    forces_of,
+    overlap,
+    phase_array,
+    refuse,
+    refuse_numeric,
+    row_of,
+    said_of_face,
+    two_materials,
+)
+from .limits import check_section, check_teeth, checked_refine, is_number, truth
 from .own_flexibility import OwnFlexibility
 from .plane import curve, section_solver, sum_solver, with_error
+from .plausible import check_load, check_plausible
 from .pose import check_pose, in_pose
 from .provenance import damage_of, provenance
 from .solid import wide_curve
@@ -27,9 +39,10 @@ from .solid import wide_curve
 @overload
 def mesh_stiffness(
     pair: GearPair,
-    force: float,
-    material: Material | tuple[Material, Material],
+    force: float | None = ...,
+    material: Material | tuple[Material, Material] | None = ...,
     *,
+    torque: float | None = ...,
     method: str | OwnFlexibility = ...,
     phases: int | ArrayLike = ...,
     span: str = ...,
@@ -52,9 +65,10 @@ def mesh_stiffness(
 @overload
 def mesh_stiffness(
     pair: GearPair,
-    force: Sequence[float] | NDArray[np.float64],
-    material: Material | tuple[Material, Material],
+    force: Sequence[float] | NDArray[np.float64] | None = ...,
+    material: Material | tuple[Material, Material] | None = ...,
     *,
+    torque: Sequence[float] | NDArray[np.float64] | None = ...,
     method: str | OwnFlexibility = ...,
     phases: int | ArrayLike = ...,
     span: str = ...,
@@ -76,9 +90,10 @@ def mesh_stiffness(
 
 def mesh_stiffness(
     pair: GearPair,
-    force: float | Sequence[float] | NDArray[np.float64],
-    material: Material | tuple[Material, Material],
+    force: float | Sequence[float] | NDArray[np.float64] | None = None,
+    material: Material | tuple[Material, Material] | None = None,
     *,
+    torque: float | Sequence[float] | NDArray[np.float64] | None = None,
     method: str | OwnFlexibility = "auto",
     phases: int | ArrayLike = 64,
     span: str = "cycle",
@@ -108,6 +123,8 @@ def mesh_stiffness(
         Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
+    torque : float or sequence of float, optional
+        Instead of `force`: torque on the pinion [N m], ``force = torque / r_b`` with the pinion's base radius.
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"} or OwnFlexibility
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
@@ -135,7 +152,7 @@ def mesh_stiffness(
     state : {"plane strain", "plane stress"}
         For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.
     refine : float
-        Resolution of ``ritz`` and ``fe``, also in three dimensions: divides the edge lengths.
+        Resolution of ``ritz`` and ``fe``, also in three dimensions: divides the edge lengths; 0.2 to 64.
     order : int, optional
         Polynomial order of ``ritz`` (default 4) and ``ritz3d`` (in the section; default 3), 2 to 8.
     teeth : int, optional
@@ -168,24 +185,38 @@ def mesh_stiffness(
     Raises
     ------
     ValueError
-        If an input is impossible; the message says which.
+        If an input is impossible, or given to a method that has no such thing; the message says which. If the gears approach so
+        far that strains are no longer small (`gearfe.stiffness.plausible`).
     RuntimeError
-        If a system of ``fe3d`` does not fit into memory, before it is solved; the message has the numbers.
+        If a system of ``fe`` or ``fe3d`` does not fit into memory, before it is solved; the message has the numbers.
+
+    Warns
+    -----
+    UserWarning
+        If deflection or pressure are beyond what teeth bear, see `gearfe.stiffness.plausible`.
     """
     if not isinstance(pair, GearPair):
         raise ValueError(f"pair = {pair!r}, but give a GearPair")
     check_method(method)
-    forces = _forces(force)
-    if teeth is not None and not (isinstance(teeth, Integral) and teeth >= 1):
-        raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
-    solved = solved_gears(cache)
+    forces = forces_of(pair, force, torque)
+    check_teeth(teeth, max(pair.gear_1.z, pair.gear_2.z))
+    refine, error, extended = checked_refine(refine), truth("error", error), truth("extended", extended)
+    solved = cache if isinstance(cache, SolvedGears) else solved_gears(truth("cache", cache))
     materials = two_materials(material)
+    for value in forces:
+        check_load(pair, value, materials)
     check_state(state)
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
     method, why = choose(method, pair, cracks, pits, face, teeth)
     row, own = row_of(method)
+    if not is_number(groove):
+        raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
     refuse(row, pair, cracks, pits, teeth, variants, face, groove)
+    refuse_numeric(row, refine=refine, order=order, error=error, state=state)
+    said_of_face(pair, face)
+    if row.name == "fe":
+        check_section(refine)
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
@@ -204,37 +235,38 @@ def mesh_stiffness(
             for value in forces
         ]
         curves = [replace(one, meta=one.meta | {"why": why}) for one in curves]
-        return curves if np.ndim(force) else curves[0]
-    numeric = {"refine": float(refine), "order": row.order if order is None else order}
+        return _as_asked(curves, force, torque)
+    numeric = {"refine": refine, "order": row.order if order is None else order}
     said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
     if row.kind == "solid":
-        options = {"face": face, "groove": groove, "extended": bool(extended), **numeric}
+        options = {"face": face, "groove": groove, "extended": extended, **numeric}
         case = (pair, materials, phase, cracks, pits)
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
         curves = [wide_curve(value, case, meta, **options) for value in forces]
-        return curves if np.ndim(force) else curves[0]
+        return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
         sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
-        numeric |= {"cracks": cracks, "extended": bool(extended), "state": state, "cache": solved, "teeth": teeth}
+        numeric |= {"cracks": cracks, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
         solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None
     curves = [curve(pair, phase, value, solve, meta, hurt) for value in forces]
     if error and row.error:
         curves = with_error(row, curves, (pair, materials, phase), numeric)
-    return curves if np.ndim(force) else curves[0]
+    return _answered(curves, pair, materials, force, torque)
 
 
-def _forces(force):
-    """One force or several as a list of floats."""
-    forces = np.atleast_1d(np.asarray(force, dtype=float))
-    if forces.ndim > 1 or forces.size == 0:
-        raise ValueError(f"force = {force!r}, but give one force or a non-empty list of forces [N]")
-    for value in forces.tolist():
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
-    return forces.tolist()
+def _answered(curves, pair, materials, force, torque):
+    """One curve or the list of them, none beyond what linear elasticity can say."""
+    for one in curves:
+        check_plausible(one, pair, materials)
+    return _as_asked(curves, force, torque)
+
+
+def _as_asked(curves, force, torque):
+    """The list of curves, or the one if one load was given."""
+    return curves if np.ndim(torque if force is None else force) else curves[0]

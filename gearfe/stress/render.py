@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.stiffness_plots import plot_contact
 from ..scene.load import ScenePair
 from ..stiffness.inputs import by_gear
+from ..stiffness.limits import check_section, checked_refine
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
 from .window import drawing_library
@@ -18,6 +20,7 @@ from .window import drawing_library
 COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
 OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
+LEAST = 40_000  # unknowns of a tooth in three dimensions at refine 1, at least; they grow with its power 2.5 to 3
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
 FINE = {
     "tooth": 0.5,
@@ -72,13 +75,14 @@ def render_stress(
     Raises
     ------
     RuntimeError
-        If pyvista or a renderer is missing; the message names what to install.
+        If pyvista or a renderer is missing; the message names what to install. If the solve does not fit into memory.
     """
-    suffix = suffix_of(path, "stress")
+    suffix, refine = suffix_of(path, "stress"), checked_refine(refine)
     if suffix == ".png":
         drawing_library()
     damage = scene_pair.case(case).get("damage")
     wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    _check_size(wide, refine)
     fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
     told["text"] = _text(title or (case or ""), told)
@@ -111,6 +115,14 @@ def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
     corner = np.isnan(pressure)
     largest = math.nan if corner.all() else float(pressure[~corner].max())
     return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": largest, "corner": bool(corner.any())}
+
+
+def _check_size(wide, refine):
+    """Refuse a picture whose solve does not fit into memory, before it is meshed; a tooth in 3-D by a low guess."""
+    if not wide:
+        check_section(refine)
+    elif refine > 1:
+        plan(int(LEAST * refine**2.5))
 
 
 def _gears(scene_pair, damage, phase, refine):

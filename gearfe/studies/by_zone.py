@@ -1,5 +1,6 @@
 """How far analytical stiffness is from finite elements: tables of error by zone, with what each value cost."""
 
+import os
 import time
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -8,9 +9,14 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ..scene.load import Scene
+from geometry.damage.crack import Crack
+from geometry.damage.pit import Pit
+from geometry.pair.gear_pair import GearPair
+
+from ..material import Material
+from ..scene.load import Scene, ScenePair, load_scene
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.inputs import why_solid
+from ..stiffness.inputs import by_gear, forces_of, two_materials, why_solid
 from ..stiffness.methods import METHODS, ROWS, fitted
 from ..stiffness.solve import mesh_stiffness
 from .own_model import OwnModel, own_curve, own_models
@@ -64,23 +70,31 @@ class Comparison:
 
 
 def compare(
-    scene: Scene,
-    pair: str | None = None,
+    scene: Scene | GearPair | str | os.PathLike[str] | None = None,
+    pair: str | GearPair | None = None,
     *,
     case: str | None = None,
     models: Sequence[OwnModel] | Mapping[str, OwnModel] = (),
     phases: int | ArrayLike = 64,
     refine: float = 1.0,
+    force: float | None = None,
+    torque: float | None = None,
+    material: Material | tuple[Material, Material] | None = None,
+    damage: Mapping[str, Any] | None = None,
+    face: str | None = None,
+    groove: float = 0.0,
 ) -> Comparison:
-    """Compare every formulation that models it with the reference, on one pair of `scene`, healthy or damaged.
+    """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
 
     The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`.
 
     Parameters
     ----------
-    scene : Scene
-    pair : str, optional
-        Name of the pair; default the first.
+    scene : Scene, str or path, optional
+        A scene, the name of a built-in one, or its file; or a pair of your own, see `pair`.
+    pair : str or GearPair, optional
+        Name of the scene's pair; default the first. Or, without a scene, a pair of your own with `force` or `torque`, and
+        `material`.
     case : str, optional
         Name of a case of damage: the phases then are those of the damaged tooth's whole engagement.
     models : sequence or dict of str to model
@@ -90,13 +104,21 @@ def compare(
         As in `mesh_stiffness`.
     refine : float
         Resolution of the reference.
+    force, torque, material, damage, face, groove
+        Of a pair of your own, as of `mesh_stiffness`: force along the line of action [N] or torque on the pinion [N m].
 
     Returns
     -------
     Comparison
         Without the formulations that have no value for this damage; a warning says why.
+
+    Raises
+    ------
+    ValueError
+        If there is no such scene, pair or case, or a pair of your own comes without its load or material.
     """
-    chosen = scene.pair(pair)
+    own_case = {"force": force, "torque": torque, "material": material, "damage": damage, "face": face, "groove": groove}
+    chosen, pair_name, case = _chosen(scene, pair, case, own_case)
     methods = _methods(chosen, case)
     own = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     run = chosen.case(case) | {"phases": phases, "span": "tooth" if case else "cycle"}
@@ -120,7 +142,42 @@ def compare(
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
-    return Comparison(pair or next(iter(scene.pairs)), curves, seconds)
+    return Comparison(pair_name, curves, seconds)
+
+
+def _chosen(scene, pair, case, own):
+    """`ScenePair`, its name and its case: of a scene, or of a pair of one's own."""
+    if isinstance(scene, GearPair) and pair is None:
+        scene, pair = None, scene
+    if isinstance(pair, GearPair):
+        if scene is not None or case is not None:
+            raise ValueError("a pair of your own has no scene and no case: leave them out, and give its damage as damage=")
+        return _own(pair, **own)
+    given = [name for name, value in own.items() if value not in (None, 0.0)]
+    if given:
+        raise ValueError(f"{given[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
+    if isinstance(scene, (str, os.PathLike)):
+        scene = load_scene(scene)
+    if not isinstance(scene, Scene):
+        raise ValueError(
+            f"scene = {scene!r}, but give a Scene, the name or file of one, or pair=GearPair(...) with force= and material="
+        )
+    return scene.pair(pair), pair or next(iter(scene.pairs)), case
+
+
+def _own(pair, *, force, torque, material, damage, face, groove):
+    if material is None or (force is None and torque is None):
+        raise ValueError(
+            "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
+        )
+    forces = forces_of(pair, force, torque)
+    if len(forces) > 1:
+        raise ValueError(f"force = {force!r}, torque = {torque!r}, but one load is compared at a time")
+    by_gear(pair, damage)
+    damage = {side: [one] if isinstance(one, (Crack, Pit)) else list(one or ()) for side, one in (damage or {}).items()}
+    cases = {"given": damage} if any(damage.values()) else {}
+    made = ScenePair(pair, two_materials(material), forces[0], face, groove, cases)
+    return made, f"{pair.gear_1.z}/{pair.gear_2.z}", "given" if cases else None
 
 
 def _methods(chosen, case):

@@ -186,11 +186,11 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     scene : Scene
         With cases of damage.
     cases : sequence of (str, str or None), optional
-        Pairs with their cases, each pair with None (healthy) too; default all.
+        Pairs with their cases, each pair with None (healthy) too; default all, pairs without damage too.
     compute : bool
         Compute three-dimensional finite elements that are not on file.
     progress : callable, optional
-        Gets a text before each solve.
+        Gets a text before each solve; one that has a ``step`` gets ``progress.step(text, done, total)`` instead.
 
     Returns
     -------
@@ -204,23 +204,26 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     """
     if not any(pair.damage for pair in scene.pairs.values()):
         raise ValueError(f"scene {scene.name} has no cases of damage: add [[crack]] or [[pits]] tables")
-    tell = progress or (lambda text: None)
+    step = getattr(progress, "step", None) or (lambda text, *_: progress(text) if progress else None)
     wide = any(is_wide(pair) for pair in scene.pairs.values())
     stored = read_curves(scene) if wide else {}
-    wanted = [(name, case) for name, pair in scene.pairs.items() if pair.damage for case in (None, *pair.damage)]
+    wanted = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
     wanted = wanted if cases is None else list(cases)
     solid = wide and (compute or all(key in stored for key in wanted))
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
+    taken = {(key, "fe3d") for key in stored}
     curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
+    done, total = 0, sum((key, method) not in taken for key in wanted for method in methods)
     for name, case in wanted:
         chosen = scene.pairs[name]
         for method in methods:
-            if method == "fe3d" and (name, case) in stored:
+            if ((name, case), method) in taken:
                 _, k, tooth, estimate, seconds = stored[name, case]
                 curves[name, case, method] = CaseCurve(k, tooth, seconds, estimate)
                 continue
-            tell(f"{name} {case or 'healthy'}: {method}")
+            step(f"{name} {case or 'healthy'}: {method}", done, total)
+            done += 1
             try:
                 curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
             except ValueError as error:

@@ -82,6 +82,9 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     """
     if not duration > 0:
         raise ValueError(f"duration = {duration} s, but it must be positive")
+    cases = {name for pair in scene.pairs.values() for name in pair.damage}
+    if case is not None and case not in cases:
+        raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
     found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
     damage = [] if scene.machine.get("contact") == "impact" else found
     along = any(isinstance(one, Pit) or not one.through for one in damage)

@@ -84,6 +84,8 @@ class Crack:
             raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
         if self.side not in ("loaded", "unloaded"):
             raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
+        if not isinstance(self.turning, bool):
+            raise ValueError(f"turning = {self.turning!r}, but give True or False")
         if self.turning and self.length is not None:
             raise ValueError("a turning crack is given by its level, not its length")
         if self.width is not None:

@@ -90,8 +90,9 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
     before, after = nominal < start - slack, nominal >= end + slack
     roll_1, roll_2 = nominal.copy(), pair.mate_roll(nominal)
     gap = np.where(before | after, np.inf, 0.0)
-    if extended:
-        for where, driver in ((after, True), (before, False)):
+    if extended:  # a base pitch away teeth are turned out of each other's reach, until the same tooth comes round again
+        near = (nominal > start - pair.p_bt) & (nominal < end + pair.p_bt)
+        for where, driver in ((after & near, True), (before & near, False)):
             tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
             own, met = (roll_1, roll_2) if driver else (roll_2, roll_1)
             distance, roll = approach(pair, tip.roll_a, nominal[where], driver=driver)

@@ -7,6 +7,8 @@ from numbers import Real
 
 from .involute import inv
 
+LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
+
 
 @dataclass(frozen=True, slots=True)
 class Gear:
@@ -105,7 +107,7 @@ class Gear:
             value = getattr(self, field.name)
             if value is None and field.name in ("r_bore", "r_rim"):
                 continue
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            if isinstance(value, bool) or not isinstance(value, Real) or not abs(value) < LARGEST:
                 raise ValueError(f"{field.name} = {value!r}, but a gear needs a finite number here")
             object.__setattr__(self, field.name, float(value))
         if self.z != int(self.z):

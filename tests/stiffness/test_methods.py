@@ -84,12 +84,20 @@ def test_refusals_of_whole_gears_are_quick(steel, what):
 @pytest.mark.parametrize("method", [name for name in METHODS if METHODS[name].kind != "solid"])
 def test_error_extension_and_resolution_are_as_the_row_says(steel, method):
     row, phase = METHODS[method], [0.03, 0.66]  # a tip corner touches ahead of the path at the second
-    plain = curve_of(steel, method, phases=phase, error=True)
+    plain = curve_of(steel, method, phases=phase, error=row.error)
     assert (plain.error is not None) == row.error
+    for option in [] if row.error else [{"error": True}]:
+        with pytest.raises(ValueError, match=f"error = True with method = '{method}'"):
+            curve_of(steel, method, phases=phase, **option)
+    if not row.converged:
+        with pytest.raises(ValueError, match=r"refine = 0\.7 with method"):
+            curve_of(steel, method, phases=phase, refine=0.7)
+        with pytest.raises(ValueError, match="order = 3 with method"):
+            curve_of(steel, method, phases=phase, order=3)
     without = curve_of(steel, method, phases=phase, extended=False)
     assert (not np.allclose(without.k, plain.k, rtol=1e-6)) == row.extended
-    finer = curve_of(steel, method, phases=phase, refine=0.7)
-    assert (not np.array_equal(finer.k, plain.k)) == row.converged
+    if row.converged:
+        assert not np.array_equal(curve_of(steel, method, phases=phase, refine=0.7).k, plain.k)
     assert plain.meta.get("order") == row.order
     if row.order:
         assert not np.array_equal(curve_of(steel, method, phases=phase, order=row.order - 1).k, plain.k)

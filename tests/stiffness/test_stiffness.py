@@ -141,7 +141,7 @@ def test_three_pairs():
 
 @pytest.mark.parametrize("method", ["textbook", "published"])
 def test_energy_methods_are_plain_sums(pair, steel, method):
-    light, heavy = gf.mesh_stiffness(pair, [1.0, 1e5], steel, method=method)
+    light, heavy = gf.mesh_stiffness(pair, [1.0, 2e4], steel, method=method)
     assert_allclose(light.k, heavy.k, rtol=1e-12)
     assert_allclose(light.share.sum(axis=1), 1, rtol=1e-12)
     zones = light.zones()

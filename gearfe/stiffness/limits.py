@@ -1,0 +1,135 @@
+"""Limits of what is asked for, with their reasons: kinds of values, resolution, number and range of phases, memory."""
+
+import math
+from numbers import Integral, Real
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..elements.solver import free_memory
+
+COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
+FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
+MOST_PHASES = 100_000  # of a cycle: k changes by less than 1e-4 between two of them even where teeth enter
+FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch
+SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
+SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
+
+
+def truth(name: str, value: object) -> bool:
+    """`value` if it is true or false; text and numbers are refused: ``bool("no")`` is true."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} = {value!r}, but give True or False")
+    return bool(value)
+
+
+def is_number(value: object) -> bool:
+    """Whether it is a real number: no text, no truth value."""
+    return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
+
+
+def numbers(name: str, value: object, unit: str) -> NDArray:
+    """One number or several as an array of floats; text, truth values and complex numbers are refused."""
+    try:
+        found = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
+    plain = found.dtype.kind in "iuf" and not _has_truth(value)
+    if not plain and not (found.dtype.kind == "O" and found.size and all(is_number(one) for one in found.ravel())):
+        raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")
+    return found.astype(float)
+
+
+def _has_truth(value):
+    """Whether a truth value hides among numbers of a list."""
+    return isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value)
+
+
+def _kind(value):
+    return "text" if isinstance(value, str) else type(value).__name__
+
+
+def checked_refine(refine: object) -> float:
+    """The resolution, if meshes follow it: from `COARSEST` to `FINEST`.
+
+    Raises
+    ------
+    ValueError
+        If it is no number, or outside.
+    """
+    if not is_number(refine) or not math.isfinite(refine):
+        raise ValueError(f"refine = {refine!r}, but give a finite number: it divides the edge lengths")
+    if not COARSEST <= refine <= FINEST:
+        why = (
+            "meshes follow it no further and their results are not to be trusted"
+            if refine < COARSEST
+            else "k changes by less than 1e-6 from 16 on, and the memory is full"
+        )
+        raise ValueError(f"refine = {refine}, but give {COARSEST:g} to {FINEST:g}: {why}")
+    return float(refine)
+
+
+def check_count(phases: object) -> int:
+    """A number of phases as an int, if it is a whole one from 1 to `MOST_PHASES`."""
+    if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
+        raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
+    if phases > MOST_PHASES:
+        raise ValueError(f"phases = {phases:g}, but give at most {MOST_PHASES}: a few hundred show it")
+    return int(phases)
+
+
+def check_range(phases: NDArray, pairs: float) -> None:
+    """Refuse phases too far away for their rounding, or over so many cycles at once that the contacts fill the memory.
+
+    Parameters
+    ----------
+    phases : ndarray, shape (n,)
+    pairs : float
+        Contact ratio: pairs in contact at each of them.
+
+    Raises
+    ------
+    ValueError
+        With the numbers.
+    """
+    far = float(np.abs(phases).max())
+    if far > FURTHEST:
+        raise ValueError(
+            f"phases up to {far:g}, but give phases within {FURTHEST:g} cycles, where rounding does not move contacts; healthy "
+            "gears repeat after 1"
+        )
+    orders = float(np.ptp(phases)) + pairs + 3
+    memory, free = 32.0 * phases.size * orders**2, free_memory()  # every pair with every other at every phase, a few copies
+    if memory > free / 2:
+        raise ValueError(
+            f"{phases.size} phases over {np.ptp(phases):.6g} cycles need about {memory / 1e9:.3g} GB, but {free / 1e9:.3g} GB "
+            "are free: give fewer cycles at once"
+        )
+
+
+def check_section(refine: float) -> None:
+    """Refuse a section of finite elements that does not fit into memory, before it is meshed.
+
+    Raises
+    ------
+    RuntimeError
+        With the numbers.
+    """
+    unknowns = sum(factor * refine**power for power, factor in enumerate(SECTION))
+    memory = unknowns * sum(factor * refine**power for power, factor in enumerate(SECTION_BYTES))
+    free = free_memory()
+    if memory > free:
+        raise RuntimeError(
+            f"refine = {refine:g}: about {unknowns:.3g} unknowns a section, which need about {memory / 1e9:.3g} GB, but "
+            f"{free / 1e9:.3g} GB are free: give a smaller refine"
+        )
+
+
+def check_teeth(teeth: object, most: int) -> None:
+    """Refuse a number of teeth that is none, or more than the larger gear has."""
+    if teeth is None:
+        return
+    if isinstance(teeth, bool) or not (isinstance(teeth, Integral) and teeth >= 1):
+        raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
+    if teeth > most:
+        raise ValueError(f"teeth = {teeth}, but the gears have no more than {most}: give fewer, or None for all")

@@ -1,0 +1,88 @@
+"""Whether a stiffness curve is within what linear elasticity can say; called once at the end of `mesh_stiffness`.
+
+The limits hold for every material, because they are strains. A force F on a tooth of width b bends it to about ``4 F / (b m)`` at
+the root, and the mesh approaches by ``F / (b c')`` with ``c' = E / 14`` or so: an approach of 1 % of the module comes with root
+strains of 0.3 %, where hardened steel begins to yield.
+
+- `WARN` 5 % of the module: root strains of 1.4 %, which no gear steel bears without damage.
+- `REFUSE` 25 %: strains of 7 %; the teeth's new places and directions, neglected, change k by as much: no answer.
+- `DENTED` pressure of 0.035 E*: 4 GPa for steel, the static limit of hardened rollers (ISO 76:2006, 5.1: a lasting dent of a
+  ten-thousandth of the roller). Flanks of steel are as hard as 6 to 8 GPa. Only warned of: a peak changes k little.
+"""
+
+import warnings
+
+import numpy as np
+
+from geometry.pair.gear_pair import GearPair
+
+from ..flexibility.hertz import contact_modulus
+from ..material import Material
+from .curve import StiffnessCurve
+
+WARN, REFUSE = 0.05, 0.25  # approach, of the module
+DENTED = 0.035  # largest pressure, of the contact modulus E*
+
+
+def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
+    """Refuse a force under which even the stiffest gears would be beyond small strains, before anything is solved.
+
+    Raises
+    ------
+    ValueError
+        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
+    """
+    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(one.E for one in materials)
+    least = 5 * force / (width * stiffest) / pair.gear_1.m_n
+    if least > REFUSE:
+        raise ValueError(
+            f"force = {force:g} N on {width:g} mm: the gears would approach by more than {100 * least:.3g} % of the module, but "
+            f"teeth that bend so far (limit {100 * REFUSE:g} %) break: give a smaller force, forces in N, lengths in mm, E in MPa"
+        )
+
+
+def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
+    """Refuse or warn of a curve beyond small strains, and refuse numbers that are none.
+
+    Parameters
+    ----------
+    curve : StiffnessCurve
+    pair : GearPair
+    materials : (Material, Material)
+
+    Raises
+    ------
+    ValueError
+        If the gears approach by more than `REFUSE` modules, or k is not positive and finite.
+
+    Warns
+    -----
+    UserWarning
+        If they approach by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
+    """
+    force, module = curve.meta["force_N"], pair.gear_1.m_n
+    if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):
+        bad = curve.phase[~(np.isfinite(curve.k) & (curve.k > 0))][0]
+        raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
+    ratio = float(np.median(curve.lte)) * 1e3 / module
+    told = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
+    if ratio > REFUSE:
+        raise ValueError(
+            f"force = {force:g} N: {told}, but teeth that bend so far (limit {100 * REFUSE:g} %) are beyond small strains and "
+            "break: give a smaller force, a wider face or a larger module, forces in N, lengths in mm, E in MPa"
+        )
+    if ratio > WARN:
+        warnings.warn(f"{told}: more than teeth bear ({100 * WARN:g} %); k is that of linear elasticity", stacklevel=4)
+    most, limit = _pressure(curve), DENTED * contact_modulus(materials)
+    if most > limit:
+        warnings.warn(
+            f"under {force:g} N the flanks press with {most:.4g} MPa, which dents them (about {limit:.3g} MPa do); k is that of "
+            "linear elasticity",
+            stacklevel=4,
+        )
+
+
+def _pressure(curve):
+    """Largest pressure of the pairs [MPa], at the median phase; 0 without any."""
+    known = np.where(np.isfinite(curve.pressure), curve.pressure, 0.0)
+    return float(np.median(known.max(axis=1, initial=0.0))) / 1e6

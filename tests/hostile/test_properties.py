@@ -1,0 +1,244 @@
+"""Every input drawn at random gives a result that keeps the invariants, or a ValueError that names the input.
+
+Invariants: ``0 < k`` within the range of teeth, forces that add up, symmetry under exchange of the gears, nothing stiffer by
+damage, continuity in the inputs. That estimates cover the difference of methods is judged in ``tests/stiffness/test_error.py``.
+Profiles: quick in the ordinary run, slow (10 000 examples and more) with ``-m slow``.
+"""
+
+import math
+import tomllib
+import warnings
+from importlib import resources
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from judge import unsound
+
+import gearfe as gf
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+KEPT = {"deadline": None, "database": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
+
+
+def profiles(quick, slow):
+    """Parameters of a test: `quick` examples in the ordinary run, `slow` ones where asked for."""
+    sizes = {"quick": quick, "slow": slow}
+    marks = {"quick": [], "slow": [pytest.mark.slow]}
+    return [pytest.param(settings(max_examples=most, **KEPT), id=name, marks=marks[name]) for name, most in sizes.items()]
+
+
+ANY = st.one_of(st.floats(), st.integers(), st.text(max_size=3), st.none(), st.booleans(), st.lists(st.floats(), max_size=3))
+
+
+ODD = st.sampled_from([math.nan, math.inf, -1.0, 0.0, 1e30, True, "1"])
+WIDE = {"z": st.integers(5, 90), "x": st.floats(-0.6, 0.9), "bore": st.floats(0.3, 0.9), "b": st.floats(2.0, 60.0)}
+WIDE |= {"addendum": st.floats(0.6, 1.2), "tip_radius": st.floats(0.0, 0.5)}
+GEARS = st.builds(  # gears of many kinds, some with one number that cannot be
+    lambda own, spoilt, name, odd: own | ({name: odd} if spoilt > 8 else {}),
+    st.fixed_dictionaries(WIDE), st.integers(0, 10), st.sampled_from([name for name in WIDE if name != "bore"]), ODD,
+)  # fmt: skip
+FORCES = st.builds(lambda own, spoilt, odd: odd if spoilt > 8 else own, st.floats(1e-3, 1e5), st.integers(0, 10), ODD)
+SENSIBLE = st.fixed_dictionaries({"z": st.integers(14, 60), "x": st.floats(-0.2, 0.5), "bore": st.floats(0.3, 0.75)})
+
+
+def gear(z, x, bore, b=20.0, alpha_n=0.35, addendum=1.0, tip_radius=0.38):
+    return gf.Gear(z, 2.0, alpha_n, b, bore * (z - 2.5), x=x, addendum=addendum, tip_radius=tip_radius)
+
+
+def made(one, two):
+    """A pair without its warnings, or None if there is no such pair."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            return gf.GearPair(gear(**one), gear(**two))
+        except ValueError as error:
+            assert len(str(error)) > 20
+            return None
+
+
+def stiffness(pair, force, method, **options):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        return gf.mesh_stiffness(pair, force, STEEL, method=method, **options)
+
+
+def run(check, profile, **drawn):
+    """Judge `check` on what is drawn, with a profile."""
+    profile(given(**drawn)(check))()
+
+
+@pytest.mark.parametrize("profile", profiles(100, 6000))
+def test_any_gears_and_loads(profile):
+    """Of any two gears under any force: a sound curve, the same with the gears exchanged, or an error that says why."""
+    told = {"answered": 0, "refused": 0}
+
+    def check(one, two, force, phase):
+        pair = made(one, two)
+        if pair is None:
+            told["refused"] += 1
+            return
+        try:
+            curve = stiffness(pair, force, "textbook", phases=[phase])
+        except ValueError as error:
+            told["refused"] += 1
+            assert "force" in str(error), str(error)
+            return
+        told["answered"] += 1
+        assert not unsound(curve)
+        end = pair.eps_alpha % 1.0
+        assume(min(phase, 1 - phase, abs(phase - end)) > 1e-6)  # where a pair enters or leaves, one side of the jump is right
+        swapped = stiffness(gf.GearPair(pair.gear_2, pair.gear_1, pair.a), force, "textbook", phases=[pair.eps_alpha - phase])
+        np.testing.assert_allclose(swapped.k, curve.k, rtol=1e-9)
+
+    run(check, profile, one=GEARS, two=GEARS, force=FORCES, phase=st.floats(0, 1))
+    assert min(told.values()) > 5, told
+
+
+@pytest.mark.parametrize("profile", profiles(4, 600))
+def test_the_energy_model_keeps_its_invariants(profile):
+    """Exchange of the gears, a crack that softens, a slightly other input that changes little."""
+
+    def check(one, two, force, phase, level, gap):
+        pair = made(one, two)
+        assume(pair is not None)
+        options = {"method": "ritz", "phases": [phase]}
+        try:
+            curve = stiffness(pair, force, **options)
+        except (ValueError, RuntimeError) as error:
+            assert "force" in str(error) or "triangles" in str(error), str(error)
+            return
+        assert not unsound(curve)
+        swapped = stiffness(gf.GearPair(pair.gear_2, pair.gear_1, pair.a), force, method="ritz", phases=[pair.eps_alpha - phase])
+        np.testing.assert_allclose(swapped.k, curve.k, rtol=2e-3, err_msg="exchange")
+        close = stiffness(pair, force * (1 + 1e-9), **options)
+        np.testing.assert_allclose(close.k, curve.k, rtol=1e-6, err_msg="continuity in the force")
+        hurt = [{"pinion": [gf.Crack(level=part)]} for part in (level, level + gap)]
+        less, more = (stiffness(pair, force, damage=one, **options).k for one in hurt)
+        assert (less < curve.k * 1.002).all(), "a crack softens"
+        assert (more < less * 1.002).all(), "a deeper one more"
+
+    run(check, profile, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
+        level=st.floats(0.1, 0.4), gap=st.floats(0.05, 0.3))  # fmt: skip
+
+
+PAIR = made({"z": 21, "x": 0.0, "bore": 0.4}, {"z": 31, "x": 0.0, "bore": 0.4})
+HEALTHY = {}
+
+
+@pytest.mark.parametrize("profile", profiles(3, 600))
+def test_pits_of_any_size_and_depth(profile):
+    """A pit of any depth lies between none and a deep one, and k falls with the depth without a jump."""
+    options = {"method": "ritz3d", "phases": [0.5]}
+
+    def check(radius, z, along, across, angle, depth):
+        if not HEALTHY:
+            HEALTHY["k"] = stiffness(PAIR, 2000.0, **options).k[0]
+        depths = (1e-12, depth, depth * 1.001, 0.3)
+        pits = [gf.Pit(radius, z, (along, across), one, angle) for one in depths]
+        k = [stiffness(PAIR, 2000.0, damage={"pinion": [one]}, **options).k[0] for one in pits]
+        assert abs(k[0] / HEALTHY["k"] - 1) < 5e-4, "a pit of no depth is none"
+        assert (np.diff(k) < 2e-6 * k[0]).all(), k
+        assert k[1] - k[2] < 1e-3 * k[1], "continuous in the depth"
+
+    run(check, profile, radius=st.floats(20.0, 22.0), z=st.floats(0.0, 20.0), along=st.floats(0.05, 1.5),
+        across=st.floats(0.05, 6.0), angle=st.floats(-1.5, 1.5), depth=st.floats(-5.0, -1.0).map(lambda p: 10**p))  # fmt: skip
+
+
+@pytest.mark.parametrize("profile", profiles(100, 6000))
+def test_anything_in_place_of_a_number(profile):
+    """Dataclasses and `mesh_stiffness` refuse what is no number with a ValueError that names it, never another exception."""
+    calls = {
+        **{f"gear {name}": lambda v, n=name: gear(**({"z": 21, "x": 0.0, "bore": 0.4} | {n: v})) for name in ("x", "b", "addendum")},  # noqa: E501
+        **{name: lambda v, n=name: gf.Material(**({"E": 2e5, "nu": 0.3} | {n: v})) for name in ("E", "nu")},
+        **{name: lambda v, n=name: gf.Crack(**({"level": 0.3} | {n: v})) for name in ("level", "angle", "tooth", "turning", "ends")},  # noqa: E501
+        **{name: lambda v, n=name: gf.Pit(**({"radius": 21.0, "z": 1.0, "axes": (1.0, 1.0), "depth": 0.1} | {n: v}))
+           for name in ("radius", "z", "axes", "depth", "angle")},
+        **{name: lambda v, n=name: gf.mesh_stiffness(**({"pair": PAIR, "force": 2e3, "material": STEEL, "phases": [0.5],
+           "method": "textbook"} | {n: v})) for name in ("force", "phases", "material", "refine", "order", "groove", "damage", "face")},  # noqa: E501
+    }  # fmt: skip
+
+    def check(name, value):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            try:
+                result = calls[name](value)
+            except ValueError as error:
+                assert len(str(error)) > 15
+            else:
+                assert not unsound(result)
+
+    run(check, profile, name=st.sampled_from(sorted(calls)), value=ANY)
+
+
+SCENE = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text(encoding="utf-8")
+LINES = [k for k, line in enumerate(SCENE.splitlines()) if " = " in line]
+
+
+@pytest.mark.parametrize("profile", profiles(25, 2000))
+def test_scenes_with_any_value(tmp_path, profile):
+    """A built-in scene with one value replaced is a scene, or a ValueError that names the file."""
+
+    def check(place, value):
+        lines = SCENE.splitlines()
+        lines[place] = f"{lines[place].partition(' = ')[0]} = {value}"
+        path = tmp_path / "own.toml"
+        path.write_text("\n".join(lines), encoding="utf-8")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            try:
+                gf.load_scene(path)
+            except ValueError as error:
+                assert "own.toml" in str(error)
+            else:
+                tomllib.loads(path.read_text(encoding="utf-8"))
+
+    values = [
+        "nan",
+        "inf",
+        "-1",
+        "0",
+        "1e300",
+        "true",
+        '""',
+        '"x"',
+        "[]",
+        "[1, 2]",
+        "{}",
+        "",
+        "1979-05-27",
+        "3.5",
+        "[[1]]",
+        "10_000_000",
+    ]
+    run(check, profile, place=st.sampled_from(LINES), value=st.sampled_from(values))
+
+
+@pytest.mark.parametrize("profile", profiles(25, 3000))
+def test_files_of_any_bytes(tmp_path, profile):
+    """Readers refuse files of any bytes with one line that names the file, or read numbers that are finite."""
+    heads = [
+        b"",
+        b"PK\x03\x04",
+        b"\x93NUMPY\x01\x00",
+        b"MATLAB 5.0 MAT-file" + bytes(105) + b"\x00\x01IM",
+        b"time [s],a [m/s^2]\n",
+        b"# ",
+    ]
+
+    def check(suffix, head, body):
+        path = tmp_path / f"own{suffix}"
+        path.write_bytes(head + body)
+        for reader in (gf.read_signal, gf.read_model, gf.StiffnessCurve.from_csv, gf.load_scene):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)
+                try:
+                    found = reader(path)
+                except ValueError as error:
+                    assert "own" in str(error)
+                else:
+                    assert not isinstance(found, gf.Signal) or np.isfinite(found.values).all()
+
+    run(check, profile, suffix=st.sampled_from([".csv", ".txt", ".npz", ".mat"]), head=st.sampled_from(heads),
+        body=st.one_of(st.binary(max_size=200), st.text("0123456789.,;-e \n\t", max_size=80).map(str.encode)))  # fmt: skip
