@@ -1,7 +1,7 @@
 """`mesh_stiffness`: from a gear pair to its stiffness curve, by finite elements or by an energy method."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, overload
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
+from geometry.tooth.modified import Flank, flank_forms
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
@@ -47,6 +48,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = ...,
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    flanks: Mapping[str, Flank] | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -73,6 +75,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = ...,
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    flanks: Mapping[str, Flank] | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -98,6 +101,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = 64,
     span: str = "cycle",
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    flanks: Mapping[str, Flank] | None = None,
     extended: bool = True,
     state: str = "plane strain",
     refine: float = 1.0,
@@ -146,6 +150,10 @@ def mesh_stiffness(
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
         and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
+    flanks : dict, optional
+        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods of the
+        section and the plain sums of spur gears without pits. The curve's `te` then is the transmission error under load and
+        `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -208,11 +216,12 @@ def mesh_stiffness(
     check_state(state)
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
+    forms = flank_forms(pair, flanks)
     method, why = choose(method, pair, cracks, pits, face, teeth)
     row, own = row_of(method)
     if not is_number(groove):
         raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
-    refuse(row, pair, cracks, pits, teeth, variants, face, groove)
+    refuse(row, pair, cracks, pits, teeth, variants, face, groove, forms)
     refuse_numeric(row, refine=refine, order=order, error=error, state=state)
     said_of_face(pair, face)
     if row.name == "fe":
@@ -224,6 +233,7 @@ def mesh_stiffness(
         same: dict[str, Any] = {
             "method": own or row.name,
             "damage": damage,
+            "flanks": flanks,
             "extended": extended,
             "state": state,
             "refine": refine,
@@ -231,13 +241,14 @@ def mesh_stiffness(
         same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
         same |= {"error": error, "cache": cache, "tell": tell}
         curves = [
-            in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair.p_bt, pose)
+            in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
             for value in forces
         ]
         curves = [replace(one, meta=one.meta | {"why": why}) for one in curves]
         return _as_asked(curves, force, torque)
     numeric = {"refine": refine, "order": row.order if order is None else order}
     said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
+    said |= {"flanks": {name: asdict(one) for name, one in flanks.items() if one}} if forms and flanks else {}
     if row.kind == "solid":
         options = {"face": face, "groove": groove, "extended": extended, **numeric}
         case = (pair, materials, phase, cracks, pits)
@@ -247,10 +258,10 @@ def mesh_stiffness(
         curves = [wide_curve(value, case, meta, **options) for value in forces]
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
-        sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove}
+        sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
-        numeric |= {"cracks": cracks, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
+        numeric |= {"cracks": cracks, "flanks": forms, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
         solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None
