@@ -10,6 +10,7 @@ import importlib
 _HOME = {
     "Body": "gearfe.machine.layout",
     "Crack": "geometry.damage.crack",
+    "Flank": "geometry.tooth.modified",
     "Gear": "geometry.tooth.gear",
     "GearMesh": "gearfe.machine.gear_mesh",
     "GearPair": "geometry.pair.gear_pair",
@@ -74,6 +75,8 @@ _HOME = {
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
     "spectral_kurtosis": "gearfe.signal.kurtogram",
+    "TransmissionError": "gearfe.stiffness.transmission_error",
+    "transmission_error": "gearfe.stiffness.transmission_error",
     "spectrum": "gearfe.signal.spectra",
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",

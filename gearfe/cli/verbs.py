@@ -45,6 +45,9 @@ def stiffness(arguments):
     run, left_out = fitted(arguments.method, chosen.case(arguments.case))
     for text in left_out:
         print(f"{text}\n")
+    if arguments.forces:
+        _transmission_error(arguments, run)
+        return
     with working(f"stiffness by {arguments.method}") as tell:
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
@@ -63,6 +66,26 @@ def stiffness(arguments):
         from ..pictures.stiffness_plots import told
 
         curve.plot(arguments.plot, _title(scene, arguments, told(curve)))
+        print(f"written: {arguments.plot}")
+
+
+def _transmission_error(arguments, run):
+    """``gearfe stiffness --forces``."""
+    from ..stiffness.transmission_error import transmission_error
+
+    if arguments.output or arguments.force is not None:
+        raise ValueError("--forces prints and draws the transmission error of several loads: leave out --output and --force")
+    run = {name: value for name, value in run.items() if name != "force"}
+    with working(f"transmission error by {arguments.method}"):
+        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "span": "cycle"}
+        pair, material = run.pop("pair"), run.pop("material")
+        found = transmission_error(
+            pair, arguments.forces, material, method=arguments.method, phases=arguments.phases, **run, **options
+        )
+    print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
+    print(found.table())
+    if arguments.plot:
+        found.plot(arguments.plot)
         print(f"written: {arguments.plot}")
 
 

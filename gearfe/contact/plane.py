@@ -1,7 +1,8 @@
 """All tooth pairs at one phase: who carries what, and how far the gears approach.
 
 A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a tip corner there is no such
-formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each.
+formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each. So it does where a modified flank
+has a kink within the contact: a row of hats on both sides of the touching point (`gearfe.contact.kinks`).
 """
 
 import numpy as np
@@ -11,11 +12,13 @@ from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
 from ..flexibility.section_contact import Solved
+from .kinks import kink_rows, near_kink
 from .sharing import line_contact, line_contacts
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
 CORNER = 0.7
+KINK = 3  # number of a pair whose contact reaches a kink of a flank; 1 and 2 are those at a tip corner
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -45,13 +48,15 @@ class PairContact:
     phase : ndarray
     extended : bool
     state : str
+    flanks : (FlankForm, FlankForm), optional
+        Modifications of pinion and wheel, `geometry.tooth.modified.flank_forms`.
     """
 
-    def __init__(self, pair, materials, flexibility, phase, *, extended, state):
-        self.pair, self.flexibility = pair, flexibility
+    def __init__(self, pair, materials, flexibility, phase, *, extended, state, flanks=None):
+        self.pair, self.flexibility, self.flanks = pair, flexibility, flanks
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
-        self.found = found = pair.contacts(phase, extended=extended)
+        self.found = found = pair.contacts(phase, extended=extended, flanks=flanks)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
@@ -60,7 +65,7 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self._known = {}
+        self._known, self._rows = {}, {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -70,13 +75,17 @@ class PairContact:
         corner = np.where(possible, self._corners(line_load), 0)
         line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
         pressure = peak_pressure(line, self.radius, self.modulus)
-        done &= ~corner.any(axis=1)
+        kink = near_kink(self, line_load) & possible & (corner == 0)
+        done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
         closed = []
+        kinks = kink_rows(self, np.argwhere(kink), line_load)
         for i in np.flatnonzero(~done).tolist():
             line[i] = pressure[i] = 0.0
-            contacts = _within(self.contacts_at(i, np.flatnonzero(possible[i]), corner[i, possible[i]]), reach[i])
+            near = np.flatnonzero(possible[i])
+            rows = kinks if kink[i].any() else None
+            contacts = _within(self.contacts_at(i, near, np.where(kink[i], KINK, corner[i])[near], rows), reach[i])
             force, approach[i], tangent[i] = self._share(contacts, line_load)
             if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)
@@ -87,7 +96,8 @@ class PairContact:
             pressure[i, contacts["column"][~single]] = np.nan
             pressure[i, contacts["column"][single]] = peak
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
-        return Solved(found.order, approach, tangent, line, pressure, tuple(closed))
+        unloaded = None if self.flanks is None else found.gap.min(axis=1)
+        return Solved(found.order, approach, tangent, line, pressure, tuple(closed), unloaded)
 
     def _share(self, contacts, line_load, weight=None):
         names = ("coefficient", "radius")
@@ -119,11 +129,11 @@ class PairContact:
         return np.concatenate(rows, axis=-1) if rows else None
 
     def _reach(self, line_load):
-        """Gap [mm] no contact can close, by phase: twice the approach of the best pair alone."""
+        """Gap [mm] no contact can close, by phase: the best pair's, and twice what it gives alone."""
         best = np.argmin(self.found.gap, axis=1)
         at = np.arange(best.size), best
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
-        return 2 * (self.found.gap[at] + np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load)
+        return self.found.gap[at] + 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def _corners(self, line_load):
         """For each phase and pair: 0, or the gear (1, 2) whose tip corner it touches."""
@@ -135,7 +145,7 @@ class PairContact:
             corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def contacts_at(self, i, near, corner):
+    def contacts_at(self, i, near, corner, kinks=None):
         """Unknowns of the contact problem at one phase.
 
         Parameters
@@ -145,20 +155,27 @@ class PairContact:
         near : ndarray of int
             Columns of the pairs that may touch.
         corner : ndarray of int
-            For each of them 0, or the gear (1, 2) whose tip corner it touches: then it is a row of hats.
+            For each of them 0, or the gear (1, 2) whose tip corner it touches, or `KINK`: then it is a row of hats.
+        kinks : dict, optional
+            The rows at kinks, from `gearfe.contact.kinks.kink_rows`: they are those of one load.
 
         Returns
         -------
         dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
+        if kinks is not None:
+            return self._built(i, near, corner, kinks)
         key = i, tuple(near), tuple(corner)
         if key not in self._known:
-            self._known[key] = self._built(i, near, corner)
+            self._known[key] = self._built(i, near, corner, {})
         return self._known[key]
 
-    def _built(self, i, near, corner):
-        parts = [self._row(i, column, number) for column, number in zip(near, corner, strict=True)]
+    def _built(self, i, near, corner, kinks):
+        parts = [
+            kinks[i, column] if number == KINK else self._row(i, column, number)
+            for column, number in zip(near, corner, strict=True)
+        ]
         roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
         column = np.repeat(near, [part[0].size for part in parts])
         order = self.found.order[column]
@@ -174,6 +191,11 @@ class PairContact:
         }  # fmt: skip
 
     def _row(self, i, column, corner):
+        if (i, column, corner) not in self._rows:
+            self._rows[i, column, corner] = self._made(i, column, corner)
+        return self._rows[i, column, corner]
+
+    def _made(self, i, column, corner):
         """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
         found = self.found
         if corner == 0:
@@ -185,7 +207,8 @@ class PairContact:
         hats = self.flexibility[tip].tip_of(tooth[tip])
         roll = roll_at_arc(gears[tip], hats.arc)
         start = found.gap[i, column]
-        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1, start=start)
+        own = {"flanks": self.flanks, "order": found.order[column]}
+        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1, start=start, **own)
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)

@@ -112,7 +112,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
         new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight)
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
-        if settled:
+        if settled or not np.any(coefficient):
             break
     else:
         raise RuntimeError(f"load sharing did not settle at line load {load} N/mm; reduce the load or refine the mesh")

@@ -2,6 +2,7 @@
 
 import math
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,8 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.mesh.outline import stations
+from geometry.mesh.relieved import relieved
 from geometry.mesh.section_mesh import section
 from geometry.pair.gear_pair import GearPair
+from geometry.tooth.modified import Flank, flank_forms
 from geometry.tooth.profile import arc_at
 
 from ..files import written
@@ -54,6 +57,7 @@ def write_contact_inp(
     materials: tuple[Material, Material],
     *,
     pose: str = "mean",
+    flanks: Mapping[str, Flank] | None = None,
     per_width: int = 8,
     penalty: float = 500.0,
     refine: float = 1.0,
@@ -77,6 +81,9 @@ def write_contact_inp(
     materials : (Material, Material)
     pose : {"mean", "pinion", "wheel"}
         Whether both gears turn by half the approach, or one of them against the held other.
+    flanks : dict, optional
+        Modifications, as of `mesh_stiffness`: the mesh carries them (`geometry.mesh.relieved`); `approach` is the transmission
+        error under load, its unloaded part included.
     per_width : int
         Edges per Hertz half width in the contact zones.
     penalty : float
@@ -94,8 +101,8 @@ def write_contact_inp(
     """
     if pose not in PINION:
         raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(PINION)}")
-    gears = pair.gear_1, pair.gear_2
-    found = pair.contacts([phase])
+    gears, forms = (pair.gear_1, pair.gear_2), flank_forms(pair, flanks)
+    found = pair.contacts([phase], flanks=forms)
     near = np.flatnonzero(found.gap[0] < 1.5 * approach)
     order = found.order[near]
     rolls = found.roll_1[0, near], found.roll_2[0, near]
@@ -104,6 +111,8 @@ def write_contact_inp(
         _meshed(gear, sense * order, arc_at(gear, roll), widths, per_width, refine)
         for gear, roll, sense in zip(gears, rolls, (1, -1), strict=True)
     ]
+    if forms is not None:
+        bodies = [relieved(body, form, order, sense) for body, form, sense in zip(bodies, forms, (1, -1), strict=True)]
     part = PINION[pose]
     turned = [part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b]
     turns = pair.turn(found.nominal[0, near[0]] - order[0] * pair.p_bt)

@@ -11,7 +11,8 @@ class Solved:
 
     `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
     `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
-    `closed` the phases at which crack faces touch and were kept from passing through each other.
+    `closed` the phases at which crack faces touch and were kept from passing through each other, `unloaded` (phases,) the part of
+    the approach at which the first pair touches [mm], None for involutes.
     """
 
     order: np.ndarray
@@ -20,3 +21,4 @@ class Solved:
     line_load: np.ndarray
     pressure: np.ndarray
     closed: tuple = ()
+    unloaded: np.ndarray | None = None

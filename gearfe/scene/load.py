@@ -12,9 +12,11 @@ from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit, pit_row
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
+from geometry.tooth.modified import Flank
 
 from ..material import Material
 from . import assumed, machine_table
+from .flank_table import FLANK, flanks_of
 from .references import Reference, read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 
@@ -44,6 +46,7 @@ TABLES = {
         "face": (TEXT, None),
         "groove_mm": (NUMBER, 0.0),
     },
+    "flank": FLANK,
 }
 DAMAGE = {
     "crack": {
@@ -86,7 +89,7 @@ ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEX
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage.
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, `flanks` what it takes as flanks.
     """
 
     pair: GearPair
@@ -95,6 +98,7 @@ class ScenePair:
     face: str | None = None
     groove: float = 0.0
     damage: dict[str, dict[str, list[Crack | Pit]]] = field(default_factory=dict)
+    flanks: dict[str, Flank] = field(default_factory=dict)
 
     def case(self, name: str | None = None) -> dict[str, Any]:
         """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
@@ -107,6 +111,7 @@ class ScenePair:
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
+        out |= {"flanks": self.flanks} if self.flanks else {}
         return out if name is None else out | {"damage": self.damage[name]}
 
 
@@ -204,7 +209,8 @@ def _scene(file, data):
         if not row["force_N"] > 0:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
         found = _cases(file, damage, gears, name, rows["pair"])
-        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found)
+        bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent)
     notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
     cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})

@@ -5,6 +5,7 @@ import math
 REQUIRED = object()
 NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
 TWO, TRUTH, TABLES, VALUES = "two numbers", "true or false", "a list of tables", "a table of values by dotted key"
+NUMBERS = "a list of numbers"
 
 
 def checked(file, where, table, keys, extra=()):
@@ -28,7 +29,7 @@ def checked(file, where, table, keys, extra=()):
 
 
 def _unit(key):
-    units = {"mm": "mm", "deg": "degrees", "N": "N", "MPa": "MPa"}
+    units = {"mm": "mm", "deg": "degrees", "um": "um", "N": "N", "MPa": "MPa"}
     end = key.rpartition("_")[2]
     return f" in {units[end]}" if end in units and "_" in key else ""
 
@@ -40,6 +41,8 @@ def _fits(value, kind):
         return isinstance(value, bool)
     if kind == TWO:
         return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
+    if kind == NUMBERS:
+        return isinstance(value, list) and all(_fits(v, NUMBER) for v in value)
     if kind == VALUES:
         return isinstance(value, dict)
     if kind == TABLES:

@@ -30,7 +30,8 @@ class StiffnessCurve:
     k_tangent : ndarray, shape (n,)
         Tangent stiffness dF/dx [N/m].
     lte : ndarray, shape (n,)
-        Loaded minus unloaded transmission error, as a length on the line of action [m].
+        Loaded minus unloaded transmission error, as a length on the line of action [m]; ``k = force / lte``, also where so light
+        a load leaves part of the pairs open.
     order : ndarray, shape (pairs,)
         Which tooth pairs the columns below belong to: pair k is k base pitches ahead of the newest.
     force : ndarray, shape (n, pairs)
@@ -39,6 +40,8 @@ class StiffnessCurve:
         Largest contact pressure of each pair [Pa]; nan for methods without one.
     error : ndarray, shape (n,) or None
         Estimated discretisation error of k [N/m], if one was asked for.
+    unloaded : ndarray, shape (n,) or None
+        Transmission error without load [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
     meta : dict
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
@@ -52,6 +55,7 @@ class StiffnessCurve:
     pressure: NDArray[np.float64]
     error: NDArray[np.float64] | None = None
     meta: dict[str, Any] = field(default_factory=dict)
+    unloaded: NDArray[np.float64] | None = None
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""
@@ -111,6 +115,11 @@ class StiffnessCurve:
         axes = {1: ("phase",), 2: ("phase", "order")}
         values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
+
+    @property
+    def te(self) -> NDArray[np.float64]:
+        """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
+        return self.lte if self.unloaded is None else self.lte + self.unloaded
 
     @property
     def share(self) -> NDArray[np.float64]:

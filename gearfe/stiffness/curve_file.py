@@ -7,22 +7,24 @@ import numpy as np
 from ..files import Content, read_text
 
 COLUMNS = {"phase": "-", "k": "N/m", "k_tangent": "N/m", "lte": "m"}
+OPTIONAL = {"error": "N/m", "unloaded": "m"}
 PER_PAIR = {"force": "N", "pressure": "Pa"}
 TITLE = "gearfe stiffness curve, version 1"
 FIRST_LINE = f"# {TITLE}"
 
 
 def content(curve):
-    """Return the `Content` of a `StiffnessCurve` (``error`` only if there is one)."""
+    """Return the `Content` of a `StiffnessCurve` (``error`` and ``unloaded`` only if there are any)."""
     columns = {f"{name} [{unit}]": getattr(curve, name) for name, unit in COLUMNS.items()}
-    if curve.error is not None:
-        columns["error [N/m]"] = curve.error
+    extra = {name: unit for name, unit in OPTIONAL.items() if getattr(curve, name) is not None}
+    for name, unit in extra.items():
+        columns[f"{name} [{unit}]"] = getattr(curve, name)
     for name, unit in PER_PAIR.items():
         for j, order in enumerate(curve.order):
             columns[f"{name} {order} [{unit}]"] = getattr(curve, name)[:, j]
-    names = [*COLUMNS, "order", *PER_PAIR, *(["error"] if curve.error is not None else [])]
+    names = [*COLUMNS, "order", *PER_PAIR, *extra]
     arrays = {name: np.asarray(getattr(curve, name)) for name in names}
-    return Content(TITLE, columns, arrays, curve.meta, COLUMNS | PER_PAIR | {"error": "N/m", "order": "-"})
+    return Content(TITLE, columns, arrays, curve.meta, COLUMNS | PER_PAIR | OPTIONAL | {"order": "-"})
 
 
 def read_fields(path):
@@ -44,7 +46,8 @@ def read_fields(path):
         raise ValueError(f"{path}: damaged table: {'no column ' + repr(missing[0]) if missing else 'no pairs or no meta data'}")
     per_pair = {name: np.array([data[f"{name} {k} [{unit}]"] for k in order]).T for name, unit in PER_PAIR.items()}
     plain = {name: data[f"{name} [{unit}]"] for name, unit in COLUMNS.items()}
-    return plain | per_pair | {"order": order, "error": data.get("error [N/m]"), "meta": meta}
+    extra = {name: data.get(f"{name} [{unit}]") for name, unit in OPTIONAL.items()}
+    return plain | per_pair | extra | {"order": order, "meta": meta}
 
 
 def _columns(path, header, table):

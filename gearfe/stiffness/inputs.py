@@ -17,6 +17,7 @@ from .own_flexibility import OwnFlexibility
 
 NO_VARIANTS = (
     *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
+    "flanks",
 )
 
 
@@ -84,7 +85,7 @@ def choose(method, pair, cracks, pits, face, teeth):
 def row_of(method):
     """The row of a method in the table, and the `OwnFlexibility` if it is one; the method must not be ``auto`` any more."""
     if isinstance(method, OwnFlexibility):
-        return Method(method.name, "a model of one's own", "section", "", "", extended=method.extended), method
+        return Method(method.name, "a model of one's own", "section", "", "", extended=method.extended, flanks=True), method
     return METHODS[method], None
 
 
@@ -95,7 +96,7 @@ def check_method(method):
     raise ValueError(f"method = {method!r}, but it must be one of {', '.join(NAMES)}, or an OwnFlexibility")
 
 
-def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
+def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     """Raise ValueError for what the method of a `row` of the table does not model."""
     method = f"method = {row.name!r}"
     if face not in (None, *FACES):
@@ -129,6 +130,8 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove):
             )
     if teeth is not None and not row.teeth:
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
+    if flanks is not None and not row.flanks:
+        raise ValueError(f"modified flanks with {method}, which takes involutes only: use {having('flanks')}")
     if variants and not row.variants:
         raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")
     for name in variants or ():

@@ -44,8 +44,9 @@ class Method:
         The last two: only with the variant ``foundation`` saying what a ring's body does; of a scene's rings it is this one.
     faces : tuple of str
         How the teeth may run. A section takes helical gears as spur gears of the same width.
-    variants, teeth, error, extended : bool
-        Whether it has variants, can leave out teeth, estimates its error, and lets tip corners touch off the path of contact.
+    variants, teeth, error, extended, flanks : bool
+        Whether it has variants, can leave out teeth, estimates its error, lets tip corners touch off the path of contact, takes
+        modified flanks.
     order : int or None
         Default order of its polynomials.
     kept : {"", "process", "disk"}
@@ -68,6 +69,7 @@ class Method:
     teeth: bool = False
     error: bool = False
     extended: bool = False
+    flanks: bool = False
     order: int | None = None
     kept: str = ""
     crack_models: tuple = ()
@@ -81,8 +83,8 @@ class Method:
 ROWS = (
     Method(
         "ritz", "converged energy model of the transverse section", "section", "gearfe.energy.ritz.plane:flexibility",
-        "milliseconds", converged=True, cracks="through", error=True, extended=True, order=4,
-        kept="process",
+        "milliseconds", converged=True, cracks="through", error=True, extended=True, flanks=True,
+        order=4, kept="process",
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
@@ -92,7 +94,7 @@ ROWS = (
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",
         "gearfe.stiffness.cache:solved_gear", "seconds", converged=True, cracks="through", teeth=True, error=True, extended=True,
-        kept="disk",
+        flanks=True, kept="disk",
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
@@ -101,17 +103,17 @@ ROWS = (
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
-        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no", kept="process",
+        "gearfe.energy.closed.coupled:flexibility", "milliseconds", rings="no", flanks=True, kept="process",
     ),
     Method(
         "textbook", "closed form: beams on Sainsot's foundation, plain sum of tooth pairs", "sum",
         "gearfe.energy.closed.textbook", "milliseconds", cracks="through", pits=True, rings="external", faces=FACES,
-        variants=True, crack_models=("constant", "straight", "parabola"),
+        variants=True, flanks=True, crack_models=("constant", "straight", "parabola"),
     ),
     Method(
         "published", "closed form: the beams of the article, as printed and corrected, plain sum of tooth pairs", "sum",
         "gearfe.energy.closed.published", "milliseconds", cracks="through", pits=True, rings="printed", faces=FACES,
-        variants=True, crack_models=("constant",),
+        variants=True, flanks=True, crack_models=("constant",),
     ),
 )  # fmt: skip
 METHODS = {row.name: row for row in ROWS}

@@ -14,14 +14,14 @@ from .estimate import coarser, estimate, fixed_phases
 from .own_flexibility import flexibility_of
 
 
-def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove):
+def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove, flanks=None):
     """`solve` of a plain sum (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it."""
     options = {**variants, "face": face, "groove": groove}
-    solve, details = plain_sum(pair, materials, phase, row.load(), cracks=cracks, pits=pits, **options)
+    solve, details = plain_sum(pair, materials, phase, row.load(), cracks=cracks, pits=pits, flanks=flanks, **options)
     return solve, options | {"outside": [asdict(one) for one in details["outside"]]}
 
 
-def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, **numeric):
+def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, **numeric):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
     Parameters
@@ -38,6 +38,8 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
     state : str
     cache : SolvedGears
         Where solved gears are looked up and kept.
+    flanks : (FlankForm, FlankForm), optional
+        Modifications, `geometry.tooth.modified.flank_forms`.
     **numeric
         ``refine``, ``order``, ``teeth``: each method gets those that it has.
     """
@@ -52,7 +54,7 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
         flexible = [named(row, gear, material, found) for gear, material, found in gears]
     else:
         flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
-    contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state)
+    contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state, flanks=flanks)
     details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
@@ -94,19 +96,22 @@ def curve(pair, phase, force, solve, meta, damage=None):
     width = min(pair.gear_1.b, pair.gear_2.b)
     solved = solve(force / width)
     used = solved.line_load.max(axis=0) > 0
+    unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
+    closing = solved.approach if unloaded is None else solved.approach - solved.unloaded
     meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
     if damage is not None:
         _warn_if_unseen(pair, damage, solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     return StiffnessCurve(
         phase=phase,
-        k=force / (solved.approach * 1e-3),
+        k=force / (closing * 1e-3),
         k_tangent=solved.tangent * width * 1e3,
-        lte=solved.approach * 1e-3,
+        lte=closing * 1e-3,
         order=solved.order[used],
         force=solved.line_load[:, used] * width,
         pressure=solved.pressure[:, used] * 1e6,
         meta=meta,
+        unloaded=unloaded,
     )
 
 
@@ -114,7 +119,8 @@ def with_error(row, curves, case, options):
     """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
     pair, materials, phase = case
     less = coarser(options["refine"], _numeric(row, options).get("order"))
-    periodic = not any(options["cracks"])
+    turns = any(form.flank.pitch for form in options.get("flanks") or ())
+    periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
     solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in ({}, *less)]
     out = []

@@ -15,7 +15,7 @@ def check_pose(pose):
         raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(SHIFT)}")
 
 
-def in_pose(curve_at, phase, p_bt, pose):
+def in_pose(curve_at, phase, pair, pose, flanks=None):
     """Stiffness curve of gears of which only one turns, from curves in the mean pose.
 
     With the wheel held at its place at `phase` and the pinion turned by an approach delta, both stand as in the mean pose at
@@ -27,9 +27,10 @@ def in_pose(curve_at, phase, p_bt, pose):
     curve_at : callable
         Maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose.
     phase : ndarray, shape (n,)
-    p_bt : float
-        Transverse base pitch [mm].
+    pair : GearPair
     pose : {"pinion", "wheel"}
+    flanks : (FlankForm, FlankForm), optional
+        Modifications: without load, too, one gear is turned until flanks touch.
 
     Returns
     -------
@@ -40,16 +41,25 @@ def in_pose(curve_at, phase, p_bt, pose):
     RuntimeError
         If the shift does not settle.
     """
-    at = phase
-    for _ in range(MOST):
-        curve = curve_at(at)
-        wanted = phase + SHIFT[pose] * 1e3 * curve.lte / p_bt
-        if np.abs(wanted - at).max() < SETTLED:
-            break
-        at = wanted
-    else:
-        raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")
+    shift = SHIFT[pose] / pair.p_bt
+    at, curve = _settled(curve_at, phase, lambda curve: shift * 1e3 * curve.te, pose)
+    if flanks is not None:
+        _, unloaded = _settled(lambda p: pair.contacts(p, flanks=flanks).gap.min(axis=1), phase, lambda gap: shift * gap, pose)
+        lte = curve.te - unloaded * 1e-3
+        curve = replace(curve, lte=lte, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / lte)
     meta = curve.meta | {"pose": pose}
     if "crack_closed_phases" in meta:
         meta["crack_closed_phases"] = phase[np.isin(at, meta["crack_closed_phases"])].tolist()
     return replace(curve, phase=phase, meta=meta)
+
+
+def _settled(solve, phase, moved, pose):
+    """Phases at which what is solved is as far from `phase` as `moved` says, and what is solved there."""
+    at = phase
+    for _ in range(MOST):
+        found = solve(at)
+        wanted = phase + moved(found)
+        if np.abs(wanted - at).max() < SETTLED:
+            return at, found
+        at = wanted
+    raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from numbers import Integral
 from typing import Any, overload
 
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
+from geometry.tooth.modified import Flank, flank_forms
 
 from ..flexibility.solved import solved_gears
 from ..material import Material, check_state
@@ -34,6 +35,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = ...,
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    flanks: Mapping[str, Flank] | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -59,6 +61,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = ...,
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    flanks: Mapping[str, Flank] | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -83,6 +86,7 @@ def mesh_stiffness(
     phases: int | ArrayLike = 64,
     span: str = "cycle",
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    flanks: Mapping[str, Flank] | None = None,
     extended: bool = True,
     state: str = "plane strain",
     refine: float = 1.0,
@@ -129,6 +133,10 @@ def mesh_stiffness(
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
         and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
+    flanks : dict, optional
+        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods of the
+        section and the plain sums of spur gears without pits. The curve's `te` then is the transmission error under load and
+        `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -183,9 +191,10 @@ def mesh_stiffness(
     check_state(state)
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
+    forms = flank_forms(pair, flanks)
     method, why = choose(method, pair, cracks, pits, face, teeth)
     row, own = row_of(method)
-    refuse(row, pair, cracks, pits, teeth, variants, face, groove)
+    refuse(row, pair, cracks, pits, teeth, variants, face, groove, forms)
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
@@ -193,6 +202,7 @@ def mesh_stiffness(
         same: dict[str, Any] = {
             "method": own or row.name,
             "damage": damage,
+            "flanks": flanks,
             "extended": extended,
             "state": state,
             "refine": refine,
@@ -200,13 +210,14 @@ def mesh_stiffness(
         same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
         same |= {"error": error, "cache": cache, "tell": tell}
         curves = [
-            in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair.p_bt, pose)
+            in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
             for value in forces
         ]
         curves = [replace(one, meta=one.meta | {"why": why}) for one in curves]
         return curves if np.ndim(force) else curves[0]
     numeric = {"refine": float(refine), "order": row.order if order is None else order}
     said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
+    said |= {"flanks": {name: asdict(one) for name, one in flanks.items() if one}} if forms and flanks else {}
     if row.kind == "solid":
         options = {"face": face, "groove": groove, "extended": bool(extended), **numeric}
         case = (pair, materials, phase, cracks, pits)
@@ -216,10 +227,11 @@ def mesh_stiffness(
         curves = [wide_curve(value, case, meta, **options) for value in forces]
         return curves if np.ndim(force) else curves[0]
     if row.kind == "sum":
-        sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove}
+        sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
-        numeric |= {"cracks": cracks, "extended": bool(extended), "state": state, "cache": solved, "teeth": teeth}
+        numeric |= {"cracks": cracks, "flanks": forms, "extended": bool(extended), "state": state, "cache": solved}
+        numeric |= {"teeth": teeth}
         solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None

@@ -38,6 +38,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..tooth.profile import cartesian, flank
 
 if TYPE_CHECKING:
+    from ..tooth.modified import FlankForm
     from .gear_pair import GearPair
 
 STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
@@ -105,7 +106,14 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
 
 
 def approach(
-    pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True, start: float = 0.0
+    pair: "GearPair",
+    roll: ArrayLike,
+    nominal: ArrayLike,
+    *,
+    driver: bool = True,
+    start: ArrayLike = 0.0,
+    flanks: "tuple[FlankForm, FlankForm] | None" = None,
+    order: ArrayLike = 0,
 ) -> tuple[NDArray, NDArray]:
     """Approach, shared by both gears, at which a flank point touches the other flank (see the module).
 
@@ -117,8 +125,12 @@ def approach(
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
-    start : float
+    start : float or ndarray
         First guess of the approach [mm].
+    flanks : (FlankForm, FlankForm), optional
+        Modifications of pinion and wheel (`geometry.tooth.modified`); the point is then one of the modified flank.
+    order : int or ndarray
+        Number of the pair, whose teeth have their own pitch deviations.
 
     Returns
     -------
@@ -128,9 +140,15 @@ def approach(
     """
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
-    gap, facing = np.full(nominal.shape, float(start)), _facing(pair, roll, nominal, driver)
+    gap, distances = np.array(np.broadcast_to(start, nominal.shape), dtype=float), facing(pair, roll, nominal, driver)
+    back, mate = 0.0, None
+    if flanks is not None:
+        own, mate = flanks if driver else flanks[::-1]
+        back, behind = own.removed(roll) + own.shift(order), mate.shift(order)
     for _ in range(STEPS):
-        distance, met, arm = facing(sense * gap / 2)
+        distance, met, arm = distances(sense * (gap / 2 - back))
+        if mate is not None:
+            distance = distance + back + mate.removed(met) + behind
         step = (distance - gap) / ((1 + arm) / 2)
         gap = gap + np.where((np.abs(distance) < pair.p_bt) & (arm > 0), step, np.nan)  # else the flanks face away: no contact
         if not (np.abs(step) >= SETTLED * pair.p_bt).any():
@@ -153,10 +171,10 @@ def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: b
         Distance to the other flank along the line of action, i.e. the turn of the *other gear alone* that closes it times its
         base radius [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
     """
-    return _facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
+    return facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 
 
-def _facing(pair, roll, nominal, driver):
+def facing(pair, roll, nominal, driver):
     """What flank points face with both gears moved on from `nominal` by a length on the line of action [mm].
 
     Gives `opposite`, and the distance at which the met normal passes the point's own centre, over its base radius.
@@ -169,7 +187,7 @@ def _facing(pair, roll, nominal, driver):
     ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
     r_b, base = gears[own].r_b, mate.r_b
 
-    def facing(moved):
+    def distances(moved):
         x, y = cartesian(radius, ahead + pushes[own] * moved / r_b)
         y = y + apart
         away, seen = np.hypot(x, y), np.arctan2(x, y)
@@ -179,4 +197,4 @@ def _facing(pair, roll, nominal, driver):
         arm = pushes[own] * (pushes[other] * base - apart * across) / r_b
         return base * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm
 
-    return facing
+    return distances

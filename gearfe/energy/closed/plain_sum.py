@@ -32,6 +32,7 @@ def plain_sum(
     face="spur",
     groove=0.0,
     lost="hertz",
+    flanks=None,
     **variants,
 ):
     """Sum of the pairs on the path of contact, with one approach common to all.
@@ -62,6 +63,8 @@ def plain_sum(
         What a pit takes from its pair: the lost part of the contact's stiffness (Liang et al. 2016, and article S4 as printed),
         or the slices in it with all they carry (slices that know nothing of each other). The material it takes
         weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
+    flanks : (FlankForm, FlankForm), optional
+        Modifications of spur gears without pits: a pair whose gap is not closed carries nothing.
     **variants
         Passed on to ``formulas.components``.
 
@@ -90,7 +93,9 @@ def plain_sum(
     bands = faces(pair, face, groove)
     options = {name: value for name, value in defaults.items() if name == "root"}
     options |= {key: variants[key] for key in ("crack_model", "root") if key in variants}
-    at = stations(pair, phase, pits, bands, lost=lost, edges=lambda order: _edges(pair, order, cracks, pits, options))
+    at = stations(
+        pair, phase, pits, bands, lost=lost, edges=lambda order: _edges(pair, order, cracks, pits, options), flanks=flanks
+    )
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
         raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: pits take the whole width; make them smaller")
@@ -180,20 +185,27 @@ def _solver(at, count, teeth, law):
 
     def solve(line_load):
         line = line_load / total(np.ones(teeth.shape))[at.phase]
+        touch, gap = np.ones(teeth.shape), np.zeros(teeth.shape) if at.gap is None else at.gap
         for _ in range(200):
-            secant, tangent = law(line / at.touching)
+            secant, tangent = law(np.maximum(line, 1e-9 * line_load) / at.touching)
             flexibility = teeth + secant / at.touching
-            stiffness = total(1 / flexibility)
-            new = (line_load / stiffness)[at.phase] / flexibility
-            settled = np.abs(new - line).max() <= 1e-13 * line_load or np.ndim(secant) == 0
-            line = new
+            stiffness = total(touch / flexibility)
+            approach = (line_load + total(touch * gap / flexibility)) / stiffness
+            new = (approach[at.phase] - gap) / flexibility
+            closed = (new > 0).astype(float)
+            settled = np.abs(touch * new - line).max() <= 1e-13 * line_load or np.ndim(secant) == 0
+            settled &= bool((closed == touch).all())
+            line, touch = closed * new, closed
             if settled:
                 break
         else:
             raise RuntimeError(f"the loads of the pairs do not settle at {line_load:g} N/mm: use contact = 'linear'")
-        tangent = total(1 / (teeth + tangent / at.touching))
+        tangent = total(touch / (teeth + tangent / at.touching))
         pairs = np.zeros((count, at.order.size))
         np.add.at(pairs, (at.phase, at.column), at.weight * line)
-        return Solved(at.order, line_load / stiffness, tangent, pairs, np.full(pairs.shape, np.nan))
+        unloaded = None if at.gap is None else np.full(count, np.inf)
+        if unloaded is not None:
+            np.minimum.at(unloaded, at.phase, gap)
+        return Solved(at.order, approach, tangent, pairs, np.full(pairs.shape, np.nan), unloaded=unloaded)
 
     return solve

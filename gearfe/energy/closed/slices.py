@@ -17,7 +17,8 @@ class Stations:
     """Slices of the tooth pairs that carry load, as flat arrays of n stations; `order` (pairs,) as of `Contacts` of a pair.
 
     `phase` and `column` are indices of the phase and of the pair in `order`, `roll_1` and `roll_2` the roll lengths [mm],
-    `weight` the part of the face width a station stands for, `touching` the part of its contact that pits have left.
+    `weight` the part of the face width a station stands for, `touching` the part of its contact that pits have left, `gap` the
+    approach at which it first touches [mm], None for involutes.
     """
 
     order: np.ndarray
@@ -27,6 +28,7 @@ class Stations:
     roll_2: np.ndarray
     weight: np.ndarray
     touching: np.ndarray
+    gap: np.ndarray | None = None
 
 
 def faces(pair, face, groove=0.0):
@@ -43,7 +45,7 @@ def faces(pair, face, groove=0.0):
     return [(first, last, twist * abs(last - first)) for first, last in halves(pair, face, groove)]
 
 
-def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
+def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None):
     """Quadrature stations over the contact lines of all pairs at some phases; exact for what is smooth between the breakpoints.
 
     Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
@@ -60,6 +62,8 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
     lost : {"hertz", "slices"}
         What a pit takes from a pair: part of its contact stiffness (the touching part of the line), or the slices it covers
         with all their stiffness.
+    flanks : (FlankForm, FlankForm), optional
+        Modifications, of spur gears without pits.
     edges : callable, optional
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
 
@@ -72,12 +76,17 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None):
     lag = max(band[2] for band in bands)
     order = pair.contacts([phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
-    flanks = [[p for p in found if p.side == "loaded"] for found in pits]
-    if lag == 0 and not any(flanks):  # one station for each pair on the path of contact
-        found = pair.contacts(phase, extended=False)
+    pitted = any(p.side == "loaded" for found in pits for p in found)
+    if lag == 0 and not pitted:  # one station for each pair on the path of contact
+        found = pair.contacts(phase, extended=False, flanks=flanks)
         i, j = np.nonzero(np.isfinite(found.gap))
         whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
-        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size))
+        gap = None if flanks is None else found.gap[i, j]
+        return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
+    if flanks is not None:
+        raise ValueError(
+            "modified flanks with pits or helical teeth: a plain sum has them for healthy spur gears and cracks only"
+        )
     rows, taken = [], _taken(pair, phase, order, pits, bands)
     for i, p in enumerate(phase):
         for j, number in enumerate(order):

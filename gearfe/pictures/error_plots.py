@@ -1,0 +1,51 @@
+"""Plots (matplotlib) of the transmission error: over phase at several loads, and its swing over load."""
+
+import numpy as np
+
+from ..files import save_figure
+
+
+def plot_transmission_error(found, path=None):
+    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` if given.
+
+    Parameters
+    ----------
+    found : TransmissionError
+    path : path, optional
+        Picture file; its suffix decides (png, svg, pdf).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib import colormaps
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 6.5), layout="constrained")
+    top, bottom = figure.subplots(2, 1, height_ratios=[2, 1])
+    order = np.argsort(found.force)[::-1]
+    colours = colormaps["viridis"](np.linspace(0.05, 0.9, order.size))
+    for i, colour in zip(order.tolist(), colours, strict=True):
+        phase, te = _closed(found.phase, found.te[i])
+        top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
+    phase, te = _closed(found.phase, found.unloaded)
+    top.plot(phase, 1e6 * te, color="black", linestyle=":", label="unloaded")
+    top.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
+    top.set_ylabel("transmission error [um]")
+    top.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    rising, swing = order[::-1], 1e6 * found.peak_to_peak
+    bottom.plot(found.force[rising], swing[rising], "o-", label="under load")
+    bottom.axhline(1e6 * np.ptp(found.unloaded), color="black", linestyle=":", label="unloaded")
+    bottom.set_xlim(left=0)
+    bottom.set_ylim(bottom=0)
+    bottom.set_xlabel("force along the line of action [N]")
+    bottom.set_ylabel("peak-to-peak [um]")
+    bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
+    return save_figure(figure, path, dpi=120)
+
+
+def _closed(phase, values):
+    """One mesh cycle with its first point again at its end; other phases as they are."""
+    if phase.size > 1 and (np.diff(phase) > 0).all() and phase[-1] < phase[0] + 1:
+        return np.append(phase, phase[0] + 1), np.append(values, values[0])
+    return phase, values

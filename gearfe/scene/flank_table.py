@@ -1,0 +1,68 @@
+"""The [flank.NAME] tables of a scene: modifications and deviations of a gear's flanks, units in the key names."""
+
+import math
+
+from geometry.tooth.modified import Flank
+
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, known, placed
+
+RELIEFS = {
+    f"{end}_{key}": (NUMBER, default)
+    for end in ("tip", "root")
+    for key, default in (
+        ("relief_um", 0.0),
+        ("start_diameter_mm", None),
+        ("start_roll_mm", None),
+        ("start_angle_deg", None),
+        ("exponent", 1.0),
+    )
+}
+FLANK = {
+    "gear": (TEXT, REQUIRED),
+    "pair": (TEXT, None),
+    **RELIEFS,
+    "crowning_um": (NUMBER, 0.0),
+    "slope_um": (NUMBER, 0.0),
+    "table_roll_mm": (NUMBERS, None),
+    "table_removed_um": (NUMBERS, None),
+    "pitch_um": (NUMBERS, None),
+}
+
+
+def flanks_of(file, rows, name, pairs, gears):
+    """Flanks of the pair `name` as `gearfe.mesh_stiffness` takes them, from the checked rows of a scene's [flank.NAME] tables.
+
+    A flank of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
+    """
+    out, pair = {}, pairs[name]
+    for key, row in rows.items():
+        where = f"flank.{key}"
+        known(file, where, "gear", row["gear"], gears, "gear")
+        if row["pair"] is not None:
+            known(file, where, "pair", row["pair"], pairs, "pair")
+        made = placed(file, where, lambda r=row: _flank(r))
+        for side, gear in (("pinion", "gear_1"), ("wheel", "gear_2")):
+            if pair[gear] == row["gear"] and row["pair"] in (None, name):
+                if side in out:
+                    raise ValueError(
+                        f"{file} [{where}]: gear {row['gear']!r} has a flank in pair {name!r} already; give each its pair"
+                    )
+                placed(file, where, lambda made=made, g=row["gear"]: made.on(gears[g]))
+                out[side] = made
+    return out
+
+
+def _flank(row):
+    given = {"crowning": row["crowning_um"] * 1e-3, "slope": row["slope_um"] * 1e-3}
+    for end in ("tip", "root"):
+        given |= {f"{end}_relief": row[f"{end}_relief_um"] * 1e-3, f"{end}_exponent": row[f"{end}_exponent"]}
+        given |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}
+        angle = row[f"{end}_start_angle_deg"]
+        given[f"{end}_start_angle"] = None if angle is None else math.radians(angle)
+    if (row["table_roll_mm"] is None) != (row["table_removed_um"] is None):
+        raise ValueError("give table_roll_mm and table_removed_um together")
+    if row["table_roll_mm"] is not None:
+        given["table"] = row["table_roll_mm"], [value * 1e-3 for value in row["table_removed_um"]]
+    if row["pitch_um"] is not None:
+        given["pitch"] = [value * 1e-3 for value in row["pitch_um"]]
+    return Flank(**given)

@@ -1,0 +1,137 @@
+"""Where tooth pairs with modified flanks touch, and how far they are from touching.
+
+Material C1 removed at a point of the pinion's flank makes it a point of the involute turned back by ``C1 / r_b1``; a pitch
+deviation turns the whole flank. In the terms of `geometry.pair.contacts` the involute through that point crosses the line of
+action at ``n1 = n + delta / 2 - C1`` and the wheel's at ``n2 = n - delta / 2 + C2``, so that a pinion point at roll length rho,
+which faces the wheel's point at rho2, touches at the approach::
+
+    delta(rho) = C1(rho) + C2(rho2) + D(n + delta / 2 - C1(rho))
+
+The gap of the pair is the least of these over the pinion's flank up to its tip corner, whose other end is the wheel's tip corner:
+both modified flanks' envelope, at the pose in which the pair first touches. The sum of both modifications at the nominal point, a
+common approximation, errs by up to a quarter of the deflection at corners.
+"""
+
+import math
+
+import numpy as np
+
+from ..tooth.profile import arc_at, roll_at_arc
+from .contacts import Contacts, approach, contacts, facing
+
+FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
+SCAN = 25  # places along the flank from which the search starts
+GOLDEN = (math.sqrt(5) - 1) / 2
+FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
+
+
+def modified_contacts(pair, phase, forms, *, extended=True) -> Contacts:
+    """`geometry.pair.contacts.contacts` of a pair with modified flanks.
+
+    Parameters
+    ----------
+    pair : GearPair
+    phase : ndarray, shape (phases,)
+    forms : (FlankForm, FlankForm)
+        Of pinion and wheel.
+    extended : bool
+
+    Returns
+    -------
+    Contacts
+        `gap` can be negative where a tooth is ahead of its place.
+
+    Raises
+    ------
+    ValueError
+        If flanks are so hollow that they would conform.
+    """
+    plain = contacts(pair, phase, extended=extended)
+    there = np.nonzero(np.isfinite(plain.gap))
+    nominal, order, start = plain.nominal[there], plain.order[there[1]], plain.gap[there]
+    roll_1, roll_2 = plain.roll_1.copy(), plain.roll_2.copy()
+    gap = np.full(plain.gap.shape, np.inf)
+    rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
+    near = start < FAR * pair.gear_1.m_n
+    rolls_1[near], rolls_2[near], found[near] = _inside(pair, forms, nominal[near], order[near], start[near])
+    for driver, own, met in ((True, rolls_1, rolls_2), (False, rolls_2, rolls_1)):
+        tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
+        distance, facing_roll = approach(pair, tip.roll_a, nominal, driver=driver, start=start, flanks=forms, order=order)
+        low, high = sorted((other.roll_f, other.roll_a))
+        first = (facing_roll >= low) & (facing_roll <= high) & (distance <= found + 1e-12)
+        own[first], met[first], found[first] = tip.roll_a, facing_roll[first], distance[first]
+    roll_1[there], roll_2[there], gap[there] = rolls_1, rolls_2, found
+    bend = forms[0].bend(roll_1) + forms[1].bend(roll_2)
+    involute = np.where(np.isfinite(gap), 1 / np.where(plain.radius > 0, pair.relative_radius(roll_1, roll_2), 1.0), 1.0)
+    bend = np.where(np.isfinite(gap), bend, 0.0)
+    hollow = np.isfinite(gap) & (involute > 0) & (involute + bend < involute / FLATTER)
+    if hollow.any():
+        i, k = np.argwhere(hollow)[0]
+        raise ValueError(
+            f"the modified flanks conform at roll lengths {roll_1[i, k]:.5g} and {roll_2[i, k]:.5g} mm of pinion and wheel: no "
+            "line contact there; smooth the table, or lower the amounts"
+        )
+    radius = np.where(involute > 0, 1 / np.where(involute > 0, involute + bend, 1.0), 1.0)
+    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius)
+
+
+def _inside(pair, forms, nominal, order, start):
+    """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
+    one = pair.gear_1
+    amounts = [form.removed(np.linspace(form.low, form.high, 65)) for form in forms]
+    range_ = sum(float(np.ptp(values)) for values in amounts)
+    shift = forms[0].shift(order) + forms[1].shift(order)
+    low, high = (arc_at(one, roll) for roll in pair.path)
+    ends = np.linspace(*pair.path, 9)
+    reach = float(np.abs(pair.relative_radius(ends, pair.mate_roll(ends))).max())
+    middle = arc_at(one, np.maximum(nominal, 0.0))
+    off = np.abs(middle - np.clip(middle, low, high))
+    half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * one.m_n
+    first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
+    roll_0 = np.clip(nominal, *pair.path)
+    pose = start + forms[0].removed(roll_0) + forms[1].removed(pair.mate_roll(roll_0)) + shift
+    arcs = first[:, None] + (last - first)[:, None] * np.linspace(0, 1, SCAN)
+    values = _residual(pair, forms, arcs, nominal[:, None], order[:, None], pose[:, None])
+    best = np.argmin(values, axis=1)
+    rows = np.arange(nominal.size)
+    bounds = arcs[rows, np.maximum(best - 1, 0)], arcs[rows, np.minimum(best + 1, SCAN - 1)]
+    roll, found = roll_0, pose
+    for steps in (8, 16):
+        arc = _least(lambda s, at=found: _residual(pair, forms, s, nominal, order, at), *bounds, steps)
+        roll = roll_at_arc(one, arc)
+        found, met = approach(pair, roll, nominal, start=found, flanks=forms, order=order)
+        found = np.where(np.isfinite(found), found, pose)
+        width = (bounds[1] - bounds[0]) / 8
+        bounds = np.maximum(arc - width, bounds[0]), np.minimum(arc + width, bounds[1])
+    two_low, two_high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
+    slack = 1e-9 * one.m_n
+    on = np.isfinite(met) & (met >= two_low - slack) & (met <= two_high + slack)
+    return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, found, np.inf)
+
+
+def _residual(pair, forms, arc, nominal, order, pose):
+    """How far a further approach closes each place of the pinion's flank, with the gears at `pose` [mm]; inf off the flanks."""
+    roll = roll_at_arc(pair.gear_1, arc)
+    nominal, pose = np.broadcast_to(nominal, arc.shape), np.broadcast_to(pose, arc.shape)
+    back = forms[0].removed(roll) + forms[0].shift(order)
+    distance, met, _ = facing(pair, roll, nominal, True)(pose / 2 - back)
+    low, high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
+    slack = 1e-6 * pair.gear_1.m_n
+    on = (met >= low - slack) & (met <= high + slack)
+    value = back + forms[1].removed(np.where(on, met, low)) + forms[1].shift(order) + distance - pose
+    return np.where(on, value, np.inf)
+
+
+def _least(function, low, high, steps):
+    """Places of the least value between `low` and `high` (arrays) by golden section."""
+    a, d = low, high
+    b, c = d - GOLDEN * (d - a), a + GOLDEN * (d - a)
+    at_b, at_c = function(b), function(c)
+    for _ in range(steps):
+        left = at_b < at_c
+        a, d = np.where(left, a, b), np.where(left, c, d)
+        new = np.where(left, d - GOLDEN * (d - a), a + GOLDEN * (d - a))
+        value = function(new)
+        b, c = np.where(left, new, c), np.where(left, b, new)
+        at_b, at_c = np.where(left, value, at_c), np.where(left, at_b, value)
+    return np.where(at_b < at_c, b, c)

@@ -1,0 +1,71 @@
+"""Gaps of pairs with modified flanks: the envelope against a brute search, and identities."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from geometry.tooth.modified import flank_forms
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
+PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
+PHASE = np.arange(24) / 24
+
+
+def relieved(amount=0.01, length=4.0, exponent=1.0, **more):
+    return {
+        name: gf.Flank(tip_relief=amount, tip_start_roll=gear.roll_a - gear.outward * length, tip_exponent=exponent, **more)
+        for name, gear in (("pinion", PAIR.gear_1), ("wheel", PAIR.gear_2))
+    }
+
+
+def test_the_search_finds_conjugate_contact_again():
+    plain, found = PAIR.contacts(PHASE), PAIR.contacts(PHASE, flanks=flank_forms(PAIR, {"pinion": gf.Flank(slope=1e-13)}))
+    near = plain.gap < 0.2
+    assert_allclose(found.gap[near], plain.gap[near], atol=1e-10)
+    assert_allclose(found.roll_1[near], plain.roll_1[near], atol=2e-4)
+    assert_allclose(found.radius[near], plain.radius[near], rtol=1e-4)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
+def test_the_gap_is_the_least_over_the_flank(exponent):
+    forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, crowning=0.004))
+    found = PAIR.contacts(PHASE, flanks=forms)
+    roll = np.linspace(PAIR.path[0] - 0.5, PAIR.gear_1.roll_a, 40001)
+    checked = 0
+    for i, k in np.argwhere(found.gap < 0.05):
+        gap, met = PAIR.approach(roll, np.full(roll.size, found.nominal[i, k]), start=found.gap[i, k], flanks=forms)
+        least = np.nanmin(np.where((met >= PAIR.gear_2.roll_f) & (met <= PAIR.gear_2.roll_a), gap, np.inf))
+        # a kink or the wheel's tip corner lies between two places of the brute search, which therefore can only be above
+        sharp = exponent == 1 or found.roll_2[i, k] == PAIR.gear_2.roll_a
+        assert -1e-9 < least - found.gap[i, k] < (1e-5 if sharp else 1e-8)
+        checked += 1
+    assert checked > 30
+
+
+def test_a_uniform_shift_is_a_turn():
+    shift = 0.01
+    forms = flank_forms(PAIR, {"pinion": gf.Flank(pitch=[shift] * 24)})
+    back = shift * PAIR.gear_1.r_b / PAIR.gear_1.r
+    found, plain = PAIR.contacts(PHASE, flanks=forms), PAIR.contacts(PHASE - back / 2 / PAIR.p_bt)
+    first, other = found.order.searchsorted(0), plain.order.searchsorted(0)
+    for k in (-1, 0, 1):
+        at, there = found.gap[:, first + k], plain.gap[:, other + k]
+        assert_allclose(at[there < 0.5], there[there < 0.5] + back, atol=1e-8)
+
+
+def test_a_single_tooth_ahead_touches_before_its_place():
+    pitch = [0.0] * 24
+    pitch[3] = -0.008
+    found = PAIR.contacts(np.array([-2.5]), flanks=flank_forms(PAIR, {"pinion": gf.Flank(pitch=pitch)}))
+    ahead = -0.008 * PAIR.gear_1.r_b / PAIR.gear_1.r
+    assert_allclose(found.gap[0, found.order == 3], ahead, rtol=1e-6)
+
+
+def test_hollow_flanks_are_refused():
+    roll = np.linspace(PAIR.gear_1.roll_f, PAIR.gear_1.roll_a, 40)
+    rough = gf.Flank(table=(roll, 0.05 * np.sin(12 * roll) ** 2))
+    with pytest.raises(ValueError, match="the modified flanks conform at roll lengths"):
+        PAIR.contacts(PHASE, flanks=flank_forms(PAIR, {"pinion": rough}))

@@ -1,0 +1,87 @@
+"""[flank.NAME] tables of a scene: units, places, mistakes."""
+
+import math
+
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.cli.arguments import main
+
+SCENE = """
+title = "A pair with tip relief"
+source = "none"
+[material.steel]
+E_MPa = 207000
+nu = 0.3
+[gear.pinion]
+z = 24
+m_n_mm = 3.0
+alpha_n_deg = 20
+b_mm = 20
+r_bore_mm = 15
+material = "steel"
+[gear.wheel]
+z = 36
+m_n_mm = 3.0
+alpha_n_deg = 20
+b_mm = 20
+r_bore_mm = 20
+material = "steel"
+[pair.main]
+gear_1 = "pinion"
+gear_2 = "wheel"
+force_N = 3000
+"""
+RELIEF = """
+[flank.short]
+gear = "pinion"
+tip_relief_um = 10
+tip_start_angle_deg = 24
+tip_exponent = 2
+"""
+
+
+def loaded(tmp_path, text):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE + text)
+    return gf.load_scene(path), path
+
+
+def test_units_are_those_of_the_keys(tmp_path):
+    scene, _ = loaded(tmp_path, RELIEF + "\n[flank.wheel]\ngear = 'wheel'\ncrowning_um = 4\nslope_um = -2\n")
+    case = scene.pair().case()
+    assert case["flanks"] == {
+        "pinion": gf.Flank(tip_relief=0.010, tip_start_angle=math.radians(24), tip_exponent=2),
+        "wheel": gf.Flank(crowning=0.004, slope=-0.002),
+    }
+    curve = gf.mesh_stiffness(**case, phases=8)
+    found = gf.transmission_error(case["pair"], [3000.0], case["material"], flanks=case["flanks"], phases=8)
+    assert_allclose(curve.te, found.te[0])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (RELIEF.replace("_um", "_mm"), r"\[flank.short\]: unknown key 'tip_relief_mm'"),
+        (RELIEF.replace("= 10", "= 10000"), r"\[flank.short\]: 10 mm removed"),
+        (RELIEF.replace("= 24", "= 50"), r"\[flank.short\]: tip_start_angle = 0.87\d* rad is not inside the flank"),
+        (RELIEF.replace('"pinion"', '"sun"'), "no such gear; there is pinion, wheel"),
+        (RELIEF + RELIEF.replace("short", "again"), "'pinion' has a flank in pair 'main' already"),
+        ("[flank.a]\ngear = 'wheel'\ntable_roll_mm = [1, 2]\n", "give table_roll_mm and table_removed_um together"),
+        ("[flank.a]\ngear = 'wheel'\npitch_um = 3\n", "expected a list of numbers in um"),
+    ],
+)
+def test_mistakes_are_explained(tmp_path, text, message):
+    with pytest.raises(ValueError, match=message):
+        loaded(tmp_path, text)
+
+
+def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
+    _, path = loaded(tmp_path, RELIEF)
+    assert main(["stiffness", str(path), "--forces", "1000", "3000", "--phases", "16", "--plot", str(tmp_path / "te.svg")]) == 0
+    text = capsys.readouterr().out
+    assert "peak-to-peak" in text
+    assert len([line for line in text.splitlines() if line.split()[:1] in (["1000"], ["3000"])]) == 2
+    assert (tmp_path / "te.svg").stat().st_size > 1000
+    assert main(["stiffness", str(path), "--forces", "1000", "-o", str(tmp_path / "te.csv")]) == 1

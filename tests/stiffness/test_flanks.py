@@ -1,0 +1,206 @@
+"""Stiffness and transmission error of modified flanks."""
+
+import math
+import time
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from geometry.tooth.modified import flank_forms
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
+STEEL = gf.Material(E=207e3, nu=0.3)
+PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
+LOAD = 3000.0  # N, 150 N/mm
+
+
+def relieved(amount, length, exponent=1.0, pair=PAIR, **more):
+    return {
+        name: gf.Flank(tip_relief=amount, tip_start_roll=gear.roll_a - gear.outward * length, tip_exponent=exponent, **more)
+        for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
+    }
+
+
+def solved(flanks, force=LOAD, method="ritz", pair=PAIR, **options):
+    return gf.mesh_stiffness(pair, force, STEEL, method=method, flanks=flanks, **options)
+
+
+@pytest.mark.parametrize("method", ["ritz", "coupled", "textbook", "published"])
+def test_no_modification_is_an_involute(method):
+    plain = solved(None, method=method)
+    assert_allclose(solved({"pinion": gf.Flank(), "wheel": gf.Flank()}, method=method).k, plain.k, rtol=0)
+    tiny = solved({"pinion": gf.Flank(slope=1e-12)}, method=method)
+    assert_allclose(tiny.k, plain.k, rtol=1e-6)
+    assert_allclose(tiny.te, plain.te, rtol=1e-6)
+
+
+def test_a_uniform_shift_changes_the_unloaded_error_only():
+    shift = 0.012
+    flanks = {"pinion": gf.Flank(pitch=[shift] * 24), "wheel": gf.Flank(pitch=[shift] * 36)}
+    found, plain = solved(flanks), solved(None)
+    assert_allclose(found.k, plain.k, rtol=1e-6)
+    assert_allclose(found.unloaded, 2e-3 * shift * math.cos(RACK["alpha_n"]), rtol=1e-6)
+    assert_allclose(found.te - found.unloaded, plain.te, rtol=1e-6)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 2.0])
+def test_mirrored_gears_mirror(exponent):
+    gear = gf.Gear(z=25, r_bore=15.0, **RACK)
+    pair = gf.GearPair(gear, gear)
+    phase = np.linspace(0.03, 0.97, 12)
+    one, other = (solved(relieved(0.02, 4.0, exponent, pair), pair=pair, phases=p) for p in (phase, (pair.eps_alpha - phase) % 1))
+    assert_allclose(one.te, other.te, rtol=2e-3)
+
+
+def test_light_loads_leave_the_unloaded_error():
+    flanks = relieved(0.02, 5.0)
+    spans = gf.transmission_error(PAIR, [2.0, 20.0, 200.0], STEEL, flanks=flanks)
+    away = np.abs(spans.peak_to_peak / np.ptp(spans.unloaded) - 1)
+    assert away[0] < 0.01
+    assert (np.diff(away) > 0).all()
+
+
+def test_a_relief_can_flatten_the_error_at_one_load():
+    """Munro, Gregory, Harris: linear reliefs that make up for the deflection between one and two pairs."""
+    found = gf.transmission_error(PAIR, [2000.0, LOAD, 4000.0], STEEL, flanks=relieved(0.010, 4.7))
+    plain = gf.transmission_error(PAIR, [LOAD], STEEL)
+    print(f"peak-to-peak {1e6 * plain.peak_to_peak[0]:.2f} um of involutes; {np.round(1e6 * found.peak_to_peak, 2)} um relieved")
+    assert found.peak_to_peak[1] < 0.15 * plain.peak_to_peak[0]
+    assert (found.peak_to_peak[[0, 2]] > 2 * found.peak_to_peak[1]).all()
+    # what is left: most of it is slow, not at corners
+    assert found.harmonics(1)[1, 0] < 0.15 * plain.harmonics(1)[0, 0]
+
+
+def test_stiffness_times_deflection_is_the_force():
+    found = solved(relieved(0.03, 5.0, root_relief=0.004, root_start_roll=8.0) | {"wheel": gf.Flank(crowning=0.006)}, force=300.0)
+    assert_allclose(found.k * (found.te - found.unloaded), 300.0, rtol=1e-12)
+    assert_allclose(found.force.sum(axis=1), 300.0, rtol=1e-9)
+
+
+def test_a_tooth_ahead_takes_load_from_its_neighbours():
+    pitch = [0.0] * 24
+    pitch[0] = -0.010
+    phase = np.arange(-1, 2, 1 / 16)
+    found, plain = (solved(flanks, phases=phase) for flanks in ({"pinion": gf.Flank(pitch=pitch)}, None))
+    column, other = found.order.tolist().index(0), plain.order.tolist().index(0)
+    both = (plain.share[:, other] > 0.2) & (plain.share[:, other] < 0.8)
+    assert (found.share[both, column] > plain.share[both, other]).all()
+    assert found.unloaded.min() < -5e-6
+
+
+@pytest.mark.parametrize("force", [0.2, 2.0, 300.0])
+def test_steep_kinks_and_light_loads_are_solved(force):
+    found = solved(relieved(0.1, 3.0), force=force, phases=48)
+    ratio = found.lte / solved(None, force=force, phases=48).lte  # one pair where involutes have two, on a ridge
+    print(f"{force:g} N: {ratio.min():.2f} to {ratio.max():.2f} times the deflection of involutes")
+    assert ratio.min() > 0.8
+    assert ratio.max() < 3
+
+
+def test_pose_of_one_gear_is_the_mean_pose_elsewhere():
+    flanks = relieved(0.02, 4.0)
+    one = solved(flanks, phases=[0.3, 0.8], pose="pinion")
+    mean = solved(flanks, phases=one.phase + one.te * 1e3 / 2 / PAIR.p_bt)
+    assert_allclose(one.te, mean.te, rtol=1e-5)
+    rest = solved(flanks, phases=one.phase + one.unloaded * 1e3 / 2 / PAIR.p_bt)
+    assert_allclose(one.unloaded, rest.unloaded, atol=1e-12)
+    assert_allclose(one.k, LOAD / (one.te - one.unloaded))
+
+
+def test_the_estimate_is_given_for_modified_flanks():
+    found = solved(relieved(0.02, 4.0), phases=8, error=True)
+    assert ((found.error > 0) & (found.error < 0.01 * found.k)).all()
+
+
+def test_methods_that_know_involutes_only_refuse():
+    with pytest.raises(ValueError, match=r"modified flanks with method = 'ritz3d', .* use ritz, fe, coupled"):
+        solved(relieved(0.01, 4.0), method="ritz3d")
+    pit = gf.Pit(radius=37.0, axes=(0.5, 0.5), depth=0.2, z=10.0)
+    with pytest.raises(ValueError, match="modified flanks with pits"):
+        solved(relieved(0.01, 4.0), method="textbook", damage={"pinion": [pit]})
+
+
+def test_a_saved_curve_keeps_its_unloaded_error(tmp_path):
+    found = solved(relieved(0.01, 4.0), phases=8)
+    found.save(tmp_path / "curve.csv")
+    read = gf.StiffnessCurve.from_csv(tmp_path / "curve.csv")
+    assert_allclose(read.te, found.te, rtol=0)
+    assert read.meta["flanks"]["wheel"]["tip_relief"] == 0.01
+
+
+def test_harmonics_need_whole_cycles():
+    found = gf.transmission_error(PAIR, [LOAD], STEEL, phases=np.linspace(0, 1, 16))
+    with pytest.raises(ValueError, match="give equidistant phases over whole cycles"):
+        found.harmonics()
+    one, two = (gf.transmission_error(PAIR, [LOAD], STEEL, phases=p) for p in (32, np.arange(64) / 32))
+    assert_allclose(one.harmonics(), two.harmonics(), rtol=1e-9)
+
+
+def seeded_pair(seed):
+    rng = np.random.default_rng(seed)
+    m = float(rng.choice([1.5, 2.0, 3.0]))
+    rack = {"m_n": m, "alpha_n": math.radians(20), "b": 10.0 * m}
+    gears = [gf.Gear(z=int(z), r_bore=0.25 * z * m, **rack) for z in rng.integers(20, 50, 2)]
+    pair = gf.GearPair(*gears)
+    flanks = {}
+    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
+        length = (gear.roll_a - gear.roll_f) * rng.uniform(0.15, 0.45)
+        exponent = float(rng.choice([1, 1.5, 2]))
+        flanks[name] = gf.Flank(
+            tip_relief=m * rng.uniform(0.001, 0.012), tip_start_roll=gear.roll_a - length, tip_exponent=exponent,
+            crowning=m * rng.uniform(0, 0.002), slope=m * rng.uniform(-0.001, 0.002),
+        )  # fmt: skip
+    return pair, flanks, 10.0 * m * m * rng.uniform(20, 100)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(200))
+def test_ritz_and_fe_agree_on_random_modified_pairs(seed):
+    pair, flanks, force = seeded_pair(seed)
+    ritz, fe = (solved(flanks, force=force, pair=pair, method=method, phases=24) for method in ("ritz", "fe"))
+    difference = np.abs(ritz.te - fe.te).max() / fe.lte.mean()
+    print(f"seed {seed}: transmission error {100 * difference:.3f} % of the deflection")
+    assert difference < 0.003
+
+
+def cpu(run, times=3):
+    spent = []
+    for _ in range(times):
+        start = time.process_time()
+        run()
+        spent.append(time.process_time() - start)
+    return min(spent)
+
+
+@pytest.mark.slow
+def test_a_modified_curve_costs_little_more():
+    plain = cpu(lambda: solved(None, cache=False))
+    for exponent in (1.0, 2.0):
+        ratio = cpu(lambda exponent=exponent: solved(relieved(0.01, 4.7, exponent), cache=False)) / plain
+        print(f"exponent {exponent:g}: {ratio:.2f} times the curve of involutes")
+        assert ratio < 1.6
+
+
+def test_a_plain_sum_carries_what_closes_its_gaps():
+    """Two springs by hand: the pair on the relief carries only what its gap leaves."""
+    flanks = relieved(0.006, 5.0)
+    phase = [0.1]
+    plain, found = (solved(given, method="textbook", phases=phase) for given in (None, flanks))
+    springs = plain.force[0] / plain.te[0]  # the law of its contact is linear
+    gap = np.array([PAIR.contacts(phase, flanks=_forms(flanks)).gap[0, k] for k in np.flatnonzero(_on_path(phase))]) * 1e-3
+    te = (LOAD + springs @ gap) / springs.sum()
+    assert (te > gap).all()
+    assert_allclose(found.te[0], te, rtol=5e-3)  # the touching points have moved a little
+    light = solved(flanks, force=60.0, method="textbook", phases=phase)
+    assert light.force.shape[1] == 1
+    assert_allclose(light.te[0], 60.0 / springs[np.argmin(gap)] + gap.min(), rtol=5e-3)
+
+
+def _forms(flanks):
+    return flank_forms(PAIR, flanks)
+
+
+def _on_path(phase):
+    return np.isfinite(PAIR.contacts(phase, extended=False).gap[0])
