@@ -5,6 +5,7 @@ from geometry.damage.pit import Pit as Pit
 from geometry.pair.gear_pair import GearPair as GearPair
 from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
+from geometry.tooth.modified import Flank as Flank
 
 from .elements.contact_deck import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
@@ -68,6 +69,8 @@ from .signal.spectral_lines import find_lines as find_lines
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
+from .stiffness.transmission_error import TransmissionError as TransmissionError
+from .stiffness.transmission_error import transmission_error as transmission_error
 from .stress.render import render_stress as render_stress
 from .studies.batches import batch as batch
 from .studies.by_zone import compare as compare

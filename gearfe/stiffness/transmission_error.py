@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.pair.gear_pair import GearPair
+from geometry.tooth.modified import Flank
+
+from ..material import Material
 from ..pictures.error_plots import plot_transmission_error
 from .curve import StiffnessCurve
 from .solve import mesh_stiffness
@@ -33,18 +37,18 @@ class TransmissionError:
         One for each load: stiffness, load sharing, pressure.
     """
 
-    force: NDArray
-    phase: NDArray
-    te: NDArray
-    unloaded: NDArray
+    force: NDArray[np.float64]
+    phase: NDArray[np.float64]
+    te: NDArray[np.float64]
+    unloaded: NDArray[np.float64]
     curves: tuple[StiffnessCurve, ...]
 
     @property
-    def peak_to_peak(self) -> NDArray:
+    def peak_to_peak(self) -> NDArray[np.float64]:
         """Largest less smallest transmission error over the phases, by load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
-    def harmonics(self, count: int = 4) -> NDArray:
+    def harmonics(self, count: int = 4) -> NDArray[np.float64]:
         """Amplitudes of the first mesh harmonics, by load ``(m, count)`` [m].
 
         Raises
@@ -76,7 +80,12 @@ class TransmissionError:
 
 
 def transmission_error(
-    pair: Any, forces: Sequence[float] | NDArray, material: Any, *, flanks: dict | None = None, **options: Any
+    pair: GearPair,
+    forces: Sequence[float] | NDArray[np.float64],
+    material: Material | tuple[Material, Material],
+    *,
+    flanks: Mapping[str, Flank] | None = None,
+    **options: Any,
 ) -> TransmissionError:
     """Transmission error of a gear pair over the mesh cycle under several loads, which share one solve of the gears.
 
