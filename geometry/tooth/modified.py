@@ -193,8 +193,8 @@ class FlankForm:
 
     def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out)."""
-        roll = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
-        return (self.gear.r_b / roll) ** 2 * (self.removed(roll, 2) - self.removed(roll, 1) / roll)
+        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
+        return (self.gear.r_b / at) ** 2 * (self.removed(at, 2) - self.removed(at, 1) / at)
 
 
 def flank_forms(pair: Any, flanks: Mapping[str, Flank] | None) -> tuple[FlankForm, FlankForm] | None:
