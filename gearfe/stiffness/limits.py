@@ -2,6 +2,7 @@
 
 import math
 from numbers import Integral, Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +17,19 @@ SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth
 SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
 
 
-def truth(name: str, value: object) -> bool:
+def truth(name: str, value: Any) -> bool:
     """`value` if it is true or false; text and numbers are refused: ``bool("no")`` is true."""
     if not isinstance(value, (bool, np.bool_)):
         raise ValueError(f"{name} = {value!r}, but give True or False")
     return bool(value)
 
 
-def is_number(value: object) -> bool:
+def is_number(value: Any) -> bool:
     """Whether it is a real number: no text, no truth value."""
     return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
 
 
-def numbers(name: str, value: object, unit: str) -> NDArray:
+def numbers(name: str, value: Any, unit: str) -> NDArray:
     """One number or several as an array of floats; text, truth values and complex numbers are refused."""
     try:
         found = np.asarray(value)
@@ -49,7 +50,7 @@ def _kind(value):
     return "text" if isinstance(value, str) else type(value).__name__
 
 
-def checked_refine(refine: object) -> float:
+def checked_refine(refine: Any) -> float:
     """The resolution, if meshes follow it: from `COARSEST` to `FINEST`.
 
     Raises
@@ -69,7 +70,7 @@ def checked_refine(refine: object) -> float:
     return float(refine)
 
 
-def check_count(phases: object) -> int:
+def check_count(phases: Any) -> int:
     """A number of phases as an int, if it is a whole one from 1 to `MOST_PHASES`."""
     if not is_number(phases) or not math.isfinite(phases) or phases != int(phases) or phases < 1:
         raise ValueError(f"phases = {phases!r}, but give a number of phases >= 1, or an array of phases")
@@ -125,7 +126,7 @@ def check_section(refine: float) -> None:
         )
 
 
-def check_teeth(teeth: object, most: int) -> None:
+def check_teeth(teeth: Any, most: int) -> None:
     """Refuse a number of teeth that is none, or more than the larger gear has."""
     if teeth is None:
         return

@@ -37,18 +37,18 @@ class TransmissionError:
         One for each load: stiffness, load sharing, pressure.
     """
 
-    force: NDArray
-    phase: NDArray
-    te: NDArray
-    unloaded: NDArray
+    force: NDArray[np.float64]
+    phase: NDArray[np.float64]
+    te: NDArray[np.float64]
+    unloaded: NDArray[np.float64]
     curves: tuple[StiffnessCurve, ...]
 
     @property
-    def peak_to_peak(self) -> NDArray:
+    def peak_to_peak(self) -> NDArray[np.float64]:
         """Largest less smallest transmission error over the phases, by load ``(m,)`` [m]."""
         return np.ptp(self.te, axis=1)
 
-    def harmonics(self, count: int = 4) -> NDArray:
+    def harmonics(self, count: int = 4) -> NDArray[np.float64]:
         """Amplitudes of the first mesh harmonics, by load ``(m, count)`` [m].
 
         Raises

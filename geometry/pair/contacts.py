@@ -142,7 +142,8 @@ def approach(
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
     gap, distances = np.array(np.broadcast_to(start, nominal.shape), dtype=float), facing(pair, roll, nominal, driver)
-    back, mate = 0.0, None
+    back: NDArray[np.float64] | float = 0.0
+    mate = None
     if flanks is not None:
         own, mate = flanks if driver else flanks[::-1]
         back, behind = own.removed(roll) + own.shift(order), mate.shift(order)

@@ -13,11 +13,17 @@ common approximation, errs by up to a quarter of the deflection at corners.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from ..tooth.modified import FlankForm
 from ..tooth.profile import arc_at, roll_at_arc
 from .contacts import Contacts, approach, contacts, facing
+
+if TYPE_CHECKING:
+    from .gear_pair import GearPair
 
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
@@ -25,7 +31,9 @@ GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
 
 
-def modified_contacts(pair, phase, forms, *, extended=True) -> Contacts:
+def modified_contacts(
+    pair: "GearPair", phase: ArrayLike, forms: tuple[FlankForm, FlankForm], *, extended: bool = True
+) -> Contacts:
     """`geometry.pair.contacts.contacts` of a pair with modified flanks.
 
     Parameters

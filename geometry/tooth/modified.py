@@ -1,6 +1,7 @@
 """`Flank`: what the loaded flanks of a gear have less (or more) than the involute, and how far each tooth is from its place."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any
@@ -166,7 +167,7 @@ class FlankForm:
                     "tooth would be another one; amounts are in mm (20 um are 0.02)"
                 )
 
-    def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray:
+    def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
         """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out."""
         roll = np.asarray(roll, dtype=float)
         span, n = self.high - self.low, derivative
@@ -185,18 +186,18 @@ class FlankForm:
             out += self._spline(np.clip(roll, self._spline.x[0], self._spline.x[-1]), n)
         return out
 
-    def shift(self, tooth: ArrayLike) -> NDArray:
+    def shift(self, tooth: ArrayLike) -> NDArray[np.float64]:
         """How far the flanks of teeth lie behind their places, along the line of action [mm]."""
         tooth = np.asarray(tooth, dtype=int)
         return self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
 
-    def bend(self, roll: ArrayLike) -> NDArray:
+    def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out)."""
-        roll = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
-        return (self.gear.r_b / roll) ** 2 * (self.removed(roll, 2) - self.removed(roll, 1) / roll)
+        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
+        return (self.gear.r_b / at) ** 2 * (self.removed(at, 2) - self.removed(at, 1) / at)
 
 
-def flank_forms(pair: Any, flanks: dict[str, Flank] | None) -> tuple[FlankForm, FlankForm] | None:
+def flank_forms(pair: Any, flanks: Mapping[str, Flank] | None) -> tuple[FlankForm, FlankForm] | None:
     """Flanks of pinion and wheel on their gears; None if nothing differs from the involute.
 
     Parameters
@@ -212,7 +213,7 @@ def flank_forms(pair: Any, flanks: dict[str, Flank] | None) -> tuple[FlankForm, 
     """
     if flanks is None:
         return None
-    if not isinstance(flanks, dict):
+    if not isinstance(flanks, Mapping):
         raise ValueError(f"flanks = {flanks!r}, but give them by gear: {{'pinion': Flank(...), 'wheel': Flank(...)}}")
     unknown = set(flanks) - {"pinion", "wheel"}
     if unknown:

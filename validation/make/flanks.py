@@ -95,8 +95,7 @@ def text():
         "Made by `python -m validation flanks` from [tables/flanks_calculix.csv](tables/flanks_calculix.csv) and new solves.",
         f"A pair {gears.gear_1.z}/{gears.gear_2.z} of m 3, bores 15/20 mm, {LINE_LOAD:g} N/mm, tip relief on both gears over",
         "the last millimetres of roll length; plane strain, mean pose. CalculiX: both gears meshed with their modified flanks,",
-        "eight edges per Hertz half width, surface-to-surface contact, large displacements "
-        "(`gf.write_contact_inp(..., flanks=...)`).",
+        "eight edges per Hertz half width, surface-to-surface contact, large displacements (`gf.write_contact_inp`).",
         "",
         "| relief | phase | load shares | error, gearfe [um] | CalculiX [um] | difference in the deflection | difference of k |",
         "|---|---|---|---|---|---|---|",
