@@ -40,6 +40,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "hostile": ("hostile/test_hostile.py::test_gears",),
     "docs": ("docs/test_tutorials.py::test_scripts_are_found", "docs/test_site.py"),
     "layout": ("test_layout.py", "test_types.py"),
+    "hostile": ("hostile/test_hostile.py::test_gears", "hostile/test_hostile.py::test_damage"),
 }
 
 

@@ -80,8 +80,8 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     dict of str to Response
         ``"healthy"`` and the case.
     """
-    if not duration > 0:
-        raise ValueError(f"duration = {duration} s, but it must be positive")
+    if not 0 < duration < math.inf:
+        raise ValueError(f"duration = {duration} s, but it must be positive and finite")
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
     if case is not None and case not in cases:
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")

@@ -47,3 +47,17 @@ def test_channels_units_and_files(tmp_path):
     assert_allclose(data["values"], np.stack([r["a.x"], r["b.x"], r["force m"]], axis=1), rtol=0)
     with pytest.raises(ValueError, match="no format"):
         r.save(tmp_path / "r.txt")
+
+
+def test_states_and_durations_that_cannot_be_are_refused():
+    machine = two_masses()
+    n = len(machine.dofs)
+    far = np.zeros(n)
+    far[0] = 1e30
+    with pytest.raises(ValueError, match="initial: the flanks of a mesh would be"):
+        simulate(machine, 0.01, initial=(far, np.zeros(n)))
+    with pytest.raises(ValueError, match=r"duration = 1e\+15 s: .* outputs need about .* GB"):
+        simulate(machine, 1e15)
+    for wrong in ("1", True, None):
+        with pytest.raises(ValueError, match="give a number of seconds"):
+            simulate(machine, wrong)
