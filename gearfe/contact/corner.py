@@ -83,8 +83,8 @@ class CornerLaw:
 def corners(pair):
     """Abscissae on the line of action [mm] at which the wheel's and the pinion's tip corner lie on it.
 
-    They are the ends of the path of contact unless the mate's flank ends before, at a form point: an undercut pinion's path starts
-    later, and the corner that would start it meets its flank nowhere near.
+    They are the ends of the path of contact unless the mate's flank ends before, at a form point: an undercut pinion's path
+    starts later, and the corner that would start it meets its flank nowhere near.
     """
     return float(pair.outward * (pair.length - pair.gear_2.roll_a)), float(pair.gear_1.roll_a)
 

@@ -1,4 +1,4 @@
-"""Corners in three dimensions: undercut pinions, whose path starts where the mate's corner meets nothing, and the lightest loads."""
+"""Corners in three dimensions: undercut pinions, whose path starts where no corner of the mate is, and the lightest loads."""
 
 import math
 

@@ -44,6 +44,13 @@ def test_identities_of_the_curve(healthy):
     assert ((healthy.error > 0) & (healthy.error < 0.1 * healthy.k)).all()
 
 
+def test_the_estimate_is_a_property_of_the_phase(healthy, steel):
+    """Neighbours in the list of phases do not enter: one phase alone gets what it gets among others, sound and damaged."""
+    assert_allclose(curve_of(steel, error=True, phases=healthy.phase[[3]]).error, healthy.error[3], rtol=1e-2)
+    both, one = (curve_of(steel, {"pinion": [PIT]}, error=True, phases=np.array(phases)).error for phases in ([0.1, 0.6], [0.6]))
+    assert_allclose(both[1:], one, rtol=1e-2)  # cells beyond the path reach by the approach of the phase before
+
+
 def test_meta_says_what_was_done(healthy):
     meta = healthy.meta
     assert (meta["method"], meta["why"]) == ("ritz3d", "asked for")
