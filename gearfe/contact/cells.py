@@ -80,20 +80,29 @@ def touching(pair, nominal):
 
 @lru_cache(maxsize=64)
 def gaps(pair):
-    """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met."""
+    """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met.
+
+    Where the path ends at a form point the corner first meets nothing; its gaps count from where it meets the flank.
+    """
     start, end = pair.path
     away = np.linspace(0.0, pair.p_bt, SAMPLES) + 1e-6 * pair.p_bt
     out = []
     for nominal in (start - away, end + away):
-        gap = np.maximum.accumulate(touching(pair, nominal)[2])
-        there = np.isfinite(gap)
-        out.append((away[there], gap[there]))
+        gap = touching(pair, nominal)[2]
+        met = np.flatnonzero(np.isfinite(gap))
+        first = met[0] if met.size else gap.size
+        lost = first + np.flatnonzero(~np.isfinite(gap[first:]))
+        if 0 < first < gap.size - 1:  # it meets the flank between two samples: what the gap is at the one before, at least
+            first -= 1
+            gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
+        own = slice(first, lost[0] if lost.size else gap.size)
+        out.append((away[own], np.maximum.accumulate(gap[own])))
     return out
 
 
 def beyond(pair, reach):
     """How far before the start and after the end of the path [mm] the gap is below `reach` [mm]."""
-    return tuple(float(np.interp(reach, gap, away)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
+    return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
 
 
 def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):

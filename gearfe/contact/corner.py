@@ -25,6 +25,7 @@ from .sharing import share
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 PLACES = 13  # abscissae of the table at each end of the path
+RESOLVED = 4.0  # hats at the corner that a half width must span: a narrower contact falls between them
 
 
 class CornerLaw:
@@ -43,12 +44,11 @@ class CornerLaw:
     """
 
     def __init__(self, pair, materials, line_load, further, *, cache=True):
-        start, end = pair.path
         modulus = contact_modulus(materials)
-        radius = [abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal)))) for nominal in (start, end)]
+        radius = [abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal)))) for nominal in pair.path]
         # the same rule as in the plane: contacts of the whole load less than so many half widths from the corner
         self.inside = [CORNER * float(half_width(line_load, r, modulus)) for r in radius]
-        self.limits = start, end
+        self.limits = corners(pair)
         load = 2.0 ** round(math.log2(line_load))  # so that loads alike share a table
         near = [1.5 * float(half_width(load, r, modulus)) for r in radius]
         away = [2.0 ** math.ceil(math.log2(max(a, n))) for a, n in zip(further, near, strict=True)]
@@ -71,30 +71,54 @@ class CornerLaw:
         out = np.zeros(ends.size)
         for k, sign in ((0, -1), (1, 1)):
             own = np.flatnonzero(ends == k)
-            if own.size:
+            if own.size and self._tables[k] is not None:
                 spline, least, most, low, high = self._tables[k]
-                away = np.clip(sign * (nominal[own] - self.limits[k]), low, high)
+                # a contact that the hats do not resolve sees a wedge, which looks the same at every scale
+                scale = np.sqrt(np.maximum(least / line_load[own], 1.0))
+                away = np.clip(sign * (nominal[own] - self.limits[k]) * scale, low, high)
                 out[own] = spline.ev(np.log(np.clip(line_load[own], least, most)), away)
         return out
 
 
+def corners(pair):
+    """Abscissae on the line of action [mm] at which the wheel's and the pinion's tip corner lie on it.
+
+    They are the ends of the path of contact unless the mate's flank ends before, at a form point: an undercut pinion's path
+    starts later, and the corner that would start it meets its flank nowhere near.
+    """
+    return float(pair.outward * (pair.length - pair.gear_2.roll_a)), float(pair.gear_1.roll_a)
+
+
 def _table(pair, materials, line_load, corner, span, cache):
-    """Spline over the logarithm of the line load and the abscissa beyond the path, with the limits of both."""
+    """Spline over the logarithm of the line load and the abscissa beyond the corner's, with the limits of both.
+
+    None if the corner meets no flank at any of these abscissae.
+    """
     gears = list(zip((pair.gear_1, pair.gear_2), materials, strict=True))
     bodies = [flexibility(gear, material, neighbours=1, cache=cache) for gear, material in gears]
-    low, high = span
+    end = 1 if corner == 1 else 0
+    sign, limit = (-1, 1)[end], corners(pair)[end]
+    c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
+    unit = float(half_width(1.0, abs(float(pair.relative_radius(pair.path[end], pair.mate_roll(pair.path[end])))), modulus))
+    hat = float(np.diff(np.sort(bodies[1 - end].tip_of(0).arc))[-1])
+    least = (RESOLVED * hat / unit) ** 2
+    line_load = max(line_load, 2.0 ** math.ceil(math.log2(least)))
+    near = 1.5 * unit * math.sqrt(line_load)
+    low, high = min(span[0], -near), max(span[1], near)
     away = low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5
-    away = np.unique(np.append(away, 0.0))
-    sign, limit = (1, pair.path[1]) if corner == 1 else (-1, pair.path[0])
+    away = np.unique([*away, *(at for at in (0.0, sign * (pair.path[end] - limit)) if low <= at <= high)])
     nominal = limit + sign * away
     mesh = PairContact(pair, materials, bodies, (nominal - pair.path[0]) / pair.p_bt, extended=True, state="plane strain")
     column = int(np.flatnonzero(mesh.found.order == 0)[0])
-    c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     loads = line_load * LOADS
+    loads = loads[loads >= least]
     out = np.zeros((loads.size, away.size))
     there = np.isfinite(mesh.found.gap[:, column])
     for i in np.flatnonzero(there).tolist():
         at = mesh.contacts_at(i, np.array([column]), np.array([corner]))
+        if not at["gap"].size:  # no point near the corner has a flank before it
+            there[i] = False
+            continue
         rolls = mesh.found.roll_1[i, column], mesh.found.roll_2[i, column]
         smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
         radius = mesh.radius[i, column]
@@ -102,6 +126,8 @@ def _table(pair, materials, line_load, corner, span, cache):
             closing = share(at["flexibility"], at["gap"], load)[1] - mesh.found.gap[i, column]
             out[j, i] = (closing / load - smooth) / c - np.log(2 / half_width(load, radius, modulus)) - 0.5
     away, out = away[there], out[:, there]
+    if away.size < 2:
+        return None
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 
 

@@ -99,7 +99,8 @@ class PhaseContact:
             return None
         length = sum(piece.last - piece.first for piece in pieces if not piece.floor or all(one.floor for one in pieces))
         finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus))
-        return cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest))
+        cells = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest))
+        return cells if cells.z.size else None
 
     def _carried(self, cells, bodies):
         """What `solve` gives, under the whole force; two halves alike are solved once."""

@@ -31,7 +31,7 @@ class Contact3D:
     along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
-    `error` (phases,) estimated discretisation error of k [N/m], or None.
+    `error` (phases,) difference of k from that of coarser bodies [N/m], or None.
     """
 
     phase: NDArray[np.float64]
@@ -96,8 +96,8 @@ def pair_stiffness3d(
         Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
         has there and the plane's local law of a corner (`gearfe.contact.corner`).
     error : bool
-        Of the energy model: estimate the discretisation error of every k: its difference from that of a section order less by
-        1 and an axial degree less by 2, or the mean of those over the phases if that is larger.
+        Of the energy model: the difference of every k from that of a section order less by 1 and an axial degree less by 2, a
+        measure of its discretisation error at that phase alone.
     model : callable, optional
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
     cache : bool or SolvedGears
@@ -140,8 +140,7 @@ def pair_stiffness3d(
 
     solved = solve(model or energy(order, 0))
     if error:
-        away = np.abs(solve(energy(order - 1, 2)).k - solved.k)
-        solved = replace(solved, error=np.maximum(away, away.mean()))
+        solved = replace(solved, error=np.abs(solve(energy(order - 1, 2)).k - solved.k))
     return solved
 
 

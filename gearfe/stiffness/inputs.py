@@ -108,6 +108,11 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
         raise ValueError(f"face = {face!r} with {method}, a transverse section: use method = 'ritz3d' or a closed form")
     if groove and "herringbone" not in row.faces:
         raise ValueError(f"groove = {groove} mm with {method}, a transverse section: use face = 'herringbone'")
+    if pair.eps_alpha + overlap(pair, face or ("helical" if row.kind == "solid" else "spur"), groove) < 1:
+        raise ValueError(
+            f"contact ratio {pair.eps_alpha:.4g} < 1 with {method}: without more overlap of helical teeth they lose contact; "
+            "use method = 'ritz3d' and a face wide enough, or change a, addendum or profile shift"
+        )
     ring, damaged = pair.gear_2.internal, any(cracks) or any(pits)
     if ring and row.rings == "no":
         raise ValueError(f"{method} has no ring: use method = 'ritz'")

@@ -9,6 +9,7 @@ from ..contact.solid import pair_stiffness3d
 from ..flexibility.solved import solved_gears
 from .cache import solved_solid
 from .curve import StiffnessCurve
+from .estimate import MEAN, fixed_phases
 
 MORE = 1.01  # load of the second solve that gives the tangent
 COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elements; the first whose section can be meshed in quads
@@ -33,8 +34,11 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
     refine, order : float, int
         Of the gears; finite elements have no order.
     error : bool
-        Estimate the discretisation error: of finite elements by a mesh with `COARSER` resolution and `LESS` axial degrees less.
-        Displacements approach their limit at least with the second power of the edges, so the difference is an upper bound.
+        Estimate the discretisation error by coarser bodies: of finite elements by a mesh with `COARSER` resolution and `LESS`
+        axial degrees less, of the energy model by an order and `LESS` axial degrees less. The estimate at a phase is the
+        difference of k there, or, because that can vanish by chance, the mean of those at the fixed phases of one base pitch
+        about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. Displacements approach
+        their limit at least with the second power of the edges, so the difference is an upper bound.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     tell
@@ -55,12 +59,10 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         options |= {"refine": refine, "order": order}
     found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
     more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
-    doubt = found.error
-    if error and brute:
-        ratio, k = _coarser((pair, force, materials, phase), options, refine, cache, tell)
-        away = np.abs(k - found.k)
-        doubt = np.maximum(away, away.mean())
-        meta = meta | {"error_refine": ratio * refine}
+    doubt = None
+    if error:
+        doubt, ratio = _doubt((pair, force, materials), phase, found, options, (refine, cache, tell) if brute else None)
+        meta = meta | ({"error_refine": ratio * refine} if brute else {})
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
@@ -81,6 +83,25 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         error=doubt,
         meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
     )
+
+
+def _doubt(case, phase, found, options, brute):
+    """Estimated error of k at `phase` [N/m], see `wide_curve`, and the part of the resolution it is estimated with."""
+    healthy = not any(options["cracks"]) and not any(options["pits"])
+    fixed = fixed_phases(phase, healthy)
+    further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]
+    every = np.append(phase, further)
+    more = pair_stiffness3d(*case, further, error=not brute, **options) if further.size else None
+    ratio, away = 1.0, found.error
+    if brute:
+        ratio, coarse = _coarser((*case, every), options, *brute)
+        away = np.abs(coarse - (found.k if more is None else np.append(found.k, more.k)))
+    elif more is not None:
+        away = np.append(away, more.error)
+    at_fixed = away[np.abs(fixed[:, None] - every).argmin(axis=1)]
+    apart = np.abs(phase[:, None] - fixed)
+    within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
+    return np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1)), ratio
 
 
 def _coarser(case, options, refine, cache, tell):

@@ -30,6 +30,8 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
+FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one of nothing
+ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
 CHECKED = 6  # order at whose quadrature points the maps are checked
 GROWTH = 1.2  # of the edge length per length, away from fine places
 
@@ -126,7 +128,8 @@ def _attempt(gear, cracks, sizes, refine, finer):
     points, triangles = triangulate([loop], chains, False, around.T)
     if np.linalg.det(_arms(points, triangles)).sum() < 0:
         triangles = triangles[[0, 2, 1]]
-    if np.linalg.det(_arms(points, triangles)).min() <= 0:
+    longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
+    if (np.linalg.det(_arms(points, triangles)) <= 2 * FLAT * longest**2).any():
         return None
     faces, doubles, at = [], {}, count
     for i, (start, line) in enumerate(chains):
@@ -263,19 +266,27 @@ def _chains(gear, size, cracks, loop):
         out += [(start, line), (at + line.shape[1] - 1, on_line)]
         at += line.shape[1] + further.size
         taken = np.hstack([rim, line, on_line])
-        around.append(_rings(corners[:, -1], further, taken))
+        lines = np.column_stack([corners[:, :-1], corners[:, -1]]), np.column_stack([corners[:, 1:], on_line[:, -1]])
+        around.append(_rings(corners[:, -1], further, taken, lines))
         for k in range(1, corners.shape[1] - 1):
             radii = places[places > ends[k] + 1e-9] - ends[k]
-            around.append(_rings(corners[:, k], radii[radii <= min(size["crack"], 0.4 * min(legs[k - 1 : k + 1]))], taken))
+            around.append(_rings(corners[:, k], radii[radii <= min(size["crack"], 0.4 * min(legs[k - 1 : k + 1]))], taken, lines))
     return out, np.hstack(around)
 
 
-def _rings(centre, radii, taken):
-    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius."""
+def _rings(centre, radii, taken, lines):
+    """Six points on each ring about `centre`, those left out that are closer to taken ones than half the ring's radius.
+
+    Also those on `lines` (starts ``(2, n)``, ends), between their vertices: with them they would make triangles of no area.
+    """
     angle = np.arange(6) * math.pi / 3
     points = centre[:, None, None] + radii[:, None] * np.array([np.sin(angle), np.cos(angle)])[:, None, :]
     away = np.hypot(*(points[..., None] - taken[:, None, None, :])).min(axis=-1)
-    return points[:, away > 0.55 * radii[:, None]]
+    start, along = lines[0][:, None, None, :], (lines[1] - lines[0])[:, None, None, :]
+    arm = points[..., None] - start
+    part = np.clip((arm * along).sum(axis=0) / (along**2).sum(axis=0), 0.0, 1.0)
+    beside = np.hypot(*(arm - part * along)).min(axis=-1)
+    return points[:, (away > 0.55 * radii[:, None]) & (beside > ON_LINE * radii[:, None])]
 
 
 def _bulges(pieces, first, doubles):

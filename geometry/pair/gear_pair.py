@@ -40,7 +40,8 @@ class GearPair:
     Raises
     ------
     ValueError
-        If the gears do not match, interfere, or cannot mesh continuously (contact ratio < 1) at this centre distance.
+        If the gears do not match, interfere, or cannot mesh continuously at this centre distance: transverse contact ratio and
+        overlap ratio together below 1.
 
     Examples
     --------
@@ -131,11 +132,10 @@ class GearPair:
         warnings.warn(note, stacklevel=4)
 
     def _check_mesh(self):
-        if not self.eps_alpha >= 1:
-            raise ValueError(
-                f"contact ratio {self.eps_alpha:.4g} < 1 at a = {self.a:.6g} mm: the teeth lose contact; "
-                "change a, addendum or profile shift"
-            )
+        if not (self.eps_alpha > 0 and self.eps_alpha + self.eps_beta >= 1):
+            ratio = f"contact ratio {self.eps_alpha:.4g}"
+            ratio += f" + overlap {self.eps_beta:.4g}" if self.gear_1.beta else ""
+            raise ValueError(f"{ratio} < 1 at a = {self.a:.6g} mm: the teeth lose contact; change a, addendum or profile shift")
         start, _ = self.path
         depth = overlap(self, [start + k * self.p_bt / 8 for k in range(8)])
         if depth > OVERLAP * self.gear_1.m_n:

@@ -44,6 +44,13 @@ def test_identities_of_the_curve(healthy):
     assert ((healthy.error > 0) & (healthy.error < 0.1 * healthy.k)).all()
 
 
+def test_the_estimate_is_a_property_of_the_phase(healthy, steel):
+    """Neighbours in the list of phases do not enter: one phase alone gets what it gets among others, sound and damaged."""
+    assert_allclose(curve_of(steel, error=True, phases=healthy.phase[[3]]).error, healthy.error[3], rtol=1e-2)
+    both, one = (curve_of(steel, {"pinion": [PIT]}, error=True, phases=np.array(phases)).error for phases in ([0.1, 0.6], [0.6]))
+    assert_allclose(both[1:], one, rtol=1e-2)  # cells beyond the path reach by the approach of the phase before
+
+
 def test_meta_says_what_was_done(healthy):
     meta = healthy.meta
     assert (meta["method"], meta["why"]) == ("ritz3d", "asked for")
@@ -198,3 +205,26 @@ def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
     monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
     with pytest.raises(RuntimeError, match="folds"):
         wide._coarser((), {}, 0.5, False, None)
+
+
+def test_overlap_carries_pairs_whose_section_loses_contact(steel):
+    """Contact ratio 0.999 at 45 degrees: solved as steadily as one of 1.001, refused where nothing knows of the width."""
+
+    def pair(addendum, width=8.0):
+        rack = RACK | {"b": width, "r_bore": 5.0, "addendum": addendum}
+        return gf.GearPair(*(gf.Gear(z=z, beta=sign * math.radians(45), **rack) for z, sign in ((17, 1), (27, -1))))
+
+    low, high = 0.5, 1.2
+    while high - low > 1e-9:
+        middle = (low + high) / 2
+        low, high = (middle, high) if pair(middle).eps_alpha < 0.999 else (low, middle)
+    less, more = pair(low), pair(low + 0.002)
+    assert less.eps_alpha < 1 < more.eps_alpha
+    assert_allclose(curve_of(steel, pair=less).k, curve_of(steel, pair=more).k, rtol=2e-3)
+    for method in ("ritz", "fe", "textbook"):
+        with pytest.raises(ValueError, match=r"contact ratio 0\.999 < 1 with method"):
+            curve_of(steel, pair=less, method=method)
+    with pytest.raises(ValueError, match=r"overlap .* < 1 at a"):
+        pair(low, 0.002)
+    with pytest.raises(ValueError, match=r"contact ratio 0\.999 < 1 with method = 'ritz3d'"):
+        curve_of(steel, pair=less, face="herringbone", groove=7.999)
