@@ -117,7 +117,7 @@ def approach(
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
-    start : float
+    start : float or ndarray
         First guess of the approach [mm].
 
     Returns
@@ -128,7 +128,7 @@ def approach(
     """
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
-    gap, facing = np.full(nominal.shape, float(start)), _facing(pair, roll, nominal, driver)
+    gap, facing = np.full(nominal.shape, start, dtype=float), _facing(pair, roll, nominal, driver)
     for _ in range(STEPS):
         distance, met, arm = facing(sense * gap / 2)
         step = (distance - gap) / ((1 + arm) / 2)

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
 from ..shared.places import PAGES, TABLES
 
