@@ -137,7 +137,7 @@ class PairContact:
         return corner
 
     def _find_gaps(self, rows):
-        """Keep the gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all at once: it is quicker."""
+        """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
         teeth = {}
         for i, column, corner in rows:
             if (i, column, corner) not in self._gaps:

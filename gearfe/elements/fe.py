@@ -8,9 +8,9 @@ the same hat average, so the influence matrix ``C = B' K^-1 B`` is symmetric. On
 into the half-plane's logarithm, known exactly, and a smooth rest S that any spline can carry to any contact position.
 
 Edges that are a fixed part of the hats miss a fixed part of the work at the hats' kinks: with `SPAN` edges on either side 0.5 to
-1 % of c at *any* resolution. The missing work is a sum over kinks of (change of slope)**2, so hats twice as wide on the same edges,
-which are sums of three (`gearfe.flexibility.hats.wider`), miss 1/16 of it: with kinks (1, -2, 1) of a hat it is 6, with
-(1, 0, -2, 0, 1) / 4 it is 6 / 16. S(s, s) is taken from those.
+1 % of c at *any* resolution. The missing work is a sum over kinks of (change of slope)**2, so hats twice as wide on the same
+edges, which are sums of three (`gearfe.flexibility.hats.wider`), miss 1/16 of it: with kinks (1, -2, 1) of a hat it is 6,
+with (1, 0, -2, 0, 1) / 4 it is 6 / 16. S(s, s) is taken from those.
 """
 
 import math

@@ -100,7 +100,7 @@ def page():
         "# Random pairs: finite elements against the energy model",
         "",
         f"Made by `python -m validation sample`; rows of {min(r['date'] for r in rows)} to {max(r['date'] for r in rows)} in "
-        "`tables/sample.csv`.",
+        f"`tables/sample.csv`, made with the code (hash of all sources) {_codes(rows)}.",
         f"{len(rows)} random pairs of {COUNT} wanted (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 %",
         "cracked), not used to develop the methods. Largest values over the phases of each pair, in percent of k; errors are",
         f"against `ritz` with {FINE['refine']:g} times the resolution and order {FINE['order']}.",
@@ -120,6 +120,15 @@ def page():
     with written(PAGE) as name:
         Path(name).write_text(text, encoding="utf-8")
     print(text)
+
+
+def _codes(rows):
+    """Fingerprints of the code and how many rows each made; the present one is named."""
+    names = list(dict.fromkeys(r["code"] for r in rows))
+    present = code.fingerprint()
+    return ", ".join(
+        f"{name}{' (the present one)' if name == present else ''}: {sum(r['code'] == name for r in rows)} rows" for name in names
+    )
 
 
 def _line(rows, name, text):
