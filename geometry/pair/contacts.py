@@ -105,7 +105,7 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
 
 
 def approach(
-    pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True, start: float = 0.0
+    pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True, start: ArrayLike = 0.0
 ) -> tuple[NDArray, NDArray]:
     """Approach, shared by both gears, at which a flank point touches the other flank (see the module).
 
