@@ -65,7 +65,7 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self._known, self._rows = {}, {}
+        self._known, self._rows, self._gaps = {}, {}, {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -79,6 +79,7 @@ class PairContact:
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
+        self._find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
         closed = []
         kinks = kink_rows(self, np.argwhere(kink), line_load)
         for i in np.flatnonzero(~done).tolist():
@@ -145,6 +146,26 @@ class PairContact:
             corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
+    def _find_gaps(self, rows):
+        """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
+        teeth = {}
+        for i, column, corner in rows:
+            if (i, column, corner) not in self._gaps:
+                tip = self._tip(column, corner)
+                teeth.setdefault((corner, id(tip)), (tip, []))[1].append((i, column))
+        for (corner, _), (tip, found) in teeth.items():
+            roll = roll_at_arc((self.pair.gear_1, self.pair.gear_2)[corner - 1], tip.arc)
+            at = tuple(np.array(found).T)
+            nominal, start = (values[at][:, None] for values in (self.found.nominal, self.found.gap))
+            own = {"flanks": self.flanks, "order": self.found.order[at[1]][:, None]}
+            gap, met = self.pair.approach(roll, nominal, driver=corner == 1, start=start, **own)
+            self._gaps |= {(*row, corner): (gap[j], met[j]) for j, row in enumerate(found)}
+
+    def _tip(self, column, corner):
+        """`TipHats` of the gear whose corner a pair touches."""
+        order = self.found.order[column]
+        return self.flexibility[corner - 1].tip_of(order if corner == 1 else -order)
+
     def contacts_at(self, i, near, corner, kinks=None):
         """Unknowns of the contact problem at one phase.
 
@@ -172,6 +193,8 @@ class PairContact:
         return self._known[key]
 
     def _built(self, i, near, corner, kinks):
+        rows = zip(near.tolist(), corner.tolist(), strict=True)
+        self._find_gaps([(i, *one) for one in rows if one[1] in (1, 2)])
         parts = [
             kinks[i, column] if number == KINK else self._row(i, column, number)
             for column, number in zip(near, corner, strict=True)
@@ -204,11 +227,9 @@ class PairContact:
             return roll_1, roll_2, gap, np.array([sum(self.coefficients)]), radius, None
         tip, flank = (0, 1) if corner == 1 else (1, 0)
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
-        hats = self.flexibility[tip].tip_of(tooth[tip])
+        hats = self._tip(column, corner)
         roll = roll_at_arc(gears[tip], hats.arc)
-        start = found.gap[i, column]
-        own = {"flanks": self.flanks, "order": found.order[column]}
-        gap, met = self.pair.approach(roll, found.nominal[i, column], driver=corner == 1, start=start, **own)
+        gap, met = self._gaps[i, column, corner]
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)

@@ -7,7 +7,7 @@ by hat (`gearfe.contact.plane`).
 import numpy as np
 from numpy.typing import NDArray
 
-SPAN = 2  # edges of the flank on either side of a hat's top
+SPAN = 2  # edges of the flank on either side of a hat's top; its kinks fall on ends of edges
 FLANK_EDGES = {"flank": 0.05, "tip": 0.0005, "low": 0.02}  # edges in modules: of the flank, at its tip corner, at its lower end
 TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
 
@@ -24,3 +24,17 @@ def hat_knots(arc: NDArray, *, corner: bool = False) -> NDArray:
     """
     knots = np.array([arc[: -2 * SPAN : SPAN], arc[SPAN:-SPAN:SPAN], arc[2 * SPAN :: SPAN]])
     return np.column_stack([knots, [arc[-1 - SPAN], arc[-1], arc[-1]]]) if corner else knots
+
+
+def wider(knots: NDArray) -> NDArray:
+    """Weights ``(n, n)`` that combine hats of unit resultant ``(3, n)`` into hats twice as wide; the first and the last stay.
+
+    A hat with its top at knot i and its ends two knots further is, on the knots between, a sum of the three hats there. Each hat
+    has to start at the top of the one before and end at the top of the one after.
+    """
+    start, top, stop = knots
+    rise, fall = (start[1:-1] - start[:-2]) / (top[1:-1] - start[:-2]), (stop[2:] - stop[1:-1]) / (stop[2:] - top[1:-1])
+    area, inner = (stop - start) / 2, np.arange(1, top.size - 1)
+    weights = np.diag(area)
+    weights[inner, inner - 1], weights[inner, inner + 1] = rise * area[:-2], fall * area[2:]
+    return weights / weights.sum(axis=1, keepdims=True)

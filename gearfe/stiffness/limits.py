@@ -130,7 +130,7 @@ def check_teeth(teeth: Any, most: int) -> None:
     """Refuse a number of teeth that is none, or more than the larger gear has."""
     if teeth is None:
         return
-    if isinstance(teeth, bool) or not (isinstance(teeth, Integral) and teeth >= 1):
+    if isinstance(teeth, bool) or not (isinstance(teeth, Integral) and int(teeth) >= 1):
         raise ValueError(f"teeth = {teeth!r}, but give a whole number of teeth >= 1, or None for all")
-    if teeth > most:
+    if int(teeth) > most:
         raise ValueError(f"teeth = {teeth}, but the gears have no more than {most}: give fewer, or None for all")

@@ -26,16 +26,16 @@ class Half:
     mark: int | None = None
 
 
-def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1):
+def stations(gear, spacing, *, tip=None, low=None, patches=(), span=1, growth=GROWTH):
     """Roll lengths [mm] of flank vertices, from the form point to the tip.
 
     The arc between them is about `spacing` [mm], graded down to `tip` and `low` towards the two ends, where the
-    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle].
-    The number of intervals is a multiple of `span`.
+    flexibility changes fast, and to the size of each patch ``(first arc, last arc, size)`` [mm, from the base circle]; away from
+    those it grows by `growth` per length. The number of intervals is a multiple of `span`.
     """
     start, stop = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     fine = [*patches, (stop, stop, tip or spacing), (start, start, low or spacing)]
-    return roll_at_arc(gear, spaced(start, stop, spacing, fine, span))
+    return roll_at_arc(gear, spaced(start, stop, spacing, fine, span, growth))
 
 
 def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):

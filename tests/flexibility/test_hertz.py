@@ -6,6 +6,8 @@ from scipy.special import xlogy
 
 import gearfe as gf
 from gearfe.flexibility import hertz
+from gearfe.flexibility.hats import hat_knots, wider
+from gearfe.flexibility.hertz import hat_logarithm
 
 
 @pytest.mark.parametrize("apart", [0.0, 0.7, 3.0])
@@ -26,12 +28,12 @@ def test_hat_logarithm_equals_its_integral(apart):
         low, high = d - width / 2, d + width / 2
         mean_log = (xlogy(high, np.abs(high)) - high - xlogy(low, np.abs(low)) + low) / width  # over each cell of y
         want -= p[start : start + 500] @ mean_log @ q
-    assert_allclose(hertz.hat_logarithm(one[:, None], two[:, None])[0, 0], want, rtol=1e-6, atol=1e-7)
+    assert_allclose(hat_logarithm(one[:, None], two[:, None])[0, 0], want, rtol=1e-6, atol=1e-7)
 
 
 def test_far_apart_hats_see_a_point_log():
     one = np.array([[-0.1], [0.0], [0.1]])
-    assert_allclose(hertz.hat_logarithm(one, one + 50)[0, 0], -np.log(50), rtol=1e-5)
+    assert_allclose(hat_logarithm(one, one + 50)[0, 0], -np.log(50), rtol=1e-5)
 
 
 def test_line_contact_constant_is_the_mean_log_under_an_ellipse():
@@ -50,3 +52,15 @@ def test_hertz_pressure_carries_the_load():
 def test_linear_hertz_of_equal_materials():
     steel = gf.Material(E=206e3, nu=0.3)
     assert_allclose(1 / hertz.linear_hertz((steel, steel)), np.pi * 206e3 / (4 * (1 - 0.09)), rtol=1e-12)
+
+
+def test_hats_twice_as_wide_are_sums_of_hats():
+    """Their logarithm from the weights is that of their own knots, on uneven edges too."""
+    arc = np.cumsum(1.1 ** np.arange(21))
+    knots = hat_knots(arc)
+    top = np.concatenate([[arc[0]], knots[1], [arc[-1]]])
+    inner = np.arange(2, top.size - 2)
+    wide = np.array([top[inner - 2], top[inner], top[inner + 2]])
+    weights = wider(knots)[1:-1]
+    assert_allclose(weights @ hat_logarithm(knots, knots) @ weights.T, hat_logarithm(wide, wide), rtol=1e-9)
+    assert_allclose(weights @ knots.mean(axis=0), wide.mean(axis=0), rtol=1e-12)

@@ -38,6 +38,17 @@ def test_ring_root_stress_of_boundary_elements():
         assert_allclose(eps_alpha, row["eps_alpha"], rtol=1e-11)
 
 
+def test_ring_root_stress_has_an_estimate_that_covers_a_finer_mesh():
+    row = reference.load()["ring_root_stress"]["rows"][0]
+    one = gf.Gear(z=row["z"], m_n=1.0, alpha_n=math.radians(20), b=1.0, r_rim=42.0, tip_radius=row["tip_radius"])
+    case = one, math.hypot(*row["point"]), 1 / math.cos(one.alpha_n), gf.Material()
+    stress, estimate = gf.root_stress(*case, half_width=0.05, error=True)
+    fine = gf.root_stress(*case, half_width=0.05, refine=2.0)
+    print(f"{stress:.5f} +- {estimate:.5f}, finer {fine:.5f}, boundary elements {row['value']}")
+    assert abs(stress - fine) <= estimate
+    assert estimate <= 2e-3 * stress
+
+
 def test_shaped_fillet_curvature_at_the_root():
     """Euler-Savary: rho + d**2 / (1 / (1/r_0 - 1/r) + d) with the cutter's pitch radius r_0 (source: 0.2686915887850)."""
     gear = gf.Gear(z=60, m_n=1.0, alpha_n=math.radians(20), b=1.0, r_rim=42.0, tip_radius=0.2)

@@ -11,14 +11,15 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.stiffness.curve_file import written
+from gearfe.files import written
 
+from ..shared import code
 from ..shared.places import PAGES, TABLES
 
 PAGE, TABLE = PAGES / "sample.md", TABLES / "sample.csv"
-FIRST, COUNT = 71_000, 200  # seeds from here on; none was looked at while the methods were made
+FIRST, COUNT = 72_000, 200  # seeds from here on; none was looked at while the methods were made
 FIELDS = ("seed", "date", "pair", "damage", "load_N_mm", "difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
-FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s")
+FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s", "code")
 FINE = {"refine": 2.0, "order": 5}  # of `ritz`, the reference of both errors
 
 
@@ -27,8 +28,8 @@ def random_case(seed):
     rng = np.random.default_rng(seed)
     m, width = float(rng.choice([1.0, 2.0, 4.0])), 10.0
     rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 25.0])), "b": width, "tip_radius": 0.2}
-    z_1, ring = int(rng.integers(11, 70)), bool(rng.random() < 0.25)
-    z_2 = int(rng.integers(z_1 + 20, z_1 + 90)) if ring else int(rng.integers(14, 110))
+    z_1, ring = int(11 * (70 / 11) ** rng.random()), bool(rng.random() < 0.25)
+    z_2 = z_1 + int(20 * (90 / 20) ** rng.random()) if ring else int(14 * (110 / 14) ** rng.random())
     x_1, x_2 = float(rng.uniform(-0.1, 0.5)), 0.0 if ring else float(rng.uniform(-0.3, 0.3))
     bore = [float(rng.uniform(0.3, 0.88)) * (z / 2 - 1.25 + x) * m for z, x in ((z_1, x_1), (z_2, x_2))]
     one = gf.Gear(z=z_1, x=x_1, r_bore=bore[0], **rack)
@@ -47,7 +48,7 @@ def row(seed):
         warnings.simplefilter("ignore", UserWarning)
         try:
             pair, load, damage = random_case(seed)
-            run = {"phases": 12, "span": "tooth" if damage else "cycle", "damage": damage}
+            run = {"phases": 8, "span": "tooth" if damage else "cycle", "damage": damage}
             case = (pair, load * 10.0, gf.Material())
             energy = gf.mesh_stiffness(*case, method="ritz", error=True, **run)
             fine = gf.mesh_stiffness(*case, method="ritz", **FINE, **run).k
@@ -62,8 +63,8 @@ def row(seed):
     hurt = "" if not damage else "; ".join(f"{name} crack {100 * one[0].level:.0f} %" for name, one in damage.items())
     percent = [f"{100 * float((v / fine).max()):.4f}" for v in values]
     head = [seed, datetime.datetime.now(datetime.UTC).date().isoformat(), names, hurt, f"{load:.1f}"]
-    tail = [str(bool(c)) for c in covered]
-    return dict(zip(FIELDS, [*head, *percent, *tail, f"{time.process_time() - started:.1f}"], strict=True))
+    tail = [*(str(bool(c)) for c in covered), f"{time.process_time() - started:.1f}", code.fingerprint()]
+    return dict(zip(FIELDS, [*head, *percent, *tail], strict=True))
 
 
 def run():
@@ -99,7 +100,7 @@ def page():
         "# Random pairs: finite elements against the energy model",
         "",
         f"Made by `python -m validation sample`; rows of {min(r['date'] for r in rows)} to {max(r['date'] for r in rows)} in "
-        "`tables/sample.csv`.",
+        f"`tables/sample.csv`, made with the code (hash of all sources) {_codes(rows)}.",
         f"{len(rows)} random pairs of {COUNT} wanted (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 %",
         "cracked), not used to develop the methods. Largest values over the phases of each pair, in percent of k; errors are",
         f"against `ritz` with {FINE['refine']:g} times the resolution and order {FINE['order']}.",
@@ -119,6 +120,15 @@ def page():
     with written(PAGE) as name:
         Path(name).write_text(text, encoding="utf-8")
     print(text)
+
+
+def _codes(rows):
+    """Fingerprints of the code and how many rows each made; the present one is named."""
+    names = list(dict.fromkeys(r["code"] for r in rows))
+    present = code.fingerprint()
+    return ", ".join(
+        f"{name}{' (the present one)' if name == present else ''}: {sum(r['code'] == name for r in rows)} rows" for name in names
+    )
 
 
 def _line(rows, name, text):

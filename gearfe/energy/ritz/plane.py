@@ -13,7 +13,7 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from geometry.damage.crack import check_through
-from geometry.mesh.outline import stations
+from geometry.mesh.outline import GROWTH, stations
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
@@ -170,7 +170,8 @@ def _spline(gear, influence):
 def _hats(gear, refine):
     """Knots ``(3, n)`` of the hats next to the tip corner, and the matrix from values at the loads to values at their centres."""
     edge = {name: size * gear.m_n / (HATS * refine) for name, size in FLANK_EDGES.items()}
-    arc = arc_at(gear, stations(gear, edge["flank"], tip=edge["tip"], low=edge["low"], span=SPAN))
+    graded = {"tip": edge["tip"], "low": edge["low"], "growth": GROWTH / refine}
+    arc = arc_at(gear, stations(gear, edge["flank"], span=SPAN, **graded))
     knots = hat_knots(arc, corner=True)
     knots = knots[:, knots[1] > arc[-1] - TIP_ZONE * gear.m_n]
     return knots, carry(gear, knots.mean(axis=0))
