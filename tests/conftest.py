@@ -37,7 +37,6 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
         "test_literature.py::test_verdict_on_a_printed_number[herringbone_machine-mesh_frequency",
     ),
     "reports": ("reports/test_page.py::test_unknown_case_and_suffix_are_refused_before_work",),
-    "hostile": ("hostile/test_hostile.py::test_gears",),
     "docs": ("docs/test_tutorials.py::test_scripts_are_found", "docs/test_site.py"),
     "layout": ("test_layout.py", "test_types.py"),
     "hostile": ("hostile/test_hostile.py::test_gears", "hostile/test_hostile.py::test_damage"),
