@@ -29,7 +29,7 @@ def test_tables_and_pictures_of_curves_need_no_vtk(tmp_path):
 
 
 def test_dynamics_needs_no_vtk():
-    done = run("dynamics", "planetary_pitting", "--duration", "0.1")
+    done = run("dynamics", "planetary_pitting", "--duration", "0.2")
     assert done.returncode == 0, done.stderr
 
 
