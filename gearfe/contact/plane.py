@@ -193,8 +193,6 @@ class PairContact:
         return self._known[key]
 
     def _built(self, i, near, corner, kinks):
-        rows = zip(near.tolist(), corner.tolist(), strict=True)
-        self._find_gaps([(i, *one) for one in rows if one[1] in (1, 2)])
         parts = [
             kinks[i, column] if number == KINK else self._row(i, column, number)
             for column, number in zip(near, corner, strict=True)
@@ -229,7 +227,8 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
         roll = roll_at_arc(gears[tip], hats.arc)
-        gap, met = self._gaps[i, column, corner]
+        self._find_gaps([(i, int(column), int(corner))])  # unless they are known
+        gap, met = self._gaps[i, int(column), int(corner)]
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
         keep = np.ix_(there, there)
