@@ -64,10 +64,7 @@ def _about(truth, per_phase, per_load):
     return (
         f"Made by `python -m validation speed` on {machine.describe()}. Scene `planetary_pitting`, sun-planet pair, 64 "
         "phases, imports excluded, meshing included, median of 5 runs, nothing cached unless the row says so. Reference: "
-        f"finite elements of {dofs} unknowns (refine {REFERENCE:g}; cracked: refine {REFERENCE / 2:g}). That `ritz` settles "
-        "0.03 % away from it is mostly a bias of the reference: its hat pressures are as wide as its own edges and miss about "
-        "0.5 % of the local "
-        "coefficient at any refinement; with hats twice as wide (`gearfe.flexibility.hats.SPAN`) the two come together. "
+        f"finite elements of {dofs} unknowns (refine {REFERENCE:g}; cracked: refine {REFERENCE / 2:g}). "
         f"Each further phase of `ritz` costs {1e3 * per_phase:.2f} ms, each further load (64 phases) {1e3 * per_load:.1f} ms, "
         f"that is {1e3 * per_load / 64:.2f} ms per phase and load."
     )
