@@ -44,7 +44,8 @@ SENSIBLE = st.fixed_dictionaries({"z": st.integers(14, 60), "x": st.floats(-0.2,
 
 
 def gear(z, x, bore, b=20.0, alpha_n=0.35, addendum=1.0, tip_radius=0.38):
-    return gf.Gear(z, 2.0, alpha_n, b, bore * (z - 2.5), x=x, addendum=addendum, tip_radius=tip_radius)
+    size = z if isinstance(z, int) else 20
+    return gf.Gear(z, 2.0, alpha_n, b, bore * (size - 2.5), x=x, addendum=addendum, tip_radius=tip_radius)
 
 
 def made(one, two):
