@@ -112,8 +112,8 @@ def test_a_file_limit_costs_only_the_reuse(tmp_path, monkeypatch):
     assert cache.folder() == tmp_path
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is read-only for root")
 def test_a_folder_that_may_not_be_written_is_refused_first(tmp_path, capsys):
+    closed = Path("/proc") if Path("/proc").is_dir() else tmp_path  # where not even root may write
     tmp_path.chmod(0o500)
-    assert main(["stiffness", "planetary_pitting", "-o", str(tmp_path / "k.csv")]) == 1
+    assert main(["stiffness", "planetary_pitting", "-o", str(closed / "k.csv")]) == 1
     assert "writable folder" in capsys.readouterr().err
