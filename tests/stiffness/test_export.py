@@ -35,7 +35,7 @@ def test_numpy_scalars_in_the_input_can_be_saved(tmp_path):
 
 def test_plot_of_a_tooths_engagement_runs_forward(pair, steel):
     figure = gf.mesh_stiffness(pair, 2000.0, steel, method="textbook", phases=16, span="tooth").plot()
-    assert (np.diff(figure.axes[0].lines[0].get_xdata()) > 0).all()
+    assert (np.diff(figure.axes[0].lines[0].get_xdata()) >= 0).all()  # jumps are upright
 
 
 def test_other_formats(curve, tmp_path):
