@@ -256,6 +256,7 @@ def test_error_estimate_covers_a_finer_solve():
     assert (error < 0.03 * solved.k).all()
 
 
+@pytest.mark.slow
 def test_crack_lowers_a_spur_pair_as_in_the_plane():
     """Without its free ends the drop of k by a crack is that of plane strain; with them, within a hundredth of it."""
     pair, crack, phase = pair_of(20.0, 0.0), gf.Crack(level=0.5), np.array([0.3, 0.7])

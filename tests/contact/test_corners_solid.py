@@ -43,6 +43,7 @@ def test_the_corner_that_misses_the_start_of_the_path_meets_the_flank_further_ou
     assert_allclose(lines3d.beyond(pair, found[1])[0], away[1], rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_helical_and_pitted_spur_undercut_pairs_are_solved():
     pit = gf.Pit(radius=10.0, z=4.0, axes=(0.5, 1.5), depth=0.1)
     run = {"material": STEEL, "phases": np.array([0.1, 0.3, 0.5, 0.8]), "refine": 0.6}
