@@ -88,6 +88,7 @@ _HOME = {
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
     "sweep": "gearfe.sweeps.run",
+    "sweep_report": "gearfe.reports.sweep_page",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
     "write_contact_inp": "gearfe.elements.contact_deck",

@@ -46,6 +46,7 @@ from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
 from .reports.page import report as report
+from .reports.sweep_page import sweep_report as sweep_report
 from .scene.load import load_scene as load_scene
 from .scene.new import new_scene as new_scene
 from .signal.demodulation import demodulate as demodulate

@@ -90,7 +90,9 @@ def main(argv=None):
     verb = _verb(
         verbs, "report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration"
     )
-    verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
+    verb.add_argument(
+        "scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes'), a .toml file, or the folder of a sweep"
+    )
     verb.add_argument("--case", metavar="NAME", help="case of damage shown beside healthy (default: the scene's first)")
     verb.add_argument("--duration", type=float, default=0.2, metavar="S", help="of the machine's vibration [s] (default: 0.2)")
     verb.add_argument("-o", "--output", metavar="FILE", required=True, help="the page: .html")

@@ -1,5 +1,7 @@
 """Verbs around the computing: a page of a scene, a scene to start from, completion, what this machine has."""
 
+import os
+
 from .progress import working
 
 
@@ -9,6 +11,13 @@ def report(arguments):
     from ..reports.page import report as run
 
     check_output(arguments.output, "page")
+    if os.path.isdir(arguments.scene):
+        from ..reports.sweep_page import sweep_report
+
+        with working("report"):
+            made = sweep_report(arguments.scene, arguments.output)
+        print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
+        return
     with working("report") as tell:
         made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration, tell=tell)
     print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")

@@ -43,7 +43,7 @@ def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int
                 under_way[future.key] = job
                 yield future
 
-        ended = as_completed(list(send(AHEAD * threads)))
+        ended = as_completed(list(send(AHEAD * threads)), loop=client.loop)
         for future in ended:
             job = under_way.pop(future.key)
             try:

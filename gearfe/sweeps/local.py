@@ -24,8 +24,8 @@ def local(jobs: Sequence[Job], workers: int) -> Iterator[tuple[str, bytes, int]]
     while waiting:
         suspects: list[Job] = []
         yield from _until_broken(waiting, suspects, workers)
-        for job in suspects:
-            yield _alone(job)
+        for job, found in _alone(compute, suspects):
+            yield found or shard(job, [row for part, own in _alone(rows, single(job)) for row in own or lost(part)])
 
 
 def _until_broken(waiting, suspects, workers):
@@ -53,18 +53,14 @@ def _until_broken(waiting, suspects, workers):
             raise
 
 
-def _alone(job):
-    """What `compute` gives, by a process that does nothing else."""
-    try:
+def _alone(work, jobs):
+    """Each job with what `work` gives of it, by a process that does nothing else; None if the process ended with it."""
+    waiting = deque(jobs)
+    while waiting:
         with processes(1) as pool:
-            return pool.submit(compute, job).result()
-    except BrokenProcessPool:
-        return shard(job, [row for part in single(job) for row in _case_alone(part)])
-
-
-def _case_alone(job):
-    try:
-        with processes(1) as pool:
-            return pool.submit(rows, job).result()
-    except BrokenProcessPool:
-        return lost(job)
+            try:
+                while waiting:
+                    job = waiting.popleft()
+                    yield job, pool.submit(work, job).result()
+            except BrokenProcessPool:
+                yield job, None

@@ -58,6 +58,26 @@ def test_a_worker_process_killed_is_replaced(undisturbed, tmp_path):
     same(found, undisturbed)
 
 
+def test_a_case_that_ends_its_process_is_recorded_as_lost(tmp_path, monkeypatch):
+    """Every process that computes the level 0.3 is killed by it; all other cases are there."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]))
+    (tmp_path / "sitecustomize.py").write_text(
+        "import os, sys\n"
+        "if 'multiprocessing.spawn' in ' '.join(sys.orig_argv):\n"
+        "    from gearfe.sweeps import kinds\n"
+        "    work = kinds.KINDS['stiffness'].work\n"
+        "    def bad(scene, pair, case, *more):\n"
+        "        if scene.pair(pair).damage[case]['pinion'][0].level == 0.3:\n"
+        "            os._exit(9)\n"
+        "        return work(scene, pair, case, *more)\n"
+        "    kinds.KINDS['stiffness'] = kinds.KINDS['stiffness']._replace(work=bad)\n"
+    )
+    study = STUDY | {"options": {"method": "textbook", "phases": 8}, "vary": {"crack.cracked.level": [0.1, 0.2, 0.3, 0.4, 0.5]}}
+    table = gf.sweep(study, tmp_path / "runs", workers=2).table()
+    assert table["status"].tolist() == ["done", "done", "lost", "done", "done"]
+    assert "killed, or out of memory" in table["error"][2]
+
+
 def test_twenty_kills_of_everything(undisturbed, tmp_path):
     """Each time the process is killed at a random moment; what is in the folder then stays, and the end is the same."""
     drawn, folder = random.Random(7), tmp_path / "runs"

@@ -1,0 +1,132 @@
+"""`sweep_report`: a page of the results of a sweep, in one file that needs no network."""
+
+import json
+import os
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..files import check_output, missing, written
+from ..sweeps.effects import curve_bands, main_effects
+from ..sweeps.runs import Runs, open_runs
+
+SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
+
+
+def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[str]) -> Path:
+    """Write one self-contained page of a sweep: what varied, results, what matters, bands of curves, how all was made.
+
+    Parameters
+    ----------
+    runs : Runs, str or path
+        As of `gearfe.open_runs`, or its folder.
+    path : path
+        A ``.html`` file.
+
+    Returns
+    -------
+    pathlib.Path
+        Of the page.
+
+    Raises
+    ------
+    ValueError
+        If the page could not be written, or there are no results.
+    RuntimeError
+        If plotly, jinja2, pandas or xarray is missing; the message has the command that installs them.
+    """
+    check_output(path, "page")
+    try:
+        import jinja2
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise missing(f"{error.name}", "report", error) from error
+    runs = runs if isinstance(runs, Runs) else open_runs(runs)
+    table, study = runs.table(), runs.about["study"]
+    output, curve = SHOWN[study["kind"]]
+    texts = resources.files("gearfe.reports")
+    made = jinja2.Environment(autoescape=True, trim_blocks=True).from_string((texts / "sweep.html").read_text(encoding="utf-8"))
+    page = made.render(
+        title=runs.about["title"], there=len(table), cases=runs.about["cases"], study=study, made=runs.about["made"],
+        varied=_varied(table, runs), numbers=_numbers(table, runs), failed=_failed(table),
+        output=f"{output} [{runs.units[output]}]", effects=_effects(runs, output), bands=_bands(runs, curve),
+        seconds=f"{table['seconds'].sum():.4g} s",
+        each=f"{table['seconds'].median():.3g} s", text=json.dumps(study, indent=1), plotly=get_plotlyjs(),
+        versions=", ".join(f"{name} {value}" for name, value in runs.about["made"].items()),
+        style=(texts / "page.css").read_text(encoding="utf-8"),
+    )  # fmt: skip
+    with written(path) as name:
+        Path(name).write_text(page, encoding="utf-8")
+    return Path(path)
+
+
+def _varied(table, runs):
+    """Inputs with their values."""
+    rows = [["input", "distinct values", "from", "to"]]
+    for name in runs.inputs:
+        own = table[name]
+        plain = own.dtype.kind in "if"
+        ends = (f"{own.min():.6g}", f"{own.max():.6g}") if plain else (str(own.iloc[0]), str(own.iloc[-1]))
+        rows.append([name, own.nunique(), *ends])
+    return rows
+
+
+def _numbers(table, runs):
+    """Percentiles of the outputs."""
+    rows = [["output", "unit", "least", "5 %", "middle", "95 %", "largest"]]
+    skipped = {*runs.inputs, "point", "draw", "seconds"}
+    for name, field in runs.fields.items():
+        own = table[name].dropna() if name in table and field.kind == "number" and name not in skipped else ()
+        if len(own):
+            rows.append([name, field.unit, *(f"{value:.5g}" for value in np.percentile(own, (0, 5, 50, 95, 100)))])
+    return rows
+
+
+def _failed(table):
+    """Errors with their numbers of cases."""
+    count = table.loc[table["status"] != "done", "error"].value_counts()
+    return [["cases", "error"], *([n, text] for text, n in count.head(20).items())]
+
+
+def _figure(**layout: Any):
+    from plotly.graph_objects import Figure
+
+    return Figure(layout={"template": "plotly_white", "height": 400, "margin": {"t": 15}, "hovermode": "closest", **layout})
+
+
+def _html(figure, name):
+    options = {"include_plotlyjs": False, "full_html": False, "config": {"responsive": True, "displaylogo": False}}
+    return figure.to_html(div_id=name, **options)
+
+
+def _effects(runs, output):
+    """Main effects, each input over its own range."""
+    found, figure = main_effects(runs, output), _figure(xaxis={"title": "place of the value in its range"})
+    figure.update_yaxes(title=f"mean {output} [{runs.units[output]}]")
+    for name, own in found.groupby("input", sort=False):
+        said = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in own["value"]]
+        figure.add_scatter(
+            x=np.linspace(0, 1, len(own)), y=own["mean"], name=name, mode="lines+markers", text=said,
+            hovertemplate="%{text}: %{y:.5g}",
+        )  # fmt: skip
+    return _html(figure, "effects")
+
+
+def _bands(runs, curve):
+    """Middle and 5 to 95 % of the curves; empty where they have no common places."""
+    if curve is None:
+        return ""
+    try:
+        found = curve_bands(runs, curve)
+    except ValueError:  # other phases in other cases
+        return ""
+    phase, (low, middle, high) = found["phase"].to_numpy(), found[curve].to_numpy()
+    figure = _figure(xaxis={"title": "mesh phase"}, yaxis={"title": f"{curve} [{runs.units[curve]}]"})
+    both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]])}
+    figure.add_scatter(
+        **both, fill="toself", line={"width": 0}, fillcolor="rgba(0,114,178,0.25)", name="5 to 95 %", hoverinfo="skip"
+    )
+    figure.add_scatter(x=phase, y=middle, line={"color": "#0072b2"}, name="middle")
+    return _html(figure, "bands")

@@ -1,0 +1,33 @@
+"""The page of a sweep: one file, with the numbers of its table."""
+
+import re
+
+import pytest
+
+import gearfe as gf
+
+pytest.importorskip("plotly")
+pytest.importorskip("jinja2")
+
+
+def test_page_of_a_sweep_has_its_numbers(tmp_path):
+    study = {
+        "title": "bores </script>",
+        "scene": "planetary_pitting",
+        "pair": "sun_planet",
+        "options": {"method": "textbook", "phases": 8},
+        "vary": {"gear.sun.r_bore_mm": [6.0, 7.0, 99.0], "pair.sun_planet.force_N": [1000.0, 2000.0]},
+    }
+    runs = gf.sweep(study, tmp_path / "runs", workers=1)
+    text = gf.sweep_report(runs, tmp_path / "page.html").read_text(encoding="utf-8")
+    done = runs.table(where={"status": "done"})
+    for value in (done["k_mean"].min(), done["k_mean"].max()):
+        assert f"<td>{value:.5g}</td>" in text
+    assert "bores </script>" not in text
+    assert 'id="effects"' in text
+    assert 'id="bands"' in text
+    assert "r_bore" in text[text.index("Cases without a result") :]
+    own = re.sub(r"<script>/\*\*.*?</script>", "", text, flags=re.DOTALL)
+    assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own)
+    with pytest.raises(ValueError, match="no folder"):
+        gf.sweep_report(tmp_path / "none", tmp_path / "page.html")
