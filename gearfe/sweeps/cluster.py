@@ -1,6 +1,7 @@
 """Blocks over the workers of a Dask scheduler; results come back to this process, which alone writes them."""
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 
 from ..files import missing
 from .blocks import Job, compute, lost, shard
@@ -38,7 +39,7 @@ def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int
         under_way = {}
 
         def send(count):
-            for job, _ in zip(waiting, range(count), strict=False):
+            for job in islice(waiting, count):
                 future = client.submit(compute, job, pure=False)
                 under_way[future.key] = job
                 yield future

@@ -83,6 +83,8 @@ def sweep(
             write_shard(folder, name, content)
             done += sizes[name]
             progress(done, total)
+    if done != total:
+        raise RuntimeError(f"{total - done} of {total} cases were handed out and never came back: start the sweep again")
     return open_runs(folder)
 
 
