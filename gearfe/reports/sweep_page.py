@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from ..files import check_output, missing, written
+from ..pictures.stiffness_plots import COLOURS
 from ..sweeps.effects import curve_bands, main_effects
 from ..sweeps.runs import Runs, open_runs
+from .figures import DASH, LOOK
 
 SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
 
@@ -93,7 +95,7 @@ def _failed(table):
 def _figure(**layout: Any):
     from plotly.graph_objects import Figure
 
-    return Figure(layout={"template": "plotly_white", "height": 400, "margin": {"t": 15}, "hovermode": "closest", **layout})
+    return Figure(layout=LOOK | {"height": 420, "hovermode": "closest"} | layout)
 
 
 def _html(figure, name):
@@ -105,13 +107,14 @@ def _effects(runs, output):
     """Main effects, each input over its own range."""
     found, figure = main_effects(runs, output), _figure(xaxis={"title": "place of the value in its range"})
     figure.update_yaxes(title=f"mean {output} [{runs.units[output]}]")
-    for name, own in found.groupby("input", sort=False):
+    for i, (name, own) in enumerate(found.groupby("input", sort=False)):
         said = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in own["value"]]
         figure.add_scatter(
             x=np.linspace(0, 1, len(own)), y=own["mean"], name=name, mode="lines+markers", text=said,
+            line={"color": COLOURS[i % len(COLOURS)], "dash": DASH[i % len(DASH)]},
             hovertemplate="%{text}: %{y:.5g}",
         )  # fmt: skip
-    return _html(figure, "effects")
+    return _html(figure, "figure-effects")
 
 
 def _bands(runs, curve):
@@ -129,4 +132,4 @@ def _bands(runs, curve):
         **both, fill="toself", line={"width": 0}, fillcolor="rgba(0,114,178,0.25)", name="5 to 95 %", hoverinfo="skip"
     )
     figure.add_scatter(x=phase, y=middle, line={"color": "#0072b2"}, name="middle")
-    return _html(figure, "bands")
+    return _html(figure, "figure-bands")

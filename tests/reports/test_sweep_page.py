@@ -24,8 +24,9 @@ def test_page_of_a_sweep_has_its_numbers(tmp_path):
     for value in (done["k_mean"].min(), done["k_mean"].max()):
         assert f"<td>{value:.5g}</td>" in text
     assert "bores </script>" not in text
-    assert 'id="effects"' in text
-    assert 'id="bands"' in text
+    places = re.findall(r' id="([^"]+)"', text)
+    assert {"effects", "curves", "figure-effects", "figure-bands"} <= set(places)
+    assert len(set(places)) == len(places)
     assert "r_bore" in text[text.index("Cases without a result") :]
     own = re.sub(r"<script>/\*\*.*?</script>", "", text, flags=re.DOTALL)
     assert not re.findall(r"<(?:script|img|link|iframe)[^>]*(?:src|href)=\"(?!data:)[^\"]*", own)

@@ -208,7 +208,7 @@ def kills_text(found):
     return [
         "## Killed",
         "",
-        f"A sweep of 240 cases in 30 blocks on two processes, killed (SIGKILL) at {len(found['kills'])}",
+        f"A sweep of {found['cases']} cases on two processes, killed (SIGKILL) at {len(found['kills'])}",
         "random moments and each time",
         f"started again. Blocks in the folder after each kill: {blocks}. Every file there stayed as it was, byte for byte:",
         f"**{'yes' if kept else 'NO'}**. {found['left_for_the_last']} cases were left for the last start. The",
