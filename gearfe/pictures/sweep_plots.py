@@ -45,9 +45,10 @@ def plot_states(
         low, middle, high = low_middle_high
         left.fill_between(place, low, high, color=colour, alpha=0.3, linewidth=0)
         left.plot(place, middle, color=colour, label=state)
-    edges = np.histogram_bin_edges(np.concatenate(list(values.values())), 40)
+    edges = np.histogram_bin_edges(np.concatenate(list(values.values())), 20)
     for (state, own), colour in zip(values.items(), COLOURS, strict=False):
-        right.hist(own, edges, color=colour, alpha=0.5, label=state, density=True)
+        right.hist(own, edges, color=colour, alpha=0.2, density=True)
+        right.hist(own, edges, color=colour, histtype="step", linewidth=1.8, label=state, density=True)
     left.set(xlabel=labels[0], ylabel=labels[1])
     right.set(xlabel=labels[2], yticks=[], ylabel="machines")
     left.legend(frameon=False)

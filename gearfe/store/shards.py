@@ -121,7 +121,7 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
         try:
             schema = pa.parquet.read_schema(file)
         except (OSError, pa.ArrowInvalid) as error:
-            raise ValueError(f"{file} is damaged: {error}; delete this file, and what it held is computed anew") from error
+            raise ValueError(f"{file} is damaged: {_line(error)}; delete this file, and what it held is computed anew") from error
         first = first or schema
         if schema != first:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
@@ -143,7 +143,7 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
         form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked_scan())
         return pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
     except (OSError, pa.ArrowInvalid) as error:
-        raise ValueError(f"{files[0]} is damaged: {error}") from error
+        raise ValueError(f"{files[0]} is damaged: {_line(error)}") from error
 
 
 def checked_scan() -> Any:
@@ -167,7 +167,14 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
     try:
         return found.to_table(columns=list(columns) if columns is not None else None, filter=where)
     except (OSError, pa.ArrowInvalid) as error:
-        raise ValueError(f"{_damaged(folder)} is damaged: {error}; delete it, and what it held is computed anew") from error
+        raise ValueError(
+            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
+        ) from error
+
+
+def _line(error):
+    """Message of an error of pyarrow in one line."""
+    return " ".join(str(error).split())
 
 
 def _damaged(folder):

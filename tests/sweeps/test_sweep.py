@@ -13,6 +13,7 @@ import pandas as pd
 import pytest
 
 import gearfe as gf
+from gearfe.cli import main
 from gearfe.sweeps import run
 
 STUDY = {
@@ -129,3 +130,22 @@ def test_a_plan_says_what_it_will_take(tmp_path):
     assert plan.disk > 0
     assert "48 cases in 16 blocks" in plan.text()
     assert not list(tmp_path.iterdir())
+
+
+def test_verb_plans_sweeps_and_goes_on(tmp_path, capsys):
+    (tmp_path / "s.toml").write_text(
+        'title = "bores"\nscene = "planetary_pitting"\npair = "sun_planet"\n'
+        'options.method = "textbook"\noptions.phases = 8\nvary.gear.sun.r_bore_mm = [6.0, 7.0, 99.0]\n'
+    )
+    verb = ["sweep", str(tmp_path / "s.toml"), "-o", str(tmp_path / "runs"), "--workers", "1"]
+    assert main([*verb, "--dry-run"]) == 0
+    assert "3 cases in 1 blocks" in capsys.readouterr().out
+    assert not (tmp_path / "runs").exists()
+    for _ in range(2):
+        assert main(verb) == 0
+        told = capsys.readouterr().out
+        assert "bores: 3 cases, 2 done, 1 failed" in told
+        assert "1 times: ValueError" in told
+    (tmp_path / "s.toml").write_text((tmp_path / "s.toml").read_text().replace("7.0", "7.1"))
+    assert main(verb) == 1
+    assert "another study, begun with axes.0.gear.sun.r_bore_mm.1 = 7.0, not 7.1" in capsys.readouterr().err
