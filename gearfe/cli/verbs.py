@@ -52,7 +52,7 @@ def stiffness(arguments):
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, pose=arguments.pose, tell=tell,
         )  # fmt: skip
     meta = curve.meta
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
