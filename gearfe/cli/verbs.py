@@ -36,6 +36,7 @@ def stiffness(arguments):
     from ..scene.load import load_scene
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
+    from ..units import in_newton_per_um
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
@@ -58,7 +59,8 @@ def stiffness(arguments):
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
     doubt = curve.zone_errors()
     for zone, value in curve.zones().items():
-        print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))
+        about = f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""
+        print(f"  {zone:7s} {in_newton_per_um(value, 5)} N/um{about}")
     if arguments.output:
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -142,6 +144,7 @@ def render(arguments):
     """``gearfe render``."""
     from ..scene.load import load_scene
     from ..stress.render import render_contact, render_stress
+    from ..units import in_newton_per_um
 
     _check_outputs(arguments, output="picture" if arguments.what == "contact" else "stress")
     scene = load_scene(arguments.scene)
@@ -149,7 +152,7 @@ def render(arguments):
     if arguments.what == "contact":
         with working("contact lines"):
             told = render_contact(pair, arguments.output, title=_title(scene, arguments), **options)
-        print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
+        print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
             told = render_stress(pair, arguments.output, refine=arguments.refine, title=_title(scene, arguments), **options)

@@ -19,6 +19,7 @@ from ..stiffness.curve import StiffnessCurve
 from ..stiffness.inputs import by_gear, forces_of, two_materials, why_solid
 from ..stiffness.methods import METHODS, ROWS, fitted
 from ..stiffness.solve import mesh_stiffness
+from ..units import in_newton_per_um
 from .own_model import OwnModel, own_curve, own_models
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
@@ -55,15 +56,15 @@ class Comparison:
             )
 
     def table(self) -> str:
-        """Markdown table: per zone the reference and every formulation with its error; last row the seconds."""
+        """Markdown table: per zone the reference [N/um] and every formulation with its error; last row the seconds."""
         names = list(self.curves)
         lines = [
-            "| zone | " + " | ".join([f"{names[0]} [N/m] | estimate", *(f"{n} [N/m] | error" for n in names[1:])]) + " |",
+            "| zone | " + " | ".join([f"{names[0]} [N/um] | estimate", *(f"{n} [N/um] | error" for n in names[1:])]) + " |",
             "|---" * (2 * len(names) + 1) + "|",
         ]
         for zone, truth, doubt, others in self.rows():
-            cells = [f"{k:.4g} | {100 * error:+.1f} %" for k, error in others.values()]
-            lines.append(f"| {zone} | " + " | ".join([f"{truth:.4g} | ± {100 * doubt:.2f} %", *cells]) + " |")
+            cells = [f"{in_newton_per_um(k)} | {100 * error:+.1f} %" for k, error in others.values()]
+            lines.append(f"| {zone} | " + " | ".join([f"{in_newton_per_um(truth)} | ± {100 * doubt:.2f} %", *cells]) + " |")
         cost = [f"{self.seconds[names[0]]:.3f} | ", *(f"{self.seconds[n]:.4f} | " for n in names[1:])]
         lines.append("| seconds | " + " | ".join(cost) + " |")
         return "\n".join(lines)

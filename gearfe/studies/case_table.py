@@ -11,6 +11,7 @@ from ..scene.verdicts import judge, text
 from ..stiffness.inputs import overlap, why_solid
 from ..stiffness.methods import METHODS, SUMS, fitted
 from ..stiffness.solve import mesh_stiffness
+from ..units import in_newton_per_um
 
 PHASES = 32  # of the cycle looked at
 
@@ -81,14 +82,14 @@ class CaseTable:
         """Markdown: per pair and case the reference, and every method's error of the mean and of the maximum."""
         others = [name for name in self.methods if name != self.reference]
         lines = [
-            f"| pair | case | {self.reference} mean | max [GN/m] | "
+            f"| pair | case | {self.reference} mean [N/um] | max [N/um] | "
             + " | ".join(f"{name} mean | max" for name in others) + " |",
             "|---" * (4 + 2 * len(others)) + "|",
         ]  # fmt: skip
         for pair, case in self.cases():
             truth = self.curves[pair, case, self.reference]
             cells = [_percent(error, "+.1f") for name in others for error in self.errors(pair, case, name)[:2]]
-            head = [pair, case or "healthy", f"{truth.mean / 1e9:.4f}", f"{truth.largest / 1e9:.4f}"]
+            head = [pair, case or "healthy", in_newton_per_um(truth.mean, 5), in_newton_per_um(truth.largest, 5)]
             lines.append("| " + " | ".join([*head, *cells]) + " |")
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
         return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
