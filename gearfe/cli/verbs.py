@@ -129,8 +129,8 @@ def _compare_cases(scene, arguments, cases):
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    with working("every case by every method") as tell:
-        result = case_table(scene, cases, compute=arguments.reference, progress=tell)
+    with working("every case by every method"):
+        result = case_table(scene, cases, compute=arguments.reference)
     print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
     print(result.table())
@@ -199,14 +199,20 @@ def dynamics(arguments):
 def signal(arguments):
     """``gearfe signal``."""
     from ..signal.signal_file import read_signal
+    from ..steps import part, steps
     from ..studies.vibration import analyse
 
     _check_outputs(arguments, plot="picture", kurtogram="picture")
-    read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
-    signals = {one.name: one for one in read}
-    if len(signals) < len(read):
-        raise ValueError("two files have the same name: their cases could not be told apart; rename one")
-    _print_analysis(analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name), arguments)
+    options = {"column": arguments.column, "rate": arguments.rate, "unit": arguments.unit}
+    with working("reading and spectra"):
+        with part("", 0.0, 0.5):
+            read = [read_signal(file, **options) for file in steps(arguments.file, lambda file: f"reading {file}")]
+        signals = {one.name: one for one in read}
+        if len(signals) < len(read):
+            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
+        with part("spectra and indicators", 0.5, 1.0):
+            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name)
+    _print_analysis(found, arguments)
 
 
 def _print_analysis(report, arguments):
