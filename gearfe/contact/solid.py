@@ -16,6 +16,7 @@ from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
+from ..steps import part, steps
 from .bodies import bodies_of
 from .cells import Cells
 from .phase_contact import REACH, PhaseContact
@@ -136,7 +137,10 @@ def pair_stiffness3d(
 
     def solve(model):
         flexible = partial(model, neighbours=contact.neighbours)
-        return _solved(contact, phase, bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible))
+        with part("", 0.0, 0.5):
+            bodies = bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible)
+        with part("", 0.5, 1.0):
+            return _solved(contact, phase, bodies)
 
     solved = solve(model or energy(order, 0))
     if error:
@@ -146,7 +150,7 @@ def pair_stiffness3d(
 
 def _solved(contact, phase, bodies):
     cells, approach, reach, closed = [], np.zeros(phase.size), None, []
-    for i, at in enumerate(phase.tolist()):
+    for i, at in enumerate(steps(phase.tolist())):
         own, approach[i], shut = contact.solve(at, bodies, reach)
         closed += [i] if shut else []
         cells.append(own)

@@ -16,6 +16,7 @@ from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import expected_lines, find_lines
+from ..steps import part, steps
 
 FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
 UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
@@ -93,12 +94,17 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
         warnings.warn(
             "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
         )
-    made = {
-        name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
-        for name in ("healthy", *([case] if case else []))
-    }
+    names = ("healthy", *([case] if case else []))
+    with part("", 0.0, 0.5):
+        made = {
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+            for name in steps(names, lambda name: f"stiffness curves, {name}")
+        }
     rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
-    return {name: recorded(one, duration, rate, method=method) for name, one in made.items()}
+    with part("", 0.5, 1.0):
+        return {
+            name: recorded(made[name], duration, rate, method=method) for name in steps(names, lambda name: f"motion, {name}")
+        }
 
 
 def recorded(machine, duration, rate, *, method="fast"):
@@ -123,8 +129,11 @@ def recorded(machine, duration, rate, *, method="fast"):
     decay = slowest_decay(machine)
     need = -math.log(FREE) / decay if decay else math.inf
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    before = simulate(machine, settle, rate=1 / settle)
-    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
+    whole = settle + duration
+    with part("", 0.0, settle / whole):
+        before = simulate(machine, settle, rate=1 / settle)
+    with part("", settle / whole, 1.0):
+        out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 
