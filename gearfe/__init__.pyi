@@ -61,11 +61,13 @@ from .signal.series import decimate as decimate
 from .signal.series import envelope as envelope
 from .signal.series import integrate as integrate
 from .signal.signal_file import read_signal as read_signal
+from .signal.signal_file import read_signals as read_signals
 from .signal.spectra import power_spectral_density as power_spectral_density
 from .signal.spectra import spectrum as spectrum
 from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectrum
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
+from .signal.tachometer import with_tachometer as with_tachometer
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness

@@ -21,7 +21,7 @@ def test_a_saved_response_is_read_as_a_signal(tmp_path, suffix):
     assert got.unit == "N"
     assert_allclose(got.rate, 1e5, rtol=1e-9)
     assert_allclose(got.values, response["force mesh"], rtol=1e-12)
-    with pytest.raises(ValueError, match=r"'pair\.x', 'force mesh'"):
+    with pytest.raises(ValueError, match=r"'pair\.x' \[m\], 'force mesh' \[N\]"):
         gf.read_signal(path)
 
 
