@@ -45,10 +45,13 @@ from .pictures.stiffness_plots import plot_contact as plot_contact
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
+from .pictures.vibration_plots import plot_spectrogram as plot_spectrogram
 from .reports.page import report as report
 from .scene.load import load_scene as load_scene
 from .scene.new import new_scene as new_scene
 from .signal.demodulation import demodulate as demodulate
+from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
+from .signal.gear_indicators import gear_indicators as gear_indicators
 from .signal.housing import housing_signal as housing_signal
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
@@ -68,6 +71,8 @@ from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectr
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
 from .signal.tachometer import with_tachometer as with_tachometer
+from .signal.time_frequency import cepstrum as cepstrum
+from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness

@@ -234,8 +234,8 @@ def read_mat(path):
             EOFError,
             IndexError,
             KeyError,
-            OverflowError,
             MemoryError,
+            ArithmeticError,
             zlib.error,
         ) as error:
             raise ValueError(f"{path} is not a MATLAB file: {error}") from error
