@@ -9,27 +9,14 @@ import math
 
 import numpy as np
 
-from ..machine.tables import natural_frequencies
 from .fixed_step import fixed_steps
+from .propagator import default_step, is_bent
 
-STEPS = 80  # per mesh cycle, at first
-SHARE = 0.35  # of the period of the stiffest mesh, at first
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to half the step: of order four, and where local halving rules
 TURNS = ("theta", "tilt_x", "tilt_y")
-
-
-def default_step(machine):
-    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
-
-    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
-    """
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
-    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
-    return 1 / max(STEPS * highest, top / SHARE)
 
 
 def difference(one, two):
@@ -89,7 +76,7 @@ def chosen_step(machine, duration, initial=None, numba=None):
     dt : float
         [s]
     error : float
-        Difference of displacements and mesh forces at half the step, the larger of `difference`, times 1.2.
+        Difference of displacements and mesh forces at half the step, the larger of `difference`, times `SMOOTH` or `ROUGH`.
     length : float
         Of the stretch [s].
     """
@@ -113,7 +100,7 @@ def chosen_step(machine, duration, initial=None, numba=None):
 
 
 def estimate(machine, duration, h, initial=None, numba=None):
-    """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times 1.2.
+    """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times `SMOOTH` or `ROUGH`.
 
     Returns
     -------
@@ -128,4 +115,4 @@ def estimate(machine, duration, h, initial=None, numba=None):
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     one, two = (fixed_steps(machine, length, c * steps, initial, every=c, numba=numba, start=start) for c in (1, 2))
-    return 1.2 * max(difference(one, two)), two.stats["losses"] > 0, length
+    return (ROUGH if is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length
