@@ -61,8 +61,8 @@ def is_affine(machine):
     return bool(plain.all()) and smooth
 
 
-def plan(machine, h, x=None):
-    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]."""
+def plan(machine, h, x=None, adapt=False):
+    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]; `adapt`: with what is `allowed`."""
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K, machine.mass)
     n = len(squared)
@@ -87,7 +87,7 @@ def plan(machine, h, x=None):
     P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     count = 1 + (LEVELS if (law["backlash"] > 0).any() or any(one.breaks.size > 1 for one in machine.loads) else 0)
     levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
-    local = is_bent(machine) and count > 1
+    local = adapt and is_bent(machine) and count > 1
     allowed = LOCAL * (h / default_step(machine)) ** 3 if local else math.inf
     scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
     return Plan(basis, inverse, P, affine, k, c, h, levels, allowed, scale)

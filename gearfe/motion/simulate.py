@@ -50,12 +50,14 @@ def simulate(
     duration : float
         [s]
     method : str
-        ``"fast"``: `gearfe.motion.exponential`, fixed steps that are halved about changes of contact. Or a method of
+        ``"fast"``: `gearfe.motion.exponential`, fixed steps that are halved about changes of contact, and under a law of contact
+        that is not linear also where flanks come into contact. Or a method of
         `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
     rate : float, optional
         Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
     step : float, optional
-        Longest step of the fast path [s]; rounded down to divide the interval of the output. Its error is estimated. Default: a
+        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output. Its
+        error is estimated. Default: a
         step whose error on a short stretch is at most 7e-4 of the range (`gearfe.motion.step_control.chosen_step`); where
         contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
         disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
@@ -147,10 +149,10 @@ class _Runs:
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
         self.own, self.start, self.numba = own, start, numba
 
-    def __call__(self, every, state=None):
+    def __call__(self, every, state=None, adapt=False):
         """Run of `every` steps for each output."""
         state = self.state if state is None else state
-        options = {"every": every, "numba": self.numba, "start": self.start}
+        options = {"every": every, "numba": self.numba, "start": self.start, "adapt": adapt}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
@@ -182,15 +184,15 @@ class _Runs:
         def told(one, **more):
             return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
 
-        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba)
+        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba, adapt=True)
         every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
-        out = self(every)
+        out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
             return told(out, error=doubt, error_seconds=length)
         length = float(self.duration)
         for _ in range(FINER):
             every *= 2
-            finer = self(every)
+            finer = self(every, adapt=True)
             doubt = max(difference(out, finer))
             out = finer
             if doubt <= ALLOWED or not out.stats["losses"]:
@@ -198,7 +200,7 @@ class _Runs:
         h = out.stats["dt"]
         why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
         rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
-        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest)), out))
+        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out))
         if grown > GROWN:
             why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
             why += " for so long; trust its averages and spectra, or shorten the run"

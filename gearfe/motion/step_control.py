@@ -57,7 +57,7 @@ def stretch(machine, duration):
     return max(0.0, min(start, duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None):
+def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -70,6 +70,8 @@ def chosen_step(machine, duration, initial=None, numba=None):
     initial : ndarray, shape (2n,), optional
         State from which the stretch starts; default: at rest.
     numba : bool, optional
+    adapt : bool
+        Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
 
     Returns
     -------
@@ -83,7 +85,7 @@ def chosen_step(machine, duration, initial=None, numba=None):
 
     def error(h):
         try:
-            return estimate(machine, duration, h, initial, numba)[:2]
+            return estimate(machine, duration, h, initial, numba, adapt=adapt)[:2]
         except RuntimeError:
             if h < 0.9 * low:
                 raise
@@ -99,7 +101,7 @@ def chosen_step(machine, duration, initial=None, numba=None):
     return h, doubt, length
 
 
-def estimate(machine, duration, h, initial=None, numba=None):
+def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
     """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times `SMOOTH` or `ROUGH`.
 
     Returns
@@ -114,5 +116,6 @@ def estimate(machine, duration, h, initial=None, numba=None):
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
-    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, numba=numba, start=start) for c in (1, 2))
-    return (ROUGH if is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length
+    options = {"numba": numba, "start": start, "adapt": adapt}
+    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
+    return (ROUGH if adapt and is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length
