@@ -58,6 +58,11 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
 
 
+def is_ready():
+    """Whether the loop is compiled and loaded in this process."""
+    return bool(getattr(_run, "signatures", ()))
+
+
 def _matrices(plan, kept, still):
     """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
     wide = still.size

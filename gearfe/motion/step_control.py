@@ -57,7 +57,7 @@ def stretch(machine, duration):
     return max(0.0, min(start, duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False):
+def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -72,6 +72,8 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False):
     numba : bool, optional
     adapt : bool
         Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
+    watch : callable, optional
+        Gets the seconds that a simulated second takes at each step tried; may raise.
 
     Returns
     -------
@@ -85,11 +87,14 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False):
 
     def error(h):
         try:
-            return estimate(machine, duration, h, initial, numba, adapt=adapt)[:2]
+            doubt, lost, _, cost = estimate(machine, duration, h, initial, numba, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
             return math.inf, False
+        if watch is not None:
+            watch(cost)
+        return doubt, lost
 
     length = stretch(machine, duration)[1]
     h = min(default_step(machine), length)
@@ -111,6 +116,8 @@ def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
         Whether contact is lost there.
     length : float
         Of the stretch [s].
+    cost : float
+        Seconds for a simulated second at this step, from what the run at half of it took longer.
     """
     start, length = stretch(machine, duration)
     if initial is None:
@@ -118,4 +125,5 @@ def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"numba": numba, "start": start, "adapt": adapt}
     one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
-    return (ROUGH if adapt and is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length
+    cost = max(two.stats["seconds"] - one.stats["seconds"], 0.0) / length
+    return (ROUGH if adapt and is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length, cost

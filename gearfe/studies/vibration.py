@@ -1,9 +1,7 @@
 """A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
 
 import math
-import warnings
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -61,7 +59,7 @@ class Analysis:
         return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
 
 
-def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
     """Responses of a scene's machine, healthy and, if asked for, in a case of damage.
 
     Parameters
@@ -74,6 +72,8 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
         Of `gearfe.simulate`.
     phases : int
         Of the stiffness curves, per mesh cycle.
+    progress : callable, optional
+        Of `gearfe.simulate`.
 
     Returns
     -------
@@ -89,19 +89,15 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     damage = [] if scene.machine.get("contact") == "impact" else found
     along = any(isinstance(one, Pit) or not one.through for one in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
-    if scene.machine.get("contact") == "impact" and method == "fast" and find_spec("numba") is None:
-        warnings.warn(
-            "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
-        )
     made = {
         name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
         for name in ("healthy", *([case] if case else []))
     }
     rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
-    return {name: recorded(one, duration, rate, method=method) for name, one in made.items()}
+    return {name: recorded(one, duration, rate, method=method, progress=progress) for name, one in made.items()}
 
 
-def recorded(machine, duration, rate, *, method="fast"):
+def recorded(machine, duration, rate, *, method="fast", progress=None):
     """Response of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
@@ -114,6 +110,7 @@ def recorded(machine, duration, rate, *, method="fast"):
     duration, rate : float
         Of what is kept [s, Hz].
     method : str
+    progress : callable, optional
         Of `gearfe.simulate`.
 
     Returns
@@ -123,8 +120,9 @@ def recorded(machine, duration, rate, *, method="fast"):
     decay = slowest_decay(machine)
     need = -math.log(FREE) / decay if decay else math.inf
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    before = simulate(machine, settle, rate=1 / settle)
-    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
+    before = simulate(machine, settle, rate=1 / settle, progress=progress)
+    start = before.q[-1], before.v[-1]
+    out = simulate(machine, duration, rate=rate, method=method, initial=start, start=settle, progress=progress)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 
