@@ -174,8 +174,8 @@ def dynamics(arguments):
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     _print_scene(scene)
-    with working("stiffness curves and response"):
-        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
+    with working("stiffness curves and response") as tell:
+        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method, progress=tell)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")
