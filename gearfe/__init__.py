@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`;
-`stiffness`; `machine`; `motion`, `stress`; `studies`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
+`stiffness`; `machine`; `motion`, `stress`; `studies`; `sweeps`; `reports`; `cli`.
 """
 
 import importlib
@@ -33,6 +33,7 @@ _HOME = {
     "batch": "gearfe.studies.batches",
     "cepstrum": "gearfe.signal.time_frequency",
     "compare": "gearfe.studies.by_zone",
+    "curve_bands": "gearfe.sweeps.effects",
     "demodulate": "gearfe.signal.demodulation",
     "decimate": "gearfe.signal.series",
     "envelope": "gearfe.signal.series",
@@ -58,6 +59,7 @@ _HOME = {
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",
+    "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",
     "new_scene": "gearfe.scene.new",
     "order_spectrum": "gearfe.signal.orders",
@@ -77,6 +79,9 @@ _HOME = {
     "read_signal": "gearfe.signal.signal_file",
     "read_signals": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
+    "Runs": "gearfe.sweeps.runs",
+    "open_runs": "gearfe.sweeps.runs",
+    "plan_sweep": "gearfe.sweeps.plan",
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
@@ -84,9 +89,12 @@ _HOME = {
     "spectral_kurtosis": "gearfe.signal.kurtogram",
     "TransmissionError": "gearfe.stiffness.transmission_error",
     "transmission_error": "gearfe.stiffness.transmission_error",
+    "sobol_indices": "gearfe.sweeps.effects",
     "spectrum": "gearfe.signal.spectra",
+    "told_apart": "gearfe.sweeps.effects",
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
+    "sweep": "gearfe.sweeps.run",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
     "write_contact_inp": "gearfe.elements.contact_deck",

@@ -84,6 +84,14 @@ from .studies.by_zone import compare as compare
 from .studies.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
+from .sweeps.effects import curve_bands as curve_bands
+from .sweeps.effects import main_effects as main_effects
+from .sweeps.effects import sobol_indices as sobol_indices
+from .sweeps.effects import told_apart as told_apart
+from .sweeps.plan import plan_sweep as plan_sweep
+from .sweeps.run import sweep as sweep
+from .sweeps.runs import Runs as Runs
+from .sweeps.runs import open_runs as open_runs
 
 __all__: list[str]
 
