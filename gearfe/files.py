@@ -262,7 +262,7 @@ class Format(NamedTuple):
 FORMATS = {
     ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
     ".txt": Format((), ("signal",), None, read_text),
-    ".npz": Format(("curve", "response"), ("signal",), write_npz, read_npz),
+    ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
     ".json": Format(("curve",), (), write_json, None),
     ".png": Format(("picture", "stress")),

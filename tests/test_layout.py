@@ -23,6 +23,7 @@ FLOORS = (  # from the ground: a room imports only from floors below its own
     ("gearfe/machine",),
     ("gearfe/motion", "gearfe/stress"),
     ("gearfe/studies",),
+    ("gearfe/surrogates",),
     ("gearfe/reports",),
     ("gearfe/cli",),
     ("validation",),
