@@ -106,12 +106,12 @@ class Space:
         values = self.held | dict(point)
         gears = []
         for gear, number in ((self.pair.gear_1, 1), (self.pair.gear_2, 2)):
-            new = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
+            new: dict[str, Any] = {"z": int(values.get(f"z_{number}", gear.z)), "x": values.get(f"x_{number}", gear.x)}
             bore = values.get(f"bore_{number}")
             if bore is not None:
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
             gears.append(replace(gear, **new))
-        pair = GearPair(gears[0], gears[1], None if any(name in values for name in SHAPE) else self.pair.a)
+        pair = GearPair(*gears) if any(name in values for name in SHAPE) else GearPair(gears[0], gears[1], self.pair.a)
         out: dict[str, Any] = {"pair": pair, "force": values["force"]}
         if self.cracked:
             crack = Crack(level=values["level"])

@@ -1,4 +1,4 @@
-"""`Surrogate`: the stiffness curve of `ritz` from fitted polynomials, within stated ranges, with the error it was found to have."""
+"""`Surrogate`: the stiffness curve of `ritz` from polynomials, within stated ranges, with the error it was found to have."""
 
 import json
 import os
