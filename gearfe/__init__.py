@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
-`motion`, `stress`; `studies`; `reports`; `cli`.
+`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`; `stiffness`;
+`machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -73,6 +73,9 @@ _HOME = {
     "read_model": "gearfe.studies.model_file",
     "read_signal": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
+    "Runs": "gearfe.sweeps.runs",
+    "open_runs": "gearfe.sweeps.runs",
+    "plan_sweep": "gearfe.sweeps.plan",
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
@@ -82,6 +85,7 @@ _HOME = {
     "spectrum": "gearfe.signal.spectra",
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
+    "sweep": "gearfe.sweeps.run",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
     "write_contact_inp": "gearfe.elements.contact_deck",

@@ -79,6 +79,10 @@ from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
 from .surrogates.fit import fit_surrogate as fit_surrogate
 from .surrogates.surrogate import Surrogate as Surrogate
+from .sweeps.plan import plan_sweep as plan_sweep
+from .sweeps.run import sweep as sweep
+from .sweeps.runs import Runs as Runs
+from .sweeps.runs import open_runs as open_runs
 
 __all__: list[str]
 

@@ -111,7 +111,8 @@ class Space:
             if bore is not None:
                 new["r_bore"] = bore * replace(gear, **new, r_bore=0.1 * gear.m_n).r_f
             gears.append(replace(gear, **new))
-        pair = GearPair(*gears) if any(name in values for name in SHAPE) else GearPair(gears[0], gears[1], self.pair.a)
+        one, two = gears
+        pair = GearPair(one, two) if any(name in values for name in SHAPE) else GearPair(one, two, self.pair.a)
         out: dict[str, Any] = {"pair": pair, "force": values["force"]}
         if self.cracked:
             crack = Crack(level=values["level"])
