@@ -2,7 +2,7 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
-`stiffness`; `machine`; `motion`, `stress`; `studies`; `sweeps`; `reports`; `cli`.
+`stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -29,6 +29,7 @@ _HOME = {
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",
+    "Surrogate": "gearfe.surrogates.surrogate",
     "ToothDamage": "gearfe.machine.gear_mesh",
     "batch": "gearfe.studies.batches",
     "cepstrum": "gearfe.signal.time_frequency",
@@ -53,6 +54,7 @@ _HOME = {
     "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",
     "expected_lines": "gearfe.signal.spectral_lines",
+    "fit_surrogate": "gearfe.surrogates.fit",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",

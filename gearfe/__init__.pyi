@@ -88,6 +88,8 @@ from .sweeps.effects import curve_bands as curve_bands
 from .sweeps.effects import main_effects as main_effects
 from .sweeps.effects import sobol_indices as sobol_indices
 from .sweeps.effects import told_apart as told_apart
+from .surrogates.fit import fit_surrogate as fit_surrogate
+from .surrogates.surrogate import Surrogate as Surrogate
 from .sweeps.plan import plan_sweep as plan_sweep
 from .sweeps.run import sweep as sweep
 from .sweeps.runs import Runs as Runs
