@@ -11,19 +11,22 @@ from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.mesh.holes import holed_sector
 from geometry.mesh.solid import solid
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at
+from geometry.tooth.profile import arc_at, cartesian, flank
 
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from ..material import Material
 from .contact_deck import PINION, ContactDeck, _posed
-from .solid_deck import Part, element_lines, node_lines, part_of, sides_of, surface_lines
+from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
+TETS = {"far": 2.5, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
+STRETCH = 3.0  # tets are so many times longer along the width
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
@@ -43,10 +46,15 @@ class SolidDeck(ContactDeck):
 
 @dataclass(frozen=True, slots=True)
 class Touching:
-    """Tooth pairs that may touch: `order`, `arcs` by gear ``(first, last)`` [mm] of each, `width` half of it, slave gear."""
+    """Tooth pairs that may touch, n of them.
+
+    `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths there
+    [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side.
+    """
 
     order: list[int]
-    arcs: tuple[list[tuple[float, float]], list[tuple[float, float]]]
+    heights: list[NDArray[np.float64]]
+    rolls: tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]
     width: list[float]
     slave: list[int]
 
@@ -60,21 +68,19 @@ def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> 
 
 def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials) -> Touching:
     """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
-    common = min(pair.gear_1.b, pair.gear_2.b)
-    at = (nominal_at(pair, phase, np.linspace(0.0, common, SECTIONS)) - pair.path[0]) / pair.p_bt
-    out = Touching([], ([], []), [], [])
-    found = pair.contacts(at)
+    heights = np.linspace(0.0, min(pair.gear_1.b, pair.gear_2.b), SECTIONS)
+    found = pair.contacts((nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
+    out = Touching([], [], ([], []), [], [])
     for k, order in enumerate(found.order.tolist()):
         near = found.gap[:, k] < REACH * approach
         if not near.any():
             continue
         rolls = found.roll_1[near, k], found.roll_2[near, k]
-        radius = float(found.radius[near, k].max())
         out.order.append(order)
-        out.width.append(float(half_width(line_load, radius, contact_modulus(materials))))
-        for gear, roll, arcs in zip((pair.gear_1, pair.gear_2), rolls, out.arcs, strict=True):
-            arc = arc_at(gear, roll)
-            arcs.append((float(arc.min()), float(arc.max())))
+        out.heights.append(heights[near])
+        out.rolls[0].append(rolls[0])
+        out.rolls[1].append(rolls[1])
+        out.width.append(float(half_width(line_load, float(found.radius[near, k].max()), contact_modulus(materials))))
         tips = [np.isclose(roll, gear.roll_a).any() for gear, roll in zip((pair.gear_1, pair.gear_2), rolls, strict=True)]
         out.slave.append(int(tips[1] and not tips[0]))
     return out
@@ -98,18 +104,27 @@ def write_contact_solid(
     """The deck of `gearfe.elements.contact_inp.write_contact_inp` for gears of finite width; `damage` in each gear's own frame."""
     common = min(pair.gear_1.b, pair.gear_2.b)
     found = touching(pair, phase, approach, line_load, materials)
-    parts, angles = [], []
+    parts = []
     for number, own in enumerate(damage):
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
-        teeth = {(1, -1)[number] * order % gear.z: k for k, order in enumerate(found.order)}
-        patches = {tooth: [_patch(found, number, k, per_width * refine)] for tooth, k in teeth.items()}
-        body = _hexahedra(gear, own, patches, gear.b / layers, refine)
         low = -(gear.b - common) / 2
-        angles.append(float(pair.turn(nominal_at(pair, phase, low))[number]))
+        teeth = [(1, -1)[number] * order % gear.z for order in found.order]
+        if any(isinstance(one, Pit) for one in own):
+            cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
+            body = _holed(gear, own, cut, refine)
+        else:
+            patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
+            fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
+            body = part_of(
+                solid(
+                    gear, layer=gear.b / layers, loaded=teeth, cracks=tuple(own), patches=patches, refine=refine, sizes=SIZES, fine=fine
+                )
+            )
+        turn = float(pair.turn(nominal_at(pair, phase, low))[number])
         mirror = (1, pair.outward)[number]
-        x, y = _posed(body.points[:2], angles[-1], mirror)
+        x, y = _posed(body.points[:2], turn, mirror)
         place = np.array([x, y + (0.0, pair.centre_2)[number], body.points[2] + low])
-        parts.append(part_of(body, place, mirrored=mirror < 0))
+        parts.append(placed(body, place, mirrored=mirror < 0))
     share = PINION[pose]
     turned = (share * approach / pair.gear_1.r_b, pair.outward * (1 - share) * approach / pair.gear_2.r_b)
     slaves = {}
@@ -131,20 +146,38 @@ def _flank(pair, number, order):
     return f"flank {(1, -1)[number] * order % gear.z}"
 
 
-def _patch(found, number, k, per_width):
-    """Place and edge length of the strip swept by a contact line."""
-    (low, high), a = found.arcs[number][k], found.width[k]
-    return low - STRIP * a, high + STRIP * a, a / per_width
+def _patch(gear, found, number, k, per_width):
+    """Place on the flank and edge length of the strip that a contact line sweeps [mm]."""
+    arcs, a = arc_at(gear, found.rolls[number][k]), found.width[k]
+    return float(arcs.min()) - STRIP * a, float(arcs.max()) + STRIP * a, a / per_width
 
 
-def _hexahedra(gear: Gear, damage, patches, layer, refine):
-    """Mesh of one gear; ValueError if it has pits."""
-    if any(isinstance(one, Pit) for one in damage):
-        raise ValueError("pits cannot be cut out of hexahedra")
-    fine = [(0.0, 0.0, END * layer), (gear.b, gear.b, END * layer)]
-    return solid(
-        gear, layer=layer, loaded=tuple(patches), cracks=tuple(damage), patches=patches, refine=refine, sizes=SIZES, fine=fine
-    )
+def _strip(gear, found, number, k, tooth, low, per_width):
+    """The contact line on a tooth in the frame that turns with the helix, how far around it the mesh is finer, edge length [mm]."""
+    radius, angle = flank(gear, found.rolls[number][k])
+    line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
+    return line, 1.5 * found.width[k], found.width[k] / per_width
+
+
+def _holed(gear: Gear, damage, strips, refine) -> Part:
+    """A whole gear in tets, its pits cut out; its damaged tooth is tooth 0 while it is meshed."""
+    cracks = [one for one in damage if isinstance(one, Crack)]
+    if len(cracks) > 1 or not all(crack.through for crack in cracks):
+        raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
+    tooth = damage[0].tooth % gear.z
+    turn = 2 * math.pi * tooth / gear.z
+    own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
+    options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
+    made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
+    body = holed_part(made)
+    points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
+    faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
+    return replace(body, points=points, faces=faces)
+
+
+def _renamed(name, tooth, z):
+    """Flank of a mesh whose tooth 0 is tooth `tooth` of the gear."""
+    return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
 
 
 def _from_centre(pair, part, number):

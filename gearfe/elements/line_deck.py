@@ -95,7 +95,7 @@ def write_line_inp(
         )
     mesh = mesh_patches(gear, patches, cracks=tuple(cracks), refine=refine, layer=layer)
     load = line_load * gear.b * patch_loads(mesh, patches, 0).reshape(-1, 3)
-    part = part_of(mesh, mesh.points)
+    part = part_of(mesh)
     with written(path) as name:
         Path(name).write_text("\n".join(_text(part, material, load)), encoding="ascii")
     return LineDeck(part, load, line_load * gear.b)
