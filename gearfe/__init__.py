@@ -99,8 +99,9 @@ _HOME = {
     "sweep": "gearfe.sweeps.run",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
-    "write_contact_inp": "gearfe.elements.contact_deck",
+    "write_contact_inp": "gearfe.elements.contact_inp",
     "write_inp": "gearfe.elements.deck",
+    "write_line_inp": "gearfe.elements.line_deck",
 }
 __all__ = sorted(_HOME)
 
