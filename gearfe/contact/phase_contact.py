@@ -52,7 +52,7 @@ class PhaseContact:
 
     @property
     def neighbours(self):
-        """Largest difference of the orders of pairs in contact at the same phase, as far as the first guess of the approach goes."""
+        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach."""
         ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
         return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.reach)) / self.pair.p_bt))
 
@@ -66,8 +66,8 @@ class PhaseContact:
         ----------
         phase : float
         bodies : callable
-            ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears by half, with where their
-            contact begins on them [mm]; at least n teeth after each loaded one are coupled to it.
+            ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears by half, with where
+            their contact begins on them [mm]; at least n teeth after each loaded one are coupled to it.
         reach : float, optional
             Gap [mm] to look at first.
 

@@ -135,7 +135,7 @@ def pair_stiffness3d(
         return flexible
 
     def solve(model):
-        @lru_cache(maxsize=None)
+        @lru_cache(maxsize=8)
         def bodies(neighbours):
             flexible = partial(model, neighbours=neighbours)
             return bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible)
