@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`; `stiffness`;
-`machine`; `motion`, `stress`; `studies`; `sweeps`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
+`stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -29,8 +29,10 @@ _HOME = {
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",
+    "Surrogate": "gearfe.surrogates.surrogate",
     "ToothDamage": "gearfe.machine.gear_mesh",
     "batch": "gearfe.studies.batches",
+    "cepstrum": "gearfe.signal.time_frequency",
     "compare": "gearfe.studies.by_zone",
     "curve_bands": "gearfe.sweeps.effects",
     "demodulate": "gearfe.signal.demodulation",
@@ -41,14 +43,18 @@ _HOME = {
     "disc": "gearfe.machine.member",
     "error_map": "gearfe.studies.errormap",
     "gear_pair": "gearfe.machine.gear_pair",
+    "gear_indicator_table": "gearfe.signal.gear_indicators",
+    "gear_indicators": "gearfe.signal.gear_indicators",
     "herringbone_planetary": "gearfe.machine.herringbone_planetary",
     "natural_frequencies": "gearfe.machine.tables",
     "simulate": "gearfe.motion.simulate",
     "single_mesh": "gearfe.machine.single_mesh",
     "stage_phases": "gearfe.machine.planetary",
     "steady_state": "gearfe.motion.steady",
+    "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",
     "expected_lines": "gearfe.signal.spectral_lines",
+    "fit_surrogate": "gearfe.surrogates.fit",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
@@ -66,12 +72,14 @@ _HOME = {
     "plot_contact": "gearfe.pictures.stiffness_plots",
     "plot_kurtogram": "gearfe.pictures.vibration_plots",
     "plot_phase": "gearfe.pictures.vibration_plots",
+    "plot_spectrogram": "gearfe.pictures.vibration_plots",
     "plot_spectra": "gearfe.pictures.vibration_plots",
     "poincare_section": "gearfe.motion.portrait",
     "power_spectral_density": "gearfe.signal.spectra",
     "pulses": "gearfe.machine.tables",
     "read_model": "gearfe.studies.model_file",
     "read_signal": "gearfe.signal.signal_file",
+    "read_signals": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
     "Runs": "gearfe.sweeps.runs",
     "open_runs": "gearfe.sweeps.runs",
@@ -79,6 +87,7 @@ _HOME = {
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
+    "spectrogram": "gearfe.signal.time_frequency",
     "spectral_kurtosis": "gearfe.signal.kurtogram",
     "TransmissionError": "gearfe.stiffness.transmission_error",
     "transmission_error": "gearfe.stiffness.transmission_error",
@@ -91,8 +100,9 @@ _HOME = {
     "sweep_report": "gearfe.reports.sweep_page",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
-    "write_contact_inp": "gearfe.elements.contact_deck",
+    "write_contact_inp": "gearfe.elements.contact_inp",
     "write_inp": "gearfe.elements.deck",
+    "write_line_inp": "gearfe.elements.line_deck",
 }
 __all__ = sorted(_HOME)
 

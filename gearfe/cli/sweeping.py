@@ -14,13 +14,8 @@ def sweep(arguments):
         print(plan.text())
         return
     options = {"workers": arguments.workers, "scheduler": arguments.scheduler, "mixed": arguments.mixed}
-    with working("sweep") as tell:
-        runs = run(
-            arguments.study,
-            arguments.output,
-            progress=lambda done, total: tell.step(f"{done} of {total}", done, total),
-            **options,
-        )
+    with working("sweep"):
+        runs = run(arguments.study, arguments.output, **options)
     table = runs.table(["status", "error", "seconds"])
     count = table["status"].value_counts()
     print(f"{runs.about['title']}: {len(table)} cases, {', '.join(f'{n} {name}' for name, n in count.items())}")

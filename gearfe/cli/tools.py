@@ -16,10 +16,9 @@ def report(arguments):
 
         with working("report"):
             made = sweep_report(arguments.scene, arguments.output)
-        print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
-        return
-    with working("report") as tell:
-        made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration, tell=tell)
+    else:
+        with working("report"):
+            made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration)
     print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
+from ..steps import reached
 from ..stiffness.cache import made_by
 from ..store.folder import begin, locked
 from ..store.shards import check_shards, shard_names, write_shard
@@ -73,19 +74,26 @@ def sweep(
         if checked.block != about["study"]["block"]:
             every, fields = blocks(checked)
         todo = _todo(folder, every)
-        total, progress = stored["cases"], progress or (lambda done, total: None)
+        total = stored["cases"]
         sizes = {one.name: len(one.numbers) for one in every}
         done = total - sum(sizes[one.name] for one in todo)
-        progress(done, total)
+        _say(done, total, progress)
         work = jobs(checked, todo, fields)
         count = min(workers or os.cpu_count() or 1, max(1, len(todo)))
         for name, content, _ in cluster(work, scheduler) if scheduler else local(work, count):
             write_shard(folder, name, content)
             done += sizes[name]
-            progress(done, total)
+            _say(done, total, progress)
     if done != total:
         raise RuntimeError(f"{total - done} of {total} cases were handed out and never came back: start the sweep again")
     return open_runs(folder)
+
+
+def _say(done, total, progress):
+    """How far it is."""
+    reached(f"{done} of {total} cases", done / total)
+    if progress is not None:
+        progress(done, total)
 
 
 def _about(study: Study, cases: int) -> dict[str, Any]:
