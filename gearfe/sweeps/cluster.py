@@ -1,5 +1,6 @@
 """Blocks over the workers of a Dask scheduler; results come back to this process, which alone writes them."""
 
+import time
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
@@ -8,6 +9,7 @@ from .blocks import Job, compute, lost, shard
 
 AHEAD = 2  # jobs handed out for each thread of the workers
 TIMEOUT = "20s"
+REFRESH = 5.0  # s between two looks at how many workers there are
 
 
 def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int]]:
@@ -32,14 +34,14 @@ def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int
     except (OSError, ValueError) as error:
         raise ValueError(f"no Dask scheduler answers at {address!r}: {error}; start one with 'dask scheduler'") from error
     with client:
-        threads = sum(client.nthreads().values())
+        threads, asked = sum(client.nthreads().values()), time.monotonic()
         if not threads:
             raise ValueError(f"the scheduler at {address} has no workers: start some with 'dask worker {address} --nthreads 1'")
         waiting = iter(jobs)
         under_way = {}
 
         def send(count):
-            for job in islice(waiting, count):
+            for job in islice(waiting, max(count, 0)):
                 future = client.submit(compute, job, pure=False)
                 under_way[future.key] = job
                 yield future
@@ -51,6 +53,8 @@ def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int
                 found = future.result()
             except KilledWorker:
                 found = shard(job, lost(job))
-            for more in send(1):
+            if time.monotonic() - asked > REFRESH:  # workers come and go
+                threads, asked = sum(client.nthreads().values()), time.monotonic()
+            for more in send(AHEAD * threads - len(under_way) if threads else 1):
                 ended.add(more)
             yield found

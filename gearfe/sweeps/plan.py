@@ -52,7 +52,7 @@ class Plan:
     def text(self) -> str:
         """Lines for people."""
         out = [
-            f"{self.cases} cases in {self.blocks} blocks",
+            f"{self.cases} cases in {self.blocks} block{'s' if self.blocks > 1 else ''}",
             f"time: about {_time(self.seconds)} of processor, {_time(self.seconds / self.workers)} with {self.workers} processes",
             f"memory: about {self.memory / 1e6:.0f} MB in each process",
             f"disk: about {_size(self.disk)}, {_size(self.free)} are free",

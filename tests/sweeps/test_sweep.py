@@ -139,7 +139,7 @@ def test_verb_plans_sweeps_and_goes_on(tmp_path, capsys):
     )
     verb = ["sweep", str(tmp_path / "s.toml"), "-o", str(tmp_path / "runs"), "--workers", "1"]
     assert main([*verb, "--dry-run"]) == 0
-    assert "3 cases in 1 blocks" in capsys.readouterr().out
+    assert "3 cases in 1 block\n" in capsys.readouterr().out
     assert not (tmp_path / "runs").exists()
     for _ in range(2):
         assert main(verb) == 0

@@ -208,8 +208,8 @@ def kills_text(found):
     return [
         "## Killed",
         "",
-        f"A sweep of {found['cases']} cases on two processes, killed (SIGKILL) at {len(found['kills'])}",
-        "random moments and each time",
+        f"A sweep of {found['cases']} cases, each its own block, on one and two processes in turn, killed (SIGKILL) at",
+        f"{len(found['kills'])} random moments and each time",
         f"started again. Blocks in the folder after each kill: {blocks}. Every file there stayed as it was, byte for byte:",
         f"**{'yes' if kept else 'NO'}**. {found['left_for_the_last']} cases were left for the last start. The",
         "store is that of an",
