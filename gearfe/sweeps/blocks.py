@@ -114,14 +114,14 @@ def jobs(study: Study, todo: Sequence[Block], fields: Mapping[str, Field]) -> li
     return [Job(small, dict(fields), block) for block in todo]
 
 
-def compute(job: Job) -> tuple[str, bytes, int]:
-    """Name, encoded shard and number of failed cases of a block."""
+def compute(job: Job) -> tuple[str, bytes, str]:
+    """Name and encoded shard of a block, and the source code that made it."""
     return shard(job, rows(job))
 
 
-def shard(job: Job, made: Sequence[Mapping[str, Any]]) -> tuple[str, bytes, int]:
-    """Name, encoded shard and number of failed cases, from the rows of a block."""
-    return job.block.name, encoded(table(made, job.fields)), sum(row["status"] != DONE for row in made)
+def shard(job: Job, made: Sequence[Mapping[str, Any]]) -> tuple[str, bytes, str]:
+    """Name and encoded shard, from the rows of a block, and the source code that made them."""
+    return job.block.name, encoded(table(made, job.fields)), _program()["source"]
 
 
 def rows(job: Job) -> list[dict[str, Any]]:

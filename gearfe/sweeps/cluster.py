@@ -12,7 +12,7 @@ TIMEOUT = "20s"
 REFRESH = 5.0  # s between two looks at how many workers there are
 
 
-def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, int]]:
+def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, str]]:
     """What `compute` gives of each job, in the order in which they end.
 
     The jobs of a worker that is lost are given to others by the scheduler; a job with which workers were lost as often as the

@@ -11,7 +11,7 @@ from .blocks import Job, compute, lost, rows, shard, single
 AHEAD = 2  # jobs handed out for each process, so that none waits
 
 
-def local(jobs: Sequence[Job], workers: int) -> Iterator[tuple[str, bytes, int]]:
+def local(jobs: Sequence[Job], workers: int) -> Iterator[tuple[str, bytes, str]]:
     """What `compute` gives of each job, in the order in which they end.
 
     Where a process ends before its job (killed, out of memory) the jobs that were under way are tried again one by one in a

@@ -80,7 +80,11 @@ def sweep(
         _say(done, total, progress)
         work = jobs(checked, todo, fields)
         count = min(workers or os.cpu_count() or 1, max(1, len(todo)))
-        for name, content, _ in cluster(work, scheduler) if scheduler else local(work, count):
+        for name, content, source in cluster(work, scheduler) if scheduler else local(work, count):
+            if source != about["made"]["source"]:
+                raise RuntimeError(
+                    f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"
+                )
             write_shard(folder, name, content)
             done += sizes[name]
             _say(done, total, progress)

@@ -109,8 +109,13 @@ def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkey
     with pytest.raises(ValueError, match="begun by another program, with source"):
         gf.sweep(small, tmp_path / "runs")
     (tmp_path / "runs" / "block-000000.parquet").unlink()
-    assert len(gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)) == 2
+    with pytest.raises(RuntimeError, match="a worker has gearfe of source"):
+        gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)
     monkeypatch.undo()
+    about = json.loads((tmp_path / "runs" / "about.json").read_text())
+    (tmp_path / "runs" / "about.json").write_text(json.dumps(about | {"made": about["made"] | {"source": "0" * 12}}))
+    assert len(gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)) == 2
+    (tmp_path / "runs" / "about.json").write_text(json.dumps(about))
     (tmp_path / "runs" / "other.parquet").write_bytes((tmp_path / "runs" / "block-000000.parquet").read_bytes())
     with pytest.raises(ValueError, match=r"other\.parquet, which is none of this study's"):
         gf.sweep(small, tmp_path / "runs")
