@@ -29,6 +29,8 @@ from .machine.pitted_planetary import pitted_planetary as pitted_planetary
 from .machine.planetary import planetary as planetary
 from .machine.planetary import stage_phases as stage_phases
 from .machine.single_mesh import single_mesh as single_mesh
+from .machine.speed import Speed as Speed
+from .machine.speed import with_speed as with_speed
 from .machine.tables import Load as Load
 from .machine.tables import Machine as Machine
 from .machine.tables import Spring as Spring
@@ -66,6 +68,7 @@ from .signal.spectra import spectrum as spectrum
 from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectrum
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
+from .signal.tachometer import tachometer_angle as tachometer_angle
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness

@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 
 from .contact_law import LAW, force, slopes
 from .gear_mesh import GearMesh
+from .speed import Speed
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
 
@@ -147,6 +148,8 @@ class Machine:
         What had to be assumed, and derived numbers to be printed (phases, frequencies).
     stages : tuple of Stage
         What spectra and errors of the machine ask for; the last one is the driven one.
+    speed : Speed, optional
+        A speed that changes (`gearfe.with_speed`); None: the frequencies stated, for ever.
 
     Attributes
     ----------
@@ -165,6 +168,7 @@ class Machine:
     loads: tuple[Load, ...] = ()
     notes: dict[str, Any] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
+    speed: Speed | None = None
     K: NDArray[np.float64] = field(init=False)
     C: NDArray[np.float64] = field(init=False)
     G: NDArray[np.float64] = field(init=False)
@@ -217,6 +221,15 @@ class Machine:
         if name not in self.dofs:
             raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
         return np.eye(len(self.dofs))[self.dofs.index(name)]
+
+    def turned(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]: what angles follow."""
+        return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed over the nominal one."""
+        return 1.0 if self.speed is None else self.speed.fastest
 
     def mean_stiffness(self) -> NDArray[np.float64]:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""

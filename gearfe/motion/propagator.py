@@ -103,7 +103,7 @@ def default_step(machine):
 
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
     """
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+    highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
     own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
     top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]

@@ -63,7 +63,7 @@ class _Run:
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law
         self.flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 20 * count + 1))
-        highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+        highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
         unit = max(2 * math.pi * highest, 1.0)  # velocities of the size of the displacements
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
         rest = machine.rest()

@@ -13,6 +13,7 @@ from ..files import Content, save_as, suffix_of
 from ..machine.contact_law import force, sided_force
 from ..machine.tables import Machine
 from ..pictures.inline import line_svg
+from ..signal.series import Signal
 from . import excitation
 
 KINDS = {"velocity": "/s", "acceleration": "/s2"}
@@ -112,6 +113,15 @@ class Response:
     def accelerations(self) -> NDArray[np.float64]:
         """Accelerations ``(t, n)``, from the equations of motion."""
         return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
+
+    def signal(self, name: str, turning: float | None = None) -> Signal:
+        """Channel `name` as a `gearfe.Signal`.
+
+        With `turning`, the turns per second of a shaft at the machine's nominal speed [Hz], it has the angle of that shaft, so
+        that `gearfe.order_spectrum` and the synchronous average follow a speed that changes.
+        """
+        angle = None if turning is None else 2 * np.pi * turning * self.machine.turned(self.time)
+        return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)
 
     def save(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""

@@ -42,11 +42,17 @@ def difference(one, two):
 
 
 def stretch(machine, duration):
-    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them."""
+    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them.
+
+    Of a speed that changes: where it is fastest.
+    """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
         return 0.0, min(duration, 1000 * default_step(machine))
-    length = min(duration, CYCLES / min(rates))
+    length = min(duration, CYCLES / (min(rates) * machine.fastest))
+    if machine.speed is not None:
+        times = np.linspace(0.0, duration - length, 1000)
+        return float(times[np.argmax(np.diff(machine.turned([times, times + length]), axis=0))]), length
     worst, start = 0.0, 0.0
     for mesh in machine.meshes:
         for (_, _, change), times in zip(mesh.changes, mesh.entries(duration) if mesh.frequency else (), strict=False):

@@ -42,8 +42,8 @@ def housing_signal(
     places : sequence of float, optional
         Angles of the planets at time 0 [rad]; default: equally spaced from 0, as all stages of `gearfe.machine` are.
     carrier : float, optional
-        Turns of the carrier per second, counter-clockwise if positive; default: from the machine's notes,
-        ``"carrier frequency [Hz]"``.
+        Turns of the carrier per second at the machine's nominal speed, counter-clockwise if positive; default: from the
+        machine's notes, ``"carrier frequency [Hz]"``.
 
     Returns
     -------
@@ -74,6 +74,6 @@ def housing_signal(
     if len(angles) < count:
         raise ValueError(f"places has {len(angles)} angles, but there are {count} planets")
     time = response.time
-    turned = 2 * np.pi * carrier * time - sensor
+    turned = 2 * np.pi * carrier * machine.turned(time) - sensor
     values = sum((1 + np.cos(angles[planet] + turned)) / 2 * response[f"force {name}"] for name, planet in heard)
     return Signal(values, 1 / float(time[1] - time[0]), "N", f"housing, {kind}")

@@ -18,7 +18,8 @@ def response(forces, notes=None):
     meshes = tuple(SimpleNamespace(name=name.removeprefix("force ")) for name in channels)
 
     class Made:
-        machine = SimpleNamespace(meshes=meshes, notes={"carrier frequency [Hz]": F_C} if notes is None else notes)
+        stated = {"carrier frequency [Hz]": F_C} if notes is None else notes
+        machine = SimpleNamespace(turned=lambda t: t, meshes=meshes, notes=stated)
 
         def __getitem__(self, name):
             return channels[name]
