@@ -54,6 +54,8 @@ _HOME = {
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
+    "ring_window": "gearfe.signal.housing",
+    "stage_lines": "gearfe.signal.stage_lines",
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",

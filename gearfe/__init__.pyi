@@ -52,6 +52,7 @@ from .scene.load import load_scene as load_scene
 from .scene.new import new_scene as new_scene
 from .signal.demodulation import demodulate as demodulate
 from .signal.housing import housing_signal as housing_signal
+from .signal.housing import ring_window as ring_window
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
 from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis
@@ -68,6 +69,7 @@ from .signal.spectra import spectrum as spectrum
 from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectrum
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
+from .signal.stage_lines import stage_lines as stage_lines
 from .signal.tachometer import tachometer_angle as tachometer_angle
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility

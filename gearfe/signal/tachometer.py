@@ -15,9 +15,9 @@ def tachometer_angle(tachometer: Signal, pulses: int = 1, *, level: float | None
     """Angle of a shaft at every sample of its tachometer [rad], for `Signal.angle`.
 
     A pulse is counted where the signal rises above `level`, having been well below it (a fifth of its height), at the time
-    found by a straight line between two samples; between pulses the angle is a cubic spline of the time, before the first and after the
-    last one it goes on at the speed found there. A slope of a pulse that lasts less than a sample is known to half a sample: the
-    angle to ``2 pi turns/s / (2 rate)``.
+    found by a straight line between two samples. Between pulses the angle is a cubic spline of the time; before the first and
+    after the last one it goes on at the speed found there. A slope of a pulse that lasts less than a sample is known to half a
+    sample: the angle to ``2 pi turns/s / (2 rate)``.
 
     Parameters
     ----------
