@@ -31,8 +31,9 @@ def planetary(
     loads: Mapping[str, History] | None = None,
     zeta: float = 0.0,
     places: Sequence[float] | None = None,
+    spin: float = 0.0,
 ) -> Machine:
-    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier, without gyroscopic terms.
+    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
 
     The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
     its frequencies see ``tests/machine/test_models.py``.
@@ -55,6 +56,8 @@ def planetary(
         Damping ratio of the supports.
     places : sequence of float, optional
         Angles of the planets [rad]; default: equal spacing from 0.
+    spin : float
+        Speed of the carrier [rad/s], whose gyroscopic and centripetal terms are then taken in; 0: they are left out.
     """
     names = [f"planet{i + 1}" for i in range(n_planets)]
     angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
@@ -78,7 +81,7 @@ def planetary(
             row = layout.mesh(one, two, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
             meshes.append(GearMesh(f"{kind}{i + 1}", row, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques)
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
 
 
 def stage_phases(

@@ -13,6 +13,7 @@ from scipy.linalg import eigh
 from .contact_law import LAW, force, slopes
 from .gear_mesh import GearMesh
 from .speed import Speed
+from .turning_frame import frame_terms
 
 RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
 
@@ -150,11 +151,16 @@ class Machine:
         What spectra and errors of the machine ask for; the last one is the driven one.
     speed : Speed, optional
         A speed that changes (`gearfe.with_speed`); None: the frequencies stated, for ever.
+    spin : float
+        Angular velocity of the frame, that of the carrier, counter-clockwise [rad/s]: with gyroscopic and centripetal terms. 0:
+        without them.
 
     Attributes
     ----------
     K, C : ndarray, shape (n, n)
-        Stiffness and damping matrices of the springs alone, without the meshes.
+        Stiffness and damping matrices of the springs alone, without the meshes; with a `spin` its terms, too.
+    frame : ndarray, shape (n, n)
+        What of K is due to the spin (`gearfe.machine.turning_frame.frame_terms`).
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
@@ -169,10 +175,12 @@ class Machine:
     notes: dict[str, Any] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
     speed: Speed | None = None
+    spin: float = 0.0
     K: NDArray[np.float64] = field(init=False)
     C: NDArray[np.float64] = field(init=False)
     G: NDArray[np.float64] = field(init=False)
     law: dict[str, NDArray[Any]] = field(init=False)
+    frame: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         """Assemble; refuse masses that are not, rows that do not fit."""
@@ -188,8 +196,14 @@ class Machine:
                 raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
         object.__setattr__(self, "mass", mass)
-        object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
-        object.__setattr__(self, "C", R.T @ (np.array([s.c for s in self.springs])[:, None] * R))
+        K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
+        frame = np.zeros((n, n))
+        if self.spin:
+            gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin)
+            frame, C = centripetal + circulatory, C + gyroscopic
+        object.__setattr__(self, "K", K + frame)
+        object.__setattr__(self, "C", C)
+        object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
         law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW if key != "per_depth"}
         law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
@@ -306,12 +320,28 @@ def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tupl
     frequencies : ndarray, shape (n,)
         [Hz], rising; 0 for rigid-body modes.
     modes : ndarray, shape (n, n)
-        In columns, ``modes.T @ diag(mass) @ modes = 1``.
+        In columns, ``modes.T @ diag(mass) @ modes = 1``. Of a machine with a `spin` they are complex, of modal mass 1.
     """
     if x is None and (machine.law["power"] != 1).any():
         x = machine.G @ machine.rest()
-    squared, modes = modal(machine.linear(x)[0], machine.mass)
+    K = machine.linear(x)[0] - machine.frame
+    if machine.spin:
+        return _whirling(machine, K)
+    squared, modes = modal(K, machine.mass)
     return np.sqrt(squared) / (2 * math.pi), modes
+
+
+def _whirling(machine, K):
+    """Natural frequencies and complex modes of an undamped machine in a frame that turns."""
+    n, mass = len(machine.mass), machine.mass
+    gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin)
+    inner = np.block([[np.zeros((n, n)), np.eye(n)], [-(K + centripetal) / mass[:, None], -gyroscopic / mass[:, None]]])
+    values, vectors = np.linalg.eig(inner)
+    order = np.argsort(values.imag)[n:]  # of each pair the one that turns forward
+    modes = vectors[:n, order]
+    modes = modes / np.sqrt((mass[:, None] * np.abs(modes) ** 2).sum(axis=0))
+    top = values.imag.max()
+    return np.where(values.imag[order] < math.sqrt(RIGID) * top, 0.0, values.imag[order]) / (2 * math.pi), modes
 
 
 def modal(K: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

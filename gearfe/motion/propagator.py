@@ -64,11 +64,11 @@ def is_affine(machine):
 def plan(machine, h, x=None, adapt=False):
     """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]; `adapt`: with what is `allowed`."""
     K, C, k, c = machine.linear(x)
-    squared, modes = modal(K, machine.mass)
+    squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
     unit = math.sqrt(squared[-1]) or 1.0  # so that displacements and velocities are of one size
     D = modes.T @ C @ modes
-    A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-np.diag(squared) / unit, -D]])
+    A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-(np.diag(squared) + modes.T @ machine.frame @ modes) / unit, -D]])
     turn, size = _blocks(A, squared, D)
     back = np.linalg.inv(turn)
     A = (back @ A @ turn).reshape(2 * n // size, size, 2 * n // size, size)

@@ -171,7 +171,7 @@ def acceleration(machine, flat, t, q, v, side=None):
     e, rate = excitation.errors(flat, t)
     law, x, speed = machine.law, q @ machine.G.T - e, v @ machine.G.T - rate
     total = force(x, speed, k, law) if side is None else sided_force(x, speed, k, law, side)
-    out = -q @ machine.K - v @ machine.C - total @ machine.G
+    out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
     if rub:
         out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)

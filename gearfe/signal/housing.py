@@ -91,7 +91,8 @@ def housing_signal(
     time = response.time
     turned = 2 * np.pi * carrier * machine.turned(time) - sensor
     weigh = _raised if window is None else window
-    values = sum(np.asarray(weigh(angles[planet] + turned)) * response[f"force {name}"] for name, planet in heard)
+    heights = [np.asarray(weigh(angles[planet] + turned)) * response[f"force {name}"] for name, planet in heard]
+    values = np.sum(heights, axis=0)
     rate = 1 / float(time[1] - time[0])
     if not modes:
         return Signal(values, rate, "N", f"housing, {kind}")
