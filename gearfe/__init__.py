@@ -42,7 +42,7 @@ _HOME = {
     "error_map": "gearfe.studies.errormap",
     "gear_pair": "gearfe.machine.gear_pair",
     "herringbone_planetary": "gearfe.machine.herringbone_planetary",
-    "natural_frequencies": "gearfe.machine.tables",
+    "natural_frequencies": "gearfe.machine.modes",
     "simulate": "gearfe.motion.simulate",
     "single_mesh": "gearfe.machine.single_mesh",
     "stage_phases": "gearfe.machine.planetary",

@@ -24,6 +24,7 @@ from .machine.layout import Layout as Layout
 from .machine.member import Member as Member
 from .machine.member import disc as disc
 from .machine.mesh_errors import with_errors as with_errors
+from .machine.modes import natural_frequencies as natural_frequencies
 from .machine.of_scene import build_machine as build_machine
 from .machine.pitted_planetary import pitted_planetary as pitted_planetary
 from .machine.planetary import planetary as planetary
@@ -35,7 +36,6 @@ from .machine.tables import Load as Load
 from .machine.tables import Machine as Machine
 from .machine.tables import Spring as Spring
 from .machine.tables import Stage as Stage
-from .machine.tables import natural_frequencies as natural_frequencies
 from .machine.tables import pulses as pulses
 from .material import Material as Material
 from .motion.portrait import phase_portrait as phase_portrait

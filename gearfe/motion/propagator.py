@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig
 
-from ..machine.tables import modal, natural_frequencies
+from ..machine.modes import modal, natural_frequencies
 
 LEVELS = 6  # a step is halved at most so often
 LOCAL = 1e-3  # of the largest mesh force, at the default step: what `Plan.allowed` is there

@@ -100,9 +100,9 @@ class _Run:
             )
             self.calls += done.nfev
             if not done.success or not all(np.isfinite(part).all() for part in (done.y, *(done.y_events or ())) if np.size(part)):
-                reached = done.t[-1] if done.t.size else low
+                reached = done.t[-1] if len(done.t) else low
                 raise RuntimeError(f"{self.options['method']} gave up at t = {reached:.4g} s: {done.message}")
-            kept = done.t.size if done.status == 1 else wanted.size
+            kept = len(done.t) if done.status == 1 else wanted.size  # no array but a list where a change came before any output
             if kept:
                 found.append((done.y[:, :kept] / self.scale[:, None]).T)
             if done.status != 1:
