@@ -34,7 +34,6 @@ _HOME = {
     "compare": "gearfe.studies.by_zone",
     "demodulate": "gearfe.signal.demodulation",
     "decimate": "gearfe.signal.series",
-    "tachometer_angle": "gearfe.signal.tachometer",
     "envelope": "gearfe.signal.series",
     "build_machine": "gearfe.machine.of_scene",
     "compound_planetary": "gearfe.machine.compound_planetary",

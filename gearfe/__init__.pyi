@@ -70,7 +70,6 @@ from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectr
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
 from .signal.stage_lines import stage_lines as stage_lines
-from .signal.tachometer import tachometer_angle as tachometer_angle
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
