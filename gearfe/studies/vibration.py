@@ -14,6 +14,7 @@ from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import expected_lines, find_lines
+from ..steps import part, steps
 
 FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
 UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
@@ -89,12 +90,18 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
     damage = [] if scene.machine.get("contact") == "impact" else found
     along = any(isinstance(one, Pit) or not one.through for one in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
-    made = {
-        name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
-        for name in ("healthy", *([case] if case else []))
-    }
+    names = ("healthy", *([case] if case else []))
+    with part("", 0.0, 0.5):
+        made = {
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+            for name in steps(names, lambda name: f"stiffness curves, {name}")
+        }
     rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
-    return {name: recorded(one, duration, rate, method=method, progress=progress) for name, one in made.items()}
+    with part("", 0.5, 1.0):
+        return {
+            name: recorded(made[name], duration, rate, method=method, progress=progress)
+            for name in steps(names, lambda name: f"motion, {name}")
+        }
 
 
 def recorded(machine, duration, rate, *, method="fast", progress=None):
@@ -120,9 +127,12 @@ def recorded(machine, duration, rate, *, method="fast", progress=None):
     decay = slowest_decay(machine)
     need = -math.log(FREE) / decay if decay else math.inf
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    before = simulate(machine, settle, rate=1 / settle, progress=progress)
+    whole = settle + duration
+    with part("", 0.0, settle / whole):
+        before = simulate(machine, settle, rate=1 / settle, progress=progress)
     start = before.q[-1], before.v[-1]
-    out = simulate(machine, duration, rate=rate, method=method, initial=start, start=settle, progress=progress)
+    with part("", settle / whole, 1.0):
+        out = simulate(machine, duration, rate=rate, method=method, initial=start, start=settle, progress=progress)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 
@@ -185,7 +195,9 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     first = next(iter(spectra.values()))
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
-    amplitudes = {case: {name: two[1] for name, two in find_lines(one, lines).items()} for case, one in spectra.items()}
+    amplitudes = {
+        case: {name: two[1] for name, two in find_lines(one, lines, between=True).items()} for case, one in spectra.items()
+    }
     both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
     table = indicator_table(signals, *both, healthy=next(iter(signals)))
     return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)
