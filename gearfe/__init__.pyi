@@ -25,16 +25,18 @@ from .machine.layout import Layout as Layout
 from .machine.member import Member as Member
 from .machine.member import disc as disc
 from .machine.mesh_errors import with_errors as with_errors
+from .machine.modes import natural_frequencies as natural_frequencies
 from .machine.of_scene import build_machine as build_machine
 from .machine.pitted_planetary import pitted_planetary as pitted_planetary
 from .machine.planetary import planetary as planetary
 from .machine.planetary import stage_phases as stage_phases
 from .machine.single_mesh import single_mesh as single_mesh
+from .machine.speed import Speed as Speed
+from .machine.speed import with_speed as with_speed
 from .machine.tables import Load as Load
 from .machine.tables import Machine as Machine
 from .machine.tables import Spring as Spring
 from .machine.tables import Stage as Stage
-from .machine.tables import natural_frequencies as natural_frequencies
 from .machine.tables import pulses as pulses
 from .material import Material as Material
 from .motion.portrait import phase_portrait as phase_portrait
@@ -55,6 +57,7 @@ from .signal.demodulation import demodulate as demodulate
 from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
 from .signal.gear_indicators import gear_indicators as gear_indicators
 from .signal.housing import housing_signal as housing_signal
+from .signal.housing import ring_window as ring_window
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
 from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis
@@ -72,6 +75,7 @@ from .signal.spectra import spectrum as spectrum
 from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectrum
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
+from .signal.stage_lines import stage_lines as stage_lines
 from .signal.tachometer import with_tachometer as with_tachometer
 from .signal.time_frequency import cepstrum as cepstrum
 from .signal.time_frequency import spectrogram as spectrogram

@@ -165,7 +165,7 @@ def dynamics(arguments):
     """``gearfe dynamics``."""
     from dataclasses import replace
 
-    from ..machine.tables import natural_frequencies
+    from ..machine.modes import natural_frequencies
     from ..scene.load import load_scene
     from ..studies.vibration import analysis, responses
 
