@@ -101,7 +101,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     return {name: recorded(one, duration, rate, method=method) for name, one in made.items()}
 
 
-def recorded(machine, duration, rate, *, method="fast"):
+def recorded(machine, duration, rate, *, method="fast", start=0.0):
     """Response of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
@@ -115,6 +115,8 @@ def recorded(machine, duration, rate, *, method="fast"):
         Of what is kept [s, Hz].
     method : str
         Of `gearfe.simulate`.
+    start : float
+        Time at which the machine starts [s]: where its damaged tooth is then.
 
     Returns
     -------
@@ -123,8 +125,8 @@ def recorded(machine, duration, rate, *, method="fast"):
     decay = slowest_decay(machine)
     need = -math.log(FREE) / decay if decay else math.inf
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    before = simulate(machine, settle, rate=1 / settle)
-    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
+    before = simulate(machine, settle, rate=1 / settle, start=start)
+    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=start + settle)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 
