@@ -31,6 +31,28 @@ PLAN = {
 }
 ALARMS = 0.05  # of healthy machines taken for faulty, set on the validation side
 
+TEXT = """\
+# A classifier trained on simulated windows
+
+Made by `python -m validation dataset` (needs scikit-learn). `gf.dataset` on the machine of `planetary_pitting`, a sensor on the
+ring: {machines} machines, {healthy} of them healthy, that differ in speed and torque (3 % up and down), run-out (5 to 20 um),
+profile error (0.2 to 1 um) and the place of a planet (up to 20 um), each with three windows of 0.2 s. Half of the machines train a
+random forest on line amplitudes, envelope lines and indicators of single windows; a quarter sets the threshold at {alarms:.0f} %
+false alarms of machines; on the rest:
+
+{table}
+
+A machine is judged by the mean over its windows. In brackets: 95 % intervals for that many machines (Wilson). AUC is the chance
+that a cracked machine is rated above a healthy one; 0.5 is a guess. The loss is the largest loss of mesh stiffness.
+
+## What leakage would have claimed
+
+{leak}
+
+Simulated machines alone: nothing here says how it would do on a real gearbox, whose path to the sensor, other machinery and
+scatter differ. The scatter above is assumed; with less of it the same cracks are easier to find, with more harder.
+"""
+
 
 def run():
     """Write `dataset.md` and print it."""
@@ -39,28 +61,8 @@ def run():
         labels = made.labels()
         losses = labels.groupby("severity")["loss_max"].mean()
         table, leak = _table(made, losses), _leak(made)
-    lines = [
-        "# A classifier trained on simulated windows",
-        "",
-        "Made by `python -m validation dataset` (needs scikit-learn). `gf.dataset` on the machine of `planetary_pitting`, a sensor on",
-        f"the ring: {labels['condition'].nunique()} machines, {labels.query('severity == 0')['condition'].nunique()} of them healthy, that",
-        "differ in speed and torque (3 % up and down), run-out (5 to 20 um), profile error (0.2 to 1 um) and the place of a planet (up",
-        "to 20 um), each with three windows of 0.2 s. Half of the machines train a random forest on line amplitudes, envelope lines and",
-        f"indicators of single windows; a quarter sets the threshold at {100 * ALARMS:.0f} % false alarms of machines; on the rest:",
-        "",
-        table,
-        "",
-        "A machine is judged by the mean over its windows. In brackets: 95 % intervals for that many machines (Wilson). AUC is the",
-        "chance that a cracked machine is rated above a healthy one; 0.5 is a guess. The loss is the largest loss of mesh stiffness.",
-        "",
-        "## What leakage would have claimed",
-        "",
-        *leak,
-        "",
-        "Simulated machines alone: nothing here says how it would do on a real gearbox, whose path to the sensor, other machinery",
-        "and scatter differ. The scatter above is assumed; with less of it the same cracks are easier to find, with more harder.",
-    ]
-    text = "\n".join([*lines, ""])
+    healthy = labels.query("severity == 0")["condition"].nunique()
+    text = TEXT.format(machines=labels["condition"].nunique(), healthy=healthy, alarms=100 * ALARMS, table=table, leak=leak)
     with written(PAGE) as name:
         Path(name).write_text(text, encoding="utf-8")
     print(text)
@@ -148,7 +150,7 @@ def _leak(made):
     for train, other in ((np.flatnonzero(honest), np.flatnonzero(test)), (every[mixed], every[~mixed])):
         (rating,) = learned((found[train], faulty[train]), (found[other],))
         scores.append(balanced_accuracy_score(faulty[other], rating > 0.5))
-    return [
-        f"Balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many windows: {100 * scores[0]:.1f} % if all",
-        f"windows of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random.",
-    ]
+    return (
+        f"Balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many: {100 * scores[0]:.1f} % if all windows\n"
+        f"of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random."
+    )
