@@ -1,16 +1,18 @@
-"""A small data set: what its windows hold against independent ways to it, no leakage, stopped and continued."""
+"""A small data set: what its windows hold against independent ways to it, no leakage, stopped and continued; and its verb."""
 
 import copy
 import json
+import re
 import shutil
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.io import loadmat
-from test_plan import changed
+from test_dataset_plan import changed
 
 import gearfe as gf
+from gearfe.cli import main
 from gearfe.datasets import make
 from gearfe.datasets.conditions import conditions
 from gearfe.datasets.plan import read_plan
@@ -34,9 +36,14 @@ def made(tmp_path_factory):
     return gf.dataset(PLAN, tmp_path_factory.mktemp("set"), also=["mat", "hdf5"], workers=1)
 
 
-def test_windows_are_those_of_the_simulation(made):
+@pytest.fixture
+def plan():
+    return copy.deepcopy(PLAN)
+
+
+def test_windows_are_those_of_the_simulation(made, plan):
     """Mean and strongest lines, in size and phase, against those of the fine response that the windows were cut from."""
-    plan = read_plan(PLAN)
+    plan = read_plan(plan)
     (condition,) = [one for one in conditions(plan) if one.number == 2]
     assert condition.label == "crack"
     _, response, _ = simulated(plan, condition)
@@ -115,7 +122,7 @@ def test_card_counts_what_is_there(made):
     assert "hears nothing" not in text
 
 
-def test_stopped_and_continued_is_the_same(made, tmp_path, monkeypatch):
+def test_stopped_and_continued_is_the_same(made, plan, tmp_path, monkeypatch):
     """Two conditions taken away and made again, in a folder begun before: file by file the same."""
     folder = tmp_path / "again"
     shutil.copytree(made.folder, folder)
@@ -125,7 +132,7 @@ def test_stopped_and_continued_is_the_same(made, tmp_path, monkeypatch):
     asked = []
     real = make.simulate_condition
     monkeypatch.setattr(make, "simulate_condition", lambda plan, one: asked.append(one.number) or real(plan, one))
-    gf.dataset(PLAN, folder, workers=1)
+    gf.dataset(plan, folder, workers=1)
     assert asked == [1, 3]
     names = sorted(one.name for one in (made.folder / "windows").glob("*.parquet"))
     assert names == sorted(one.name for one in (folder / "windows").iterdir() if one.name != ".lock")
@@ -133,12 +140,12 @@ def test_stopped_and_continued_is_the_same(made, tmp_path, monkeypatch):
         assert (folder / "windows" / name).read_bytes() == (made.folder / "windows" / name).read_bytes(), name
 
 
-def test_other_folders_are_refused_and_left_alone(made, tmp_path):
+def test_other_folders_are_refused_and_left_alone(made, plan, tmp_path):
     with pytest.raises(ValueError, match="another data set: its seed differ"):
-        gf.dataset(PLAN | {"seed": 4}, made.folder, workers=1)
+        gf.dataset(plan | {"seed": 4}, made.folder, workers=1)
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(ValueError, match="holds other files"):
-        gf.dataset(PLAN, tmp_path, workers=1)
+        gf.dataset(plan, tmp_path, workers=1)
     assert [one.name for one in tmp_path.iterdir()] == ["letter.txt"]
     about = json.loads((made.folder / "about.json").read_text())
     assert about["conditions"] == 4
@@ -157,14 +164,14 @@ def test_other_folders_are_refused_and_left_alone(made, tmp_path):
         ({"sensor": [{"name": "h", "housing": "moon"}]}, "no mesh is called 'moon'"),
     ],
 )
-def test_what_shows_no_fault_is_refused_before_work(given, said, tmp_path):
+def test_what_shows_no_fault_is_refused_before_work(given, said, plan, tmp_path):
     with pytest.raises(ValueError, match=said):
-        gf.dataset(copy.deepcopy(PLAN) | given, tmp_path / "set", workers=1)
+        gf.dataset(plan | given, tmp_path / "set", workers=1)
     assert not (tmp_path / "set").exists()
 
 
-def test_a_condition_that_fails_is_recorded(tmp_path, monkeypatch):
-    plan = PLAN | {"sensor": [{"name": "ring", "channel": "ring.x"}]}
+def test_a_condition_that_fails_is_recorded(plan, tmp_path, monkeypatch):
+    plan |= {"sensor": [{"name": "ring", "channel": "ring.x"}]}
     monkeypatch.setattr(make, "rows_of", lambda plan, one: (_ for _ in ()).throw(RuntimeError("grew beyond all bounds")))
     made = gf.dataset(plan, tmp_path / "set", workers=1)
     assert len(made.failed()) == 4
@@ -173,7 +180,45 @@ def test_a_condition_that_fails_is_recorded(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_several_processes_make_the_same(made, tmp_path):
-    gf.dataset(PLAN, tmp_path / "set", workers=2)
+def test_several_processes_make_the_same(made, plan, tmp_path):
+    gf.dataset(plan, tmp_path / "set", workers=2)
     for one in (made.folder / "windows").glob("*.parquet"):
         assert (tmp_path / "set" / "windows" / one.name).read_bytes() == one.read_bytes(), one.name
+
+
+def toml(plan):
+    """A plan as TOML: JSON with ``=`` for ``:`` is nearly that."""
+    return "\n".join(f"{name} = {_value(value)}" for name, value in plan.items())
+
+
+def _value(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(name)} = {_value(one)}" for name, one in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(_value(one) for one in value) + "]"
+    return json.dumps(value)
+
+
+def test_verb_goes_on_with_a_folder(made, plan, tmp_path, capsys):
+    (tmp_path / "set.toml").write_text(toml(plan))
+    assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(made.folder), "--workers", "1"]) == 0
+    text = capsys.readouterr().out
+    assert "cracks: 24 windows of 4 conditions" in text
+    assert "crack 0.4" in text
+    assert "described in card.md" in text
+
+
+def test_dry_run_says_what_it_takes_and_writes_nothing(made, plan, tmp_path, capsys):
+    (tmp_path / "set.toml").write_text(toml(plan))
+    assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(tmp_path / "new"), "--dry-run", "--workers", "1"]) == 0
+    text = capsys.readouterr().out
+    assert "4 conditions, 24 windows" in text
+    there = sum(one.stat().st_size for one in (made.folder / "windows").glob("*.parquet"))
+    assert float(re.search(r"disk: about ([\d.]+) MB", text)[1]) == pytest.approx(there / 1e6, rel=0.05)
+    assert not (tmp_path / "new").exists()
+
+
+def test_refusals_are_one_line(tmp_path, capsys):
+    (tmp_path / "set.toml").write_text(toml(changed(fault=[{"kind": "rust", "severity": [1.0]}])))
+    assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(tmp_path / "new")]) == 1
+    assert "kind = 'rust', but it must be one of crack" in capsys.readouterr().err

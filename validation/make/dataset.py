@@ -36,9 +36,9 @@ TEXT = """\
 
 Made by `python -m validation dataset` (needs scikit-learn). `gf.dataset` on the machine of `planetary_pitting`, a sensor on the
 ring: {machines} machines, {healthy} of them healthy, that differ in speed and torque (3 % up and down), run-out (5 to 20 um),
-profile error (0.2 to 1 um) and the place of a planet (up to 20 um), each with three windows of 0.2 s. Half of the machines train a
-random forest on line amplitudes, envelope lines and indicators of single windows; a quarter sets the threshold at {alarms:.0f} %
-false alarms of machines; on the rest:
+profile error (0.2 to 1 um) and the place of a planet (up to 20 um), each with three windows of 0.2 s. Half of the machines train
+a random forest on line amplitudes, envelope lines and indicators of single windows; a quarter sets the threshold at
+{alarms:.0f} % false alarms of machines; on the rest:
 
 {table}
 
@@ -151,6 +151,6 @@ def _leak(made):
         (rating,) = learned((found[train], faulty[train]), (found[other],))
         scores.append(balanced_accuracy_score(faulty[other], rating > 0.5))
     return (
-        f"Balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many: {100 * scores[0]:.1f} % if all windows\n"
-        f"of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random."
+        f"Balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many: {100 * scores[0]:.1f} % if all\n"
+        f"windows of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random."
     )
