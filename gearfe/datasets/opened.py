@@ -41,7 +41,7 @@ class Dataset:
         """One line: title, how many windows, where."""
         return f"<Dataset {self.about['title']!r}: {len(self)} windows in {self.folder}>"
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Number of windows."""
         return opened(self.folder / WINDOWS).count_rows() if shard_names(self.folder / WINDOWS) else 0
 
