@@ -23,6 +23,10 @@ def main(argv=None):
     verb.add_argument("--method", default="auto", help=f"{methods} (see below; default: ritz or ritz3d)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
+    verb.add_argument(
+        "--pose", choices=("mean", "pinion", "wheel"), default="mean",
+        help="who turns under load: both gears alike, or one against the held other (default: mean)",
+    )  # fmt: skip
     verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument(
         "--forces", type=float, nargs="+", metavar="N",

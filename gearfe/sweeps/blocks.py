@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib.metadata import version
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -123,22 +124,38 @@ def shard(job: Job, made: Sequence[Mapping[str, Any]]) -> tuple[str, bytes, int]
 
 
 def rows(job: Job) -> list[dict[str, Any]]:
-    """Rows of a block's cases; a case that cannot be has its error in its row."""
-    block, out = job.block, []
+    """Rows of a block's cases; a case that cannot be has its error in its row.
+
+    Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
+    alone, so that the row says it to which it belongs.
+    """
+    cases, out = job.block.cases, []
     built: dict[str, Scene] = {}
+    keys = [_key(job.study, case) for case in cases]
     with _ONE:
-        for i, case in enumerate(block.cases):
-            started = time.process_time()
-            with warnings.catch_warnings(record=True) as heard:
-                warnings.simplefilter("always", UserWarning)
-                try:
-                    row = _result(job.study, case, built) | {"status": DONE}
-                except FAILURES as error:
-                    row = {"status": FAILED, "error": f"{type(error).__name__}: {error}"}
-            notes = "; ".join(dict.fromkeys(str(one.message) for one in heard if issubclass(one.category, UserWarning)))
-            row |= {"notes": notes or None, "seconds": time.process_time() - started}
-            out.append(_told(block, i) | row)
+        for _, same in groupby(range(len(cases)), keys.__getitem__):
+            numbers = list(same)
+            found = _tried(job.study, [cases[i] for i in numbers], built)
+            if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in found):
+                spent = found[0]["seconds"]
+                found = [row for i in numbers for row in _tried(job.study, [cases[i]], built)]
+                found = [row | {"seconds": row["seconds"] + spent} for row in found]
+            out += [_told(job.block, i) | row for i, row in zip(numbers, found, strict=True)]
     return out
+
+
+def _tried(study, cases, built):
+    """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
+    started = time.process_time()
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always", UserWarning)
+        try:
+            found = [row | {"status": DONE} for row in _computed(study, cases, built)]
+        except FAILURES as error:
+            found = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
+    notes = "; ".join(dict.fromkeys(str(one.message) for one in heard if issubclass(one.category, UserWarning)))
+    each = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
+    return [row | each for row in found]
 
 
 def lost(job: Job) -> list[dict[str, Any]]:
@@ -164,20 +181,22 @@ def _program():
     return {"version": version("gearfe"), "source": made_by()[0][:12]}
 
 
-def _result(study, case, built):
-    """Row of one case; `built` keeps the scene of the case before, which often differs in its load only."""
+def _computed(study, cases, built):
+    """Rows of cases that differ in their load only; `built` keeps their scene."""
+    kind, case, key = KINDS[study.kind], cases[0], _key(study, cases[0])
     pair, damage, options = of_case(study, case)
-    forces = {key.split(".")[1]: value for key, value in case.items() if _is_force(key)}
-    key = repr([(name, value) for name, value in case.items() if not _is_force(name)])
     if key not in built:
         built.clear()
-        tables = placed(study.tables, {name: value for name, value in case.items() if not _is_force(name)})
-        built[key] = scene_of("scene", tables if KINDS[study.kind].whole else trimmed(tables, pair, damage))
+        tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
+        built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
     scene = built[key]
-    if forces:
-        pairs = {name: replace(one, force=forces.get(name, one.force)) for name, one in scene.pairs.items()}
-        scene = replace(scene, pairs=pairs)
-    return KINDS[study.kind].work(scene, pair, None if damage == "healthy" else damage, options)
+    forces = [one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases]
+    return kind.work(scene, pair, None if damage == "healthy" else damage, options, forces)
+
+
+def _key(study, case):
+    """What decides the scene of a case but, where that is one pair, its load."""
+    return repr([(name, value) for name, value in case.items() if KINDS[study.kind].whole or not _is_force(name)])
 
 
 def _is_force(key):

@@ -1,7 +1,7 @@
 """What is computed of a case: a kind of study is a row of `KINDS`, its options, its columns and one function."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,46 +48,62 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with the scene, the names of
-    pair and case (None: healthy) and the options and gives a row; `whole`: it needs all pairs of the scene; `block`: cases in a
+    pair and case (None: healthy), the options and loads [N], and gives a row for each load (vibration: one, its loads are those
+    of the scene); `whole`: it needs all pairs of the scene; `block`: cases in a
     shard, so many that one takes seconds.
     """
 
     options: dict[str, Any]
     fields: dict[str, Field]
-    work: Callable[..., dict[str, Any]]
+    work: Callable[..., list[dict[str, Any]]]
     block: int
     whole: bool = False
 
 
-def curve_of(scene: Scene, pair: str, case: str | None, options: dict[str, Any]) -> StiffnessCurve:
-    """Stiffness curve of a case; gears are solved once for all cases of this process that share them."""
+def curves_of(
+    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
+) -> list[StiffnessCurve]:
+    """Stiffness curves of a case by load; gears are solved once for all cases of this process that share them."""
     run: dict[str, Any] = scene.pair(pair).case(case) | options
-    run |= {"span": options["span"] or ("tooth" if case else "cycle"), "cache": KEPT}
+    run |= {"span": options["span"] or ("tooth" if case else "cycle"), "cache": KEPT, "force": list(forces)}
     return mesh_stiffness(**run)
 
 
-def stiffness(scene: Scene, pair: str, case: str | None, options: dict[str, Any]) -> dict[str, Any]:
-    """Row of a stiffness curve: its zones, its largest relative error estimate if asked for, phase and k."""
-    curve = curve_of(scene, pair, case, options)
+def stiffness(
+    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Rows of stiffness curves by load: zones, the largest relative error estimate if asked for, phase and k."""
+    return [_stiffness_row(curve) for curve in curves_of(scene, pair, case, options, forces)]
+
+
+def _stiffness_row(curve):
     zones, te = curve.zones(), curve.te
-    row: dict[str, Any] = {"k_mean": zones["mean"], "k_max": zones["max"], "k_min": float(curve.k.min())}
+    row = {"k_mean": zones["mean"], "k_max": zones["max"], "k_min": float(curve.k.min())}
     row |= {f"k_{name}": zones.get(name) for name in ("single", "double")}
     row |= {"k_error": curve.zone_errors().get("mean"), "te_peak_to_peak": float(np.ptp(te))}
     return row | {"phase": curve.phase, "k": curve.k}
 
 
-def transmission_error(scene: Scene, pair: str, case: str | None, options: dict[str, Any]) -> dict[str, Any]:
-    """Row of a loaded transmission error: mean, peak-to-peak, mesh harmonics (of a whole cycle), phase and te."""
-    curve = curve_of(scene, pair, case, options)
+def transmission_error(
+    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
+) -> list[dict[str, Any]]:
+    """Rows of loaded transmission errors by load: mean, peak-to-peak, mesh harmonics (of a whole cycle), phase and te."""
+    whole = case is None and options["span"] in (None, "cycle")
+    return [_te_row(curve, whole) for curve in curves_of(scene, pair, case, options, forces)]
+
+
+def _te_row(curve, whole):
     te = curve.te
     row = {"te_mean": float(te.mean()), "te_peak_to_peak": float(np.ptp(te)), "k_mean": float(curve.k.mean())}
-    if case is None and options["span"] in (None, "cycle"):
+    if whole:
         lines = 2 / te.size * np.abs(np.fft.rfft(te))[1 : HARMONICS + 1]
         row |= {f"te_{i + 1}": float(value) for i, value in enumerate(lines)}
     return row | {"phase": curve.phase, "te": te}
 
 
-def vibration(scene: Scene, pair: str, case: str | None, options: dict[str, Any]) -> dict[str, Any]:
+def vibration(
+    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
+) -> list[dict[str, Any]]:
     """Row of a machine's vibration: indicators of one channel (default: force of the driven mesh), and the signal if asked for.
 
     Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions
@@ -106,7 +122,7 @@ def vibration(scene: Scene, pair: str, case: str | None, options: dict[str, Any]
     row: dict[str, Any] = {name.replace(" ", "_"): seen.get(name) for name in INDICATORS}
     row |= {"rms": seen["rms"], "peak": seen["peak"], "mesh_line": seen.get("mesh line"), "unit": signal.unit}
     row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": found.stats["free"]}
-    return row | ({"signal": signal.values} if options["signal"] else {})
+    return [row | ({"signal": signal.values} if options["signal"] else {})]
 
 
 SEEN = {name.replace(" ", "_"): Field("number") for name in INDICATORS}

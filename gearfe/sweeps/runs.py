@@ -40,7 +40,7 @@ class Runs:
         """One line: what it is, and how far."""
         return f"<Runs of {self.about['title']!r}: {len(self)} of {self.about['cases']} cases in {self.folder}>"
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Number of cases that are in the folder."""
         return opened(self.folder).count_rows() if shard_names(self.folder) else 0
 
