@@ -16,7 +16,7 @@ HELD = 32
 CRACKED = {"force": (500.0, 4000.0), "level": (0.05, 0.6)}
 WIDE = CRACKED | {"angle": (math.radians(30), math.radians(60)), "bore_1": (0.3, 0.8), "x_1": (-0.2, 0.4)}
 TEETH = {"force": (500.0, 4000.0), "z_1": (19, 25), "z_2": (28, 36), "x_1": (0.0, 0.3), "bore_1": (0.4, 0.7)}
-FITS = (("load and crack", CRACKED, 64), ("load, crack and pinion", WIDE, 256), ("healthy, other teeth", TEETH, 128))
+FITS = (("load and crack", CRACKED, 32), ("load, crack and pinion", WIDE, 96), ("healthy, other teeth", TEETH, 48))
 SHOWN = {"force": "N", "level": "-", "angle": "rad"}
 
 
