@@ -10,6 +10,7 @@ import importlib
 _HOME = {
     "Body": "gearfe.machine.layout",
     "Crack": "geometry.damage.crack",
+    "Dataset": "gearfe.datasets.opened",
     "Flank": "geometry.tooth.modified",
     "Gear": "geometry.tooth.gear",
     "GearMesh": "gearfe.machine.gear_mesh",
@@ -40,6 +41,7 @@ _HOME = {
     "envelope": "gearfe.signal.series",
     "build_machine": "gearfe.machine.of_scene",
     "compound_planetary": "gearfe.machine.compound_planetary",
+    "dataset": "gearfe.datasets.make",
     "disc": "gearfe.machine.member",
     "error_map": "gearfe.studies.errormap",
     "gear_pair": "gearfe.machine.gear_pair",
@@ -68,6 +70,7 @@ _HOME = {
     "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",
     "new_scene": "gearfe.scene.new",
+    "open_dataset": "gearfe.datasets.opened",
     "order_spectrum": "gearfe.signal.orders",
     "phase_portrait": "gearfe.motion.portrait",
     "pitted_helical": "gearfe.machine.helical_pair",

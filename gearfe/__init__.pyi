@@ -7,6 +7,9 @@ from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
 
+from .datasets.make import dataset as dataset
+from .datasets.opened import Dataset as Dataset
+from .datasets.opened import open_dataset as open_dataset
 from .elements.contact_inp import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
 from .elements.fracture import stress_intensity as stress_intensity

@@ -26,6 +26,8 @@ PAGES = {
     "speed": "seconds against error of every method",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
+    "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",
+    "dataset": "a classifier trained on a simulated data set, and what it finds by severity",
     "hard": "hard cases, each with its outcome",
     "three": "three dimensions: energy model against hexahedra of the whole gear",
     "pairs_three": "stiffness of pairs in three dimensions against hexahedra of both gears (long: --reference)",

@@ -4,7 +4,7 @@ import argparse
 import os
 
 from ..stiffness.methods import NAMES, described, having
-from . import shell, sweeping, tools
+from . import labelling, shell, sweeping, tools
 from . import verbs as run
 
 
@@ -109,6 +109,12 @@ def main(argv=None):
         "--dry-run", action="store_true", help="say how many cases, how long, how much memory and disk; write nothing"
     )
     verb.add_argument("--mixed", action="store_true", help="go on although another version of gearfe began it")
+    verb = _verb(verbs, "dataset", labelling.dataset, "make labelled vibration windows for learning, split without leakage")
+    verb.add_argument("plan", metavar="DATASET", help="a .toml file: machine, faults, operation, sensors, noise, split")
+    verb.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder of the data set: new, or of this one")
+    verb.add_argument("--also", nargs="+", choices=("mat", "hdf5"), default=[], help="each side of the split as one file too")
+    verb.add_argument("--workers", type=int, metavar="N", help="processes of this machine (default: one per core)")
+    verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
     verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
