@@ -20,6 +20,7 @@ PAGES = {
     "assumptions": "what the assumptions of the scenes do to the stiffness",
     "truth": "independent values of others, and CalculiX, beside ours",
     "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
+    "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
     "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
     "shortcomings": "what gearfe falls short of: the expected failures of its tests",
     "speed": "seconds against error of every method",
@@ -48,6 +49,7 @@ LONG = {
     "slow": "runs the slow tests",
     "install": "downloads all dependencies for every Python",
     "map": "thousands of gears",
+    "sweeps": "ten thousand cases, where they are not kept",
     "three": "brute-force finite elements of whole gears",
     "speed_three": "brute-force finite elements of whole gears",
 }  # left out of "everything": minutes to an hour each

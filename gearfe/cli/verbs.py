@@ -53,7 +53,7 @@ def stiffness(arguments):
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, pose=arguments.pose, tell=tell,
         )  # fmt: skip
     meta = curve.meta
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
@@ -176,8 +176,8 @@ def dynamics(arguments):
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     _print_scene(scene)
-    with working("stiffness curves and response"):
-        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
+    with working("stiffness curves and response") as tell:
+        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method, progress=tell)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")

@@ -247,8 +247,9 @@ def _contact_text():
         "",
         f"Both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g}, bores 12/20 mm, "
         f"{LINE_LOAD:g} N/mm), meshed anew for each phase",
-        "with eight edges per Hertz half width, surface-to-surface contact of all flanks (`gearfe.write_contact_inp`), turned by",
-        f"the approach that `ritz` computes. Double contact begins at phase 0 and ends at {pair.eps_alpha % 1:.4f}.",
+        "with eight edges per Hertz half width, surface-to-surface contact of all flanks (`gearfe.write_contact_inp`), both",
+        "in the mean pose: each gear is turned by half of the approach that `ritz` computes. Double contact begins at phase 0",
+        f"and ends at {pair.eps_alpha % 1:.4f}.",
         "",
         "| phase | gearfe, ritz [N/um] | CalculiX [N/um] | difference | from an end of double contact [cycles] |",
         "|---|---|---|---|---|",
