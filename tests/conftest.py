@@ -42,6 +42,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     ),
     "reports": ("reports/test_page.py::test_unknown_case_and_suffix_are_refused_before_work",),
     "docs": ("docs/test_tutorials.py::test_scripts_are_found", "docs/test_site.py"),
+    "pictures": ("pictures/test_look.py",),
     "layout": ("test_layout.py", "test_types.py"),
     "hostile": ("hostile/test_hostile.py::test_gears", "hostile/test_hostile.py::test_damage"),
 }

@@ -47,7 +47,7 @@ def stiffness(arguments):
     for text in left_out:
         print(f"{text}\n")
     if arguments.forces:
-        _transmission_error(arguments, run)
+        _transmission_error(scene, arguments, run)
         return
     with working(f"stiffness by {arguments.method}") as tell:
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
@@ -71,7 +71,7 @@ def stiffness(arguments):
         print(f"written: {arguments.plot}")
 
 
-def _transmission_error(arguments, run):
+def _transmission_error(scene, arguments, run):
     """``gearfe stiffness --forces``."""
     from ..stiffness.transmission_error import transmission_error
 
@@ -87,7 +87,9 @@ def _transmission_error(arguments, run):
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table())
     if arguments.plot:
-        found.plot(arguments.plot)
+        from ..pictures.stiffness_plots import told
+
+        found.plot(arguments.plot, _title(scene, arguments, told(found.curves[0], load=False)))
         print(f"written: {arguments.plot}")
 
 
@@ -190,7 +192,7 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
-    _print_analysis(analysis(found, arguments.channel), arguments)
+    _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
         print(f"written: {arguments.output}")
@@ -215,8 +217,8 @@ def signal(arguments):
     _print_analysis(found, arguments)
 
 
-def _print_analysis(report, arguments):
-    """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`."""
+def _print_analysis(report, arguments, name=""):
+    """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`; `name` of the scene, if it is one."""
     from ..signal.demodulation import demodulate
 
     if report.lines:
@@ -234,10 +236,10 @@ def _print_analysis(report, arguments):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram, f"{last.name}, {report.channel}")
+        plot_kurtogram(kurtogram, arguments.kurtogram, ", ".join(filter(None, (name, last.name, report.channel))))
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
-        report.plot(arguments.plot)
+        report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))
         print(f"written: {arguments.plot}")
 
 

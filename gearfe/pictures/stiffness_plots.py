@@ -13,6 +13,7 @@ from geometry.tooth.profile import roll_at_arc
 
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
+from .look import SQUASHED, look
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,9 +21,6 @@ if TYPE_CHECKING:
     from ..contact.solid import Contact3D
 
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")  # apart for the colour-blind
-DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
-SQUASHED = 0.3  # lowest over largest stiffness from which on an axis from zero would waste the picture
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
     "bore_1": "pinion bore / root radius",
@@ -57,13 +55,11 @@ def plot_curves(curves, path=None, title=None):
     figure = Figure(figsize=(7.5, 5.4), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):
-        look = {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
-        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look)
+        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look(number))
     first = next(iter(curves.values()))
     share = np.where(first.force > 0, first.share, np.nan)
     for column, order in enumerate(first.order):
-        look = {"color": COLOURS[column % len(COLOURS)], "linestyle": DASHES[column % len(DASHES)]}
-        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look)
+        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look(column))
     k = np.concatenate([curve.k for curve in curves.values()]) / NEWTON_PER_UM
     if k.min() < SQUASHED * k.max():
         top.set_ylim(0, 1.06 * k.max())
@@ -77,8 +73,8 @@ def plot_curves(curves, path=None, title=None):
     return save_figure(figure, path, dpi=120)
 
 
-def told(curve):
-    """Teeth, damage, load and width of a curve in one line, as far as its `meta` has them."""
+def told(curve, *, load=True):
+    """Teeth, damage, width and (if `load`) load of a curve in one line, as far as its `meta` has them."""
     meta = curve.meta
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
@@ -86,7 +82,7 @@ def told(curve):
     hurt = {side: len(found) for side, found in meta.get("damage", {}).items() if found}
     parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
     if "force_N" in meta and "width_mm" in meta:
-        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm")
+        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm" if load else f"{meta['width_mm']:g} mm wide")
     return ", ".join(parts)
 
 
@@ -154,6 +150,7 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
         axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
     row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
     figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
+    figure.suptitle(f"{found.columns['load'].size} gears, loads and cracks, errors against ritz", fontsize=9)
     return save_figure(figure, path, dpi=100)
 
 
@@ -193,20 +190,22 @@ def plot_errors(errors, rows, columns, path=None, largest=30.0):
     return save_figure(figure, path, dpi=100)
 
 
-def plot_lengths(phase, lengths, others=None, path=None):
-    """Lengths of contact lines [mm] over the phase, by case; `others` dashed in the same colours."""
+def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
+    """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 3.5), layout="constrained")
+    figure = Figure(figsize=(7.5, 3.7), layout="constrained")
     axes = figure.subplots()
-    for name, length in lengths.items():
-        (drawn,) = axes.plot(phase, length, label=name)
+    for number, (name, length) in enumerate(lengths.items()):
+        axes.plot(phase, length, label=name, **look(number))
         if name in (others or {}):
-            axes.plot(phase, others[name], "--", color=drawn.get_color(), linewidth=0.8)
+            axes.plot(phase, others[name], label=f"{name}, {told}", linewidth=0.7, **look(number))
     axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
     axes.set_ylabel("contact line [mm]")
-    axes.set_ylim(bottom=0)
-    axes.legend(fontsize=8)
+    axes.set_title(title, fontsize=10)
+    if min(length.min() for length in lengths.values()) < SQUASHED * max(length.max() for length in lengths.values()):
+        axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=100)
 
 
