@@ -16,6 +16,7 @@ from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
+from ..steps import part, steps
 from .bodies import bodies_of
 from .cells import Cells
 from .phase_contact import REACH, PhaseContact
@@ -140,8 +141,13 @@ def pair_stiffness3d(
             flexible = partial(model, neighbours=neighbours)
             return bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible)
 
-        # gears that bend far bring more teeth into reach than the first guess of their approach did
-        return _solved(contact, phase, lambda orders: bodies(max(orders, contact.neighbours)))
+        def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
+            return bodies(max(orders, contact.neighbours))
+
+        with part("", 0.0, 0.5):
+            within(0)
+        with part("", 0.5, 1.0):
+            return _solved(contact, phase, within)
 
     solved = solve(model or energy(order, 0))
     if error:
@@ -151,7 +157,7 @@ def pair_stiffness3d(
 
 def _solved(contact, phase, bodies):
     cells, approach, reach, closed = [], np.zeros(phase.size), None, []
-    for i, at in enumerate(phase.tolist()):
+    for i, at in enumerate(steps(phase.tolist())):
         own, approach[i], shut = contact.solve(at, bodies, reach)
         closed += [i] if shut else []
         cells.append(own)
