@@ -35,6 +35,7 @@ PAGES = {
     "pictures": "stress pictures of every scene and damage case",
     "hard_three": "hard cases in three dimensions, each with its outcome",
     "speed_three": "seconds and memory against error in three dimensions",
+    "cost_three": "cost of the energy model in three dimensions over teeth, width, helix angle, order and phases",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
     "dynamics": "integrators: seconds against error on 55 degrees of freedom",
     "hard_dynamics": "hard cases of the dynamics, each with its outcome",
