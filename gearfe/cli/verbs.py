@@ -193,19 +193,6 @@ def dynamics(arguments):
         print(f"written: {arguments.output}")
 
 
-def signal(arguments):
-    """``gearfe signal``."""
-    from ..signal.signal_file import read_signal
-    from ..studies.vibration import analyse
-
-    _check_outputs(arguments, plot="picture", kurtogram="picture")
-    read = [read_signal(file, column=arguments.column, rate=arguments.rate, unit=arguments.unit) for file in arguments.file]
-    signals = {one.name: one for one in read}
-    if len(signals) < len(read):
-        raise ValueError("two files have the same name: their cases could not be told apart; rename one")
-    _print_analysis(analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name), arguments)
-
-
 def _print_analysis(report, arguments):
     """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`."""
     from ..signal.demodulation import demodulate

@@ -16,7 +16,7 @@ from .orders import residual_signal, synchronous_average
 from .series import Signal
 
 GEAR_SOURCES = {
-    "FM0": "peak to peak of the average over the sum of its mesh harmonics' amplitudes; Stewart 1977, NASA TM 105950; a lone line 2",
+    "FM0": "peak to peak of the average over the sum of its mesh lines' amplitudes; Stewart 1977, NASA TM 105950; one line 2",
     "FM4": "kurtosis of the difference signal d, N sum(d**4) / sum(d**2)**2; noise 3; Stewart 1977, gearConditionMetrics",
     "M6A": "N**2 sum(d**6) / sum(d**2)**3; noise 15; Martin 1989, gearConditionMetrics",
     "M8A": "N**3 sum(d**8) / sum(d**2)**4; noise 105; Martin 1989, gearConditionMetrics",
@@ -66,7 +66,7 @@ def gear_indicators(
     References
     ----------
     - R. M. Stewart, Some useful data analysis techniques for gearbox diagnostics, ISVR (1977).
-    - H. R. Martin, Statistical moment analysis as a means of surface damage detection, Proc. 7th Int. Modal Analysis Conf. (1989).
+    - H. R. Martin, Statistical moment analysis as a means of surface damage detection, 7th Int. Modal Analysis Conf. (1989).
     - J. J. Zakrajsek, D. P. Townsend, H. J. Decker, NASA TM 105950 (1993); J. J. Zakrajsek, R. F. Handschuh, H. J. Decker, NASA
       TM 106467 (1994).
     - P. Vecer, M. Kreidl, R. Smid, Condition indicators for gearbox condition monitoring systems, Acta Polytechnica 45(6) (2005).
