@@ -228,7 +228,8 @@ def _spur_text(tables):
             28 N m, bearings 1e8 N/m, damping, play 0.1 mm. The record begins when free vibrations have died out."""),
         "\n".join(rows),
         _line(f"""**Verdict: not comparable.** No printed amplitude or indicator of this set was found; its
-            rates and loads are said to be public, but were not at hand. What can be said: the energy ratio more than doubles at {sum(grown)} of {len(grown)} speeds. Gears without
+            rates and loads are said to be public, but were not at hand.
+            What can be said: the energy ratio more than doubles at {sum(grown)} of {len(grown)} speeds. Gears without
             errors leave no difference signal, so that FM4 and NA4 of the healthy pair would judge rounding, and its energy ratio
             is far from that of real gears, whose teeth differ."""),
     ]
