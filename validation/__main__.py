@@ -19,6 +19,7 @@ PAGES = {
     "cracks": "crack reductions and their conventions",
     "assumptions": "what the assumptions of the scenes do to the stiffness",
     "truth": "independent values of others, and CalculiX, beside ours",
+    "measured": "measured gearboxes of others, as far as their numbers are public",
     "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
     "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
     "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",

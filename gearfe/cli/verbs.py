@@ -198,25 +198,6 @@ def dynamics(arguments):
         print(f"written: {arguments.output}")
 
 
-def signal(arguments):
-    """``gearfe signal``."""
-    from ..signal.signal_file import read_signal
-    from ..steps import part, steps
-    from ..studies.vibration import analyse
-
-    _check_outputs(arguments, plot="picture", kurtogram="picture")
-    options = {"column": arguments.column, "rate": arguments.rate, "unit": arguments.unit}
-    with working("reading and spectra"):
-        with part("", 0.0, 0.5):
-            read = [read_signal(file, **options) for file in steps(arguments.file, lambda file: f"reading {file}")]
-        signals = {one.name: one for one in read}
-        if len(signals) < len(read):
-            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
-        with part("spectra and indicators", 0.5, 1.0):
-            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name)
-    _print_analysis(found, arguments)
-
-
 def _print_analysis(report, arguments, name=""):
     """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`; `name` of the scene, if it is one."""
     from ..signal.demodulation import demodulate

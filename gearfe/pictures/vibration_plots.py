@@ -64,8 +64,7 @@ def plot_spectra(
         rows[0].annotate(
             name, (place, 1.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom"
         )
-    axis = {"order": "order", "s": "quefrency [s]"}.get(found.axis, f"frequency [{found.axis}]")
-    rows[-1].set_xlabel(axis)
+    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
     return save_figure(figure, path, dpi=dpi)
 
 
@@ -139,6 +138,20 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | 
     axes.set_xlabel("time [s]")
     axes.set_ylabel("frequency [Hz]")
     axes.set_title(title or spectrogram.name, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 3), layout="constrained")
+    axes = figure.subplots()
+    first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
+    axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
+    axes.set_xlabel("quefrency [s]")
+    axes.set_ylabel("cepstrum [-]")
+    axes.set_title(title or found.name, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
 

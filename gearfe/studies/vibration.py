@@ -197,9 +197,8 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     first = next(iter(spectra.values()))
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
-    amplitudes = {
-        case: {name: two[1] for name, two in find_lines(one, lines, between=True).items()} for case, one in spectra.items()
-    }
+    placed = {case: find_lines(one, lines, between=True) for case, one in spectra.items()}
+    amplitudes = {case: {name: two[1] for name, two in one.items()} for case, one in placed.items()}
     both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
     table = indicator_table(signals, *both, healthy=next(iter(signals)))
     return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)
