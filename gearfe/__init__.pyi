@@ -9,8 +9,8 @@ from geometry.tooth.modified import Flank as Flank
 
 from .elements.contact_inp import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
-from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.fracture import stress_intensity as stress_intensity
+from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.loaded_tooth import root_stress as root_stress
 from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .machine.compound_planetary import compound_planetary as compound_planetary

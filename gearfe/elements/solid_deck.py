@@ -80,7 +80,7 @@ def sides_of(cells, faces):
     corners = np.array(FACES[len(cells)])
     every = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
     wanted = np.sort(faces, axis=0)
-    both, place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)
+    place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)[1]
     side, element = np.divmod(np.flatnonzero(np.isin(place[: every.shape[1]], place[every.shape[1] :])), cells.shape[1])
     return np.array([element, side])
 
