@@ -48,6 +48,7 @@ _HOME = {
     "steady_state": "gearfe.motion.steady",
     "with_errors": "gearfe.machine.mesh_errors",
     "expected_lines": "gearfe.signal.spectral_lines",
+    "export_mesh": "gearfe.elements.mesh_file",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
