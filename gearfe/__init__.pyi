@@ -14,6 +14,8 @@ from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.loaded_tooth import root_stress as root_stress
 from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .elements.mesh_file import export_mesh as export_mesh
+from .elements.root_stress import RootStress as RootStress
+from .elements.root_stress import root_stress_along_width as root_stress_along_width
 from .machine.compound_planetary import compound_planetary as compound_planetary
 from .machine.gear_mesh import GearMesh as GearMesh
 from .machine.gear_mesh import Samples as Samples

@@ -47,7 +47,7 @@ class Case:
     pair: gf.GearPair
     phase: float = 0.45
     damage: dict = field(default_factory=dict)
-    meshes: tuple = ({"per_width": 1.5},)
+    meshes: tuple = ({"per_width": 1.0}, {"per_width": 1.5})
 
 
 def pinion(degrees=15.0):
@@ -79,7 +79,7 @@ def pits():
 def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
-    coarse, main, fine = {"per_width": 1.0}, {"per_width": 1.5}, {"per_width": 1.5, "layers": 4, "refine": 1.4}
+    coarse, main, fine = {"per_width": 1.0}, {"per_width": 1.5}, {"per_width": 2.0, "layers": 4, "refine": 1.2}
     return {
         "helical, healthy": Case(pair_of(15.0), meshes=(coarse, main, fine)),
         "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
@@ -204,7 +204,7 @@ def nodal_pressure(path):
 def wanted():
     """(name, mesh) of all runs in order of importance: one mesh of everything first, then the studies of convergence."""
     runs = [(name, LINE_MESHES[0]) for name in lines()]
-    main = [(name, case.meshes[min(1, len(case.meshes) - 1)]) for name, case in cases().items()]
+    main = [(name, case.meshes[0]) for name, case in cases().items()]
     runs += main + [(name, mesh) for name, case in cases().items() for mesh in case.meshes if (name, mesh) not in main]
     return runs + [(name, LINE_MESHES[1]) for name in lines()]
 
