@@ -72,6 +72,7 @@ _HOME = {
     "pulses": "gearfe.machine.tables",
     "read_model": "gearfe.studies.model_file",
     "read_signal": "gearfe.signal.signal_file",
+    "render_mesh": "gearfe.stress.mesh_picture",
     "render_stress": "gearfe.stress.render",
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",

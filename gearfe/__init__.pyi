@@ -75,6 +75,7 @@ from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
+from .stress.mesh_picture import render_mesh as render_mesh
 from .stress.render import render_stress as render_stress
 from .studies.batches import batch as batch
 from .studies.by_zone import compare as compare

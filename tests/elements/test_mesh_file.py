@@ -68,3 +68,25 @@ def test_the_verb_writes_the_cracked_gear(tmp_path, capsys):
     assert main(["mesh", "compound_planetary", "--case", "crack50", "--refine", "0.4", "-o", str(tmp_path / "g.msh")]) == 0
     assert "nodes" in capsys.readouterr().out
     assert (tmp_path / "g.msh").exists()
+
+
+def test_a_close_up_needs_its_damage(tmp_path):
+    part = gf.export_mesh(tmp_path / "t.vtu", GEAR, teeth=1)
+    with pytest.raises(ValueError, match="have none"):
+        gf.render_mesh(part, tmp_path / "t.png", close_up="pits")
+    with pytest.raises(ValueError, match="'crack' or 'pits'"):
+        gf.render_mesh(part, tmp_path / "t.png", close_up="tip")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("close_up", [None, "crack", "pits"])
+def test_pictures_show_the_damage(tmp_path, close_up):
+    from matplotlib.image import imread
+
+    part = gf.export_mesh(tmp_path / "t.vtu", GEAR, [PIT, gf.Crack(level=0.5)], teeth=3)
+    gf.render_mesh(part, tmp_path / "t.png", close_up=close_up, size=(400, 300))
+    picture = imread(tmp_path / "t.png")[..., :3]
+    orange = (picture[..., 0] > picture[..., 2] + 0.4).mean()
+    print(f"{close_up}: {100 * orange:.2f} % orange")
+    assert orange > (0.002 if close_up else 0)
+    assert (picture.min(axis=2) < 0.9).mean() > 0.05
