@@ -258,6 +258,10 @@ apart: of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of ac
 Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls, and its deflection grows, as the mesh is
 refined.
 
+Which differences are of the mesh: the healthy helical pair shows how far a mesh is from its limit. With pits there is one coarse
+mesh of tets so far, with a coarse crack tip: it is too stiff by more than the hexahedra, and how much of the difference is due to
+pits as lost contact can not be told from it; [holed_cracks](holed_cracks.md) bounds that part.
+
 `python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
 installed, run by run.
 """
