@@ -16,6 +16,9 @@ from .elements.fracture import stress_intensity as stress_intensity
 from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.loaded_tooth import root_stress as root_stress
 from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
+from .elements.mesh_file import export_mesh as export_mesh
+from .elements.root_stress import RootStress as RootStress
+from .elements.root_stress import root_stress_along_width as root_stress_along_width
 from .machine.compound_planetary import compound_planetary as compound_planetary
 from .machine.gear_mesh import GearMesh as GearMesh
 from .machine.gear_mesh import Samples as Samples
@@ -87,6 +90,7 @@ from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
+from .stress.mesh_picture import render_mesh as render_mesh
 from .stress.render import render_stress as render_stress
 from .studies.batches import batch as batch
 from .studies.by_zone import compare as compare

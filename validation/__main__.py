@@ -32,6 +32,8 @@ PAGES = {
     "hard": "hard cases, each with its outcome",
     "three": "three dimensions: energy model against hexahedra of the whole gear",
     "pairs_three": "stiffness of pairs in three dimensions against hexahedra of both gears (long: --reference)",
+    "outsider_three": "three dimensions against CalculiX: whole gears in contact and under line loads (--reference)",
+    "holed_cracks": "pits cut out of cracked teeth: the ten rows of S4 with holes (resumable)",
     "holes": "pits as real holes: volume cut, and what the missing material does to k",
     "pictures": "stress pictures of every scene and damage case",
     "hard_three": "hard cases in three dimensions, each with its outcome",
@@ -46,7 +48,7 @@ PAGES = {
     "tutorials": "what the scripts of the documentation print, for their test",
 }
 
-LONG_RUNS = ("pairs_three", "herringbone")  # pages whose finite elements --reference computes
+LONG_RUNS = ("pairs_three", "herringbone", "outsider_three")  # pages whose finite elements --reference computes
 LONG = {
     "sample": "a new sample of random pairs",
     "herringbone_scan": "an hour of energy models, where it is not kept",

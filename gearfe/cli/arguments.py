@@ -69,6 +69,14 @@ def main(argv=None):
     verb.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
     )
+    verb = _verb(verbs, "mesh", run.mesh, "write the mesh of a damaged gear, whole or a few teeth, for other programs")
+    _scene_arguments(verb, count=False)
+    verb.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="which gear of the pair (default: pinion)")
+    verb.add_argument("--cells", choices=("hexahedra", "tetrahedra"), help="default: tetrahedra with pits or --teeth")
+    verb.add_argument("--teeth", type=int, metavar="N", help="odd number of teeth around the damaged one (default: all)")
+    verb.add_argument("-o", "--output", metavar="FILE", required=True, help="the mesh: .msh, .vtu or .inp")
+    verb.add_argument("--picture", metavar="FILE", help="draw it too: .png")
+    verb.add_argument("--close-up", choices=("crack", "pits"), help="with --picture: only what is around the damage")
     verb = _verb(
         verbs, "dynamics", run.dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged"
     )

@@ -163,6 +163,33 @@ def render(arguments):
     print(f"written: {arguments.output}")
 
 
+def mesh(arguments):
+    """``gearfe mesh``."""
+    from ..contact.bodies import seen_gears
+    from ..elements.mesh_file import export_mesh
+    from ..scene.load import load_scene
+    from ..stiffness.inputs import by_gear
+
+    _check_outputs(arguments, output="mesh", picture="picture")
+    if arguments.close_up and not arguments.picture:
+        raise ValueError("--close-up is of a picture: give --picture FILE too")
+    chosen = load_scene(arguments.scene).pair(arguments.pair)
+    side = ("pinion", "wheel").index(arguments.gear)
+    cracks, pits = by_gear(chosen.pair, chosen.case(arguments.case).get("damage"))
+    gear = (chosen.pair.gear_1, chosen.pair.gear_2)[side]
+    if chosen.face == "herringbone":
+        gear = seen_gears(chosen.pair, chosen.face, chosen.groove)[side][0]
+    options = {"cells": arguments.cells, "teeth": arguments.teeth, "refine": arguments.refine}
+    with working("mesh"):
+        made = export_mesh(arguments.output, gear, (*cracks[side], *pits[side]), **options)
+        if arguments.picture:
+            from ..stress.mesh_picture import render_mesh
+
+            render_mesh(made, arguments.picture, close_up=arguments.close_up)
+    print(f"{arguments.gear}, z = {gear.z}: {made.points.shape[1]:,} nodes, {made.cells.shape[1]:,} cells")
+    print(f"written: {arguments.output}" + (f", {arguments.picture}" if arguments.picture else ""))
+
+
 def dynamics(arguments):
     """``gearfe dynamics``."""
     from dataclasses import replace

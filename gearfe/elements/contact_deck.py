@@ -58,7 +58,7 @@ def read_rows(path: str | os.PathLike[str]) -> dict[int, tuple[float, float, flo
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
     except FileNotFoundError as error:
-        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME' first; if it ran, its own output says why it stopped") from error
+        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output says why it stopped") from error
     rows = [line.split() for line in lines]
     found = {int(r[0]): (float(r[1]), float(r[2]), float(r[3])) for r in rows if len(r) == 4 and r[0].isdigit()}
     if not found:
