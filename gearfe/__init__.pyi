@@ -2,6 +2,7 @@
 
 from geometry.damage.crack import Crack as Crack
 from geometry.damage.pit import Pit as Pit
+from geometry.pair.flanks import Misalignment as Misalignment
 from geometry.pair.gear_pair import GearPair as GearPair
 from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
@@ -69,6 +70,7 @@ from .signal.spectral_lines import find_lines as find_lines
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
+from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
 from .stress.render import render_stress as render_stress

@@ -75,13 +75,14 @@ def why_solid(pair, face, damage):
     return ""
 
 
-def choose(method, pair, cracks, pits, face, teeth):
+def choose(method, pair, cracks, pits, face, teeth, flanks=None):
     """The method that ``auto`` stands for, and why."""
     if method != "auto":
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
     why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
+    why = why or ("flanks change along the width" if any(form.wide for form in flanks or ()) else "")
     return ("ritz3d", why) if why else ("ritz", "spur gears, nothing changes along the width: plane strain")
 
 
@@ -140,6 +141,11 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
     if flanks is not None and not row.flanks:
         raise ValueError(f"modified flanks with {method}, which takes involutes only: use {having('flanks')}")
+    if row.kind != "solid" and any(form.wide for form in flanks or ()):
+        raise ValueError(
+            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d' or "
+            "'fe3d'"
+        )
     if variants and not row.variants:
         raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")
     if variants is not None and not isinstance(variants, dict):

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank, flank_forms
+from geometry.tooth.modified import Flank
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
@@ -49,6 +50,7 @@ def mesh_stiffness(
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
+    misalignment: Misalignment | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -76,6 +78,7 @@ def mesh_stiffness(
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
+    misalignment: Misalignment | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -102,6 +105,7 @@ def mesh_stiffness(
     span: str = "cycle",
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
     flanks: Mapping[str, Flank] | None = None,
+    misalignment: Misalignment | None = None,
     extended: bool = True,
     state: str = "plane strain",
     refine: float = 1.0,
@@ -152,8 +156,11 @@ def mesh_stiffness(
         and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     flanks : dict, optional
         Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods of the
-        section and the plain sums of spur gears without pits. The curve's `te` then is the transmission error under load and
-        `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
+        section, ``ritz3d``, ``fe3d``, and the plain sums of spur gears without pits. What changes along the width needs
+        ``ritz3d`` or ``fe3d``. The curve's `te` then is the transmission error under load and `unloaded` that without; with pitch
+        deviations give phases of as many teeth as are to be seen.
+    misalignment : Misalignment, optional
+        Axes that are not parallel, for ``ritz3d`` and ``fe3d``. (A centre distance that is not the nominal one: the pair's `a`.)
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -216,8 +223,8 @@ def mesh_stiffness(
     check_state(state)
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
-    forms = flank_forms(pair, flanks)
-    method, why = choose(method, pair, cracks, pits, face, teeth)
+    forms = flank_forms(pair, flanks, misalignment)
+    method, why = choose(method, pair, cracks, pits, face, teeth, forms)
     row, own = row_of(method)
     if not is_number(groove):
         raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
@@ -234,6 +241,7 @@ def mesh_stiffness(
             "method": own or row.name,
             "damage": damage,
             "flanks": flanks,
+            "misalignment": misalignment,
             "extended": extended,
             "state": state,
             "refine": refine,
@@ -249,12 +257,14 @@ def mesh_stiffness(
     numeric = {"refine": refine, "order": row.order if order is None else order}
     said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
     said |= {"flanks": {name: asdict(one) for name, one in flanks.items() if one}} if forms and flanks else {}
+    said |= {"misalignment": asdict(misalignment)} if misalignment is not None else {}
     if row.kind == "solid":
         options = {"face": face, "groove": groove, "extended": extended, **numeric}
         case = (pair, materials, phase, cracks, pits)
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
+        options["flanks"] = forms
         curves = [wide_curve(value, case, meta, **options) for value in forces]
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
