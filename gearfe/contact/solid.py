@@ -69,9 +69,9 @@ def pair_stiffness3d(
 ):
     """Mesh stiffness of a pair of finite width.
 
-    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it (of
-    modified flanks: under load less without load). The flanks press at right angles, ``F / cos(beta_b)`` in all, and approach by ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the
-    normal force per normal approach.
+    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it (of modified
+    flanks: under load less without load). The flanks press at right angles, ``F / cos(beta_b)`` in all, and approach by
+    ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the normal force per normal approach.
 
     Parameters
     ----------

@@ -141,10 +141,10 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
     if flanks is not None and not row.flanks:
         raise ValueError(f"modified flanks with {method}, which takes involutes only: use {having('flanks')}")
-    if row.kind != "solid" and any(form.wide for form in flanks or ()):
+    if row.kind == "section" and any(form.wide for form in flanks or ()):
         raise ValueError(
-            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d' or "
-            "'fe3d'"
+            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d', "
+            "'fe3d' or a plain sum"
         )
     if variants and not row.variants:
         raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")

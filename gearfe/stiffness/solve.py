@@ -155,12 +155,11 @@ def mesh_stiffness(
         the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
         and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     flanks : dict, optional
-        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods of the
-        section, ``ritz3d``, ``fe3d``, and the plain sums of spur gears without pits. What changes along the width needs
-        ``ritz3d`` or ``fe3d``. The curve's `te` then is the transmission error under load and `unloaded` that without; with pitch
-        deviations give phases of as many teeth as are to be seen.
+        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods; what
+        changes along the width needs ``ritz3d``, ``fe3d`` or a plain sum. The curve's `te` then is the transmission error under
+        load and `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
     misalignment : Misalignment, optional
-        Axes that are not parallel, for ``ritz3d`` and ``fe3d``. (A centre distance that is not the nominal one: the pair's `a`.)
+        Axes that are not parallel, for the same. (A centre distance that is not the nominal one: the pair's `a`.)
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).

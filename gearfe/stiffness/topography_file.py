@@ -40,7 +40,7 @@ def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topograph
         raise ValueError(f"{path}: not readable as a table: {error}") from error
     if len(rows) < 3 or len(rows[0]) < 3:
         raise ValueError(
-            f"{path}: a topography needs a row of two heights or more, and two rows or more of roll length and amounts"
+            f"{path}: a topography needs a row of two or more heights, and two or more rows of roll length and amounts"
         )
     heights = _numbers(path, 1, rows[0][1:], len(rows[0]) - 1)
     table = [_numbers(path, i, row, len(rows[0])) for i, row in enumerate(rows[1:], start=2)]

@@ -114,12 +114,6 @@ def test_the_estimate_is_given_for_modified_flanks():
     assert ((found.error > 0) & (found.error < 0.01 * found.k)).all()
 
 
-def test_methods_that_know_involutes_only_refuse():
-    pit = gf.Pit(radius=37.0, axes=(0.5, 0.5), depth=0.2, z=10.0)
-    with pytest.raises(ValueError, match="modified flanks with pits"):
-        solved(relieved(0.01, 4.0), method="textbook", damage={"pinion": [pit]})
-
-
 def test_a_saved_curve_keeps_its_unloaded_error(tmp_path):
     found = solved(relieved(0.01, 4.0), phases=8)
     found.save(tmp_path / "curve.csv")

@@ -178,9 +178,24 @@ def test_impossible_flanks_are_refused(given, message):
         solved({"pinion": gf.Flank(**given)})
 
 
+@pytest.mark.parametrize("hand", [1, -1])
+def test_plain_sums_of_helical_pairs_close_the_gaps_of_their_slices(hand):
+    """Where all slices touch, a linear gap takes nothing of the stiffness; under a light load most of it is gone."""
+    pair = helical(hand)
+    options = {"method": "textbook", "face": "helical", "order": None, "phases": np.arange(8) / 8, "pair": pair}
+    plain, askew = (solved(misalignment=one, force=9000.0, **options) for one in (None, gf.Misalignment(F_beta=hand * 0.004)))
+    assert_allclose(askew.k_tangent, plain.k_tangent, rtol=2e-3)
+    assert_allclose(askew.te, plain.te, atol=0.7e-6)
+    assert (np.abs(askew.te - plain.te) > 1e-9).any()
+    light = solved(misalignment=gf.Misalignment(F_beta=hand * 0.02), force=100.0, **options)
+    assert (light.k < 0.6 * plain.k).all()
+    mirror = solved(misalignment=gf.Misalignment(F_beta=-hand * 0.02), force=100.0, **(options | {"pair": helical(-hand)}))
+    assert_allclose(light.k, mirror.k, rtol=1e-9)
+
+
 def test_a_section_says_that_it_knows_no_width():
     for options in ({"flanks": {"pinion": gf.Flank(twist=0.01)}}, {"misalignment": gf.Misalignment(F_beta=0.01)}):
-        with pytest.raises(ValueError, match=r"knows no width: use method = 'ritz3d'"):
+        with pytest.raises(ValueError, match=r"knows no width: use method = 'ritz3d', 'fe3d' or"):
             gf.mesh_stiffness(PAIR, 2000.0, STEEL, method="ritz", **options)
     with pytest.raises(ValueError, match=r"um of misalignment per mm"):
         solved(misalignment=gf.Misalignment(F_beta=20.0))
