@@ -42,6 +42,7 @@ _HOME = {
     "error_map": "gearfe.studies.errormap",
     "gear_pair": "gearfe.machine.gear_pair",
     "herringbone_planetary": "gearfe.machine.herringbone_planetary",
+    "mesh_excitation": "gearfe.machine.mesh_excitation",
     "natural_frequencies": "gearfe.machine.tables",
     "simulate": "gearfe.motion.simulate",
     "single_mesh": "gearfe.machine.single_mesh",

@@ -25,6 +25,7 @@ from .machine.layout import Layout as Layout
 from .machine.member import Member as Member
 from .machine.member import disc as disc
 from .machine.mesh_errors import with_errors as with_errors
+from .machine.mesh_excitation import mesh_excitation as mesh_excitation
 from .machine.of_scene import build_machine as build_machine
 from .machine.pitted_planetary import pitted_planetary as pitted_planetary
 from .machine.planetary import planetary as planetary
