@@ -43,7 +43,7 @@ from .motion.portrait import poincare_section as poincare_section
 from .motion.response import Response as Response
 from .motion.simulate import simulate as simulate
 from .motion.steady import steady_state as steady_state
-from .pictures.stiffness_plots import plot_contact as plot_contact
+from .pictures.contact_plot import plot_contact as plot_contact
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
@@ -70,6 +70,7 @@ from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
+from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
 from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError

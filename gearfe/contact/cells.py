@@ -51,6 +51,18 @@ class Cells:
     load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
     pressure: NDArray[np.float64] = None  # type: ignore[assignment]
 
+    def at_ends(self, pair):
+        """Where a contact line carries the most at an end face of the common width: (z, roll length of the pinion) [mm]."""
+        out, width = [], min(pair.gear_1.b, pair.gear_2.b)
+        for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):
+            at = np.flatnonzero((self.order == order) & (self.half == half) & (self.load > 0))
+            if not at.size:
+                continue
+            most = at[np.argmax(self.load[at] / self.width[at])]
+            z, reach = float(self.z[most]), float(self.width[most]) / 2
+            out += [(end, float(self.roll_1[most])) for end in (0.0, width) if abs(z - end) < reach * (1 + 1e-6)]
+        return out
+
 
 class Piece(NamedTuple):
     """A part of a contact line between two depths [mm].

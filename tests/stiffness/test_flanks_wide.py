@@ -203,3 +203,14 @@ def test_a_section_says_that_it_knows_no_width():
         gf.Misalignment(f_sigma_beta=0.01)
     with pytest.raises(ValueError, match="give a Misalignment"):
         solved(misalignment=0.01)
+
+
+def test_the_pattern_marks_edge_contact(tmp_path):
+    found = gf.contact_pattern(PAIR, 2000.0, STEEL, misalignment=gf.Misalignment(F_beta=0.02), phases=8)
+    assert {z for cells in found.cells for z, _ in cells.at_ends(PAIR)} == {0.0}
+    figure = gf.plot_contact(PAIR, found, None, tmp_path / "pattern.png")
+    assert any("end face" in text.get_text() for text in figure.legends[0].get_texts())
+    crowned = {"pinion": gf.Flank(lead_crowning=0.03)}
+    relief = {"wheel": gf.Flank(tip_relief=0.03, tip_start_roll=PAIR.gear_2.roll_a - 4, tip_exponent=2)}
+    soft = gf.contact_pattern(PAIR, 500.0, STEEL, flanks=crowned | relief, phases=[0.4])
+    assert not soft.cells[0].at_ends(PAIR)
