@@ -71,6 +71,7 @@ _HOME = {
     "poincare_section": "gearfe.motion.portrait",
     "power_spectral_density": "gearfe.signal.spectra",
     "pulses": "gearfe.machine.tables",
+    "random_pitch": "geometry.tooth.pitch",
     "read_model": "gearfe.studies.model_file",
     "read_topography": "gearfe.stiffness.topography_file",
     "read_signal": "gearfe.signal.signal_file",

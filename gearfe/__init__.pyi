@@ -7,6 +7,7 @@ from geometry.pair.gear_pair import GearPair as GearPair
 from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
+from geometry.tooth.pitch import random_pitch as random_pitch
 
 from .elements.contact_deck import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
