@@ -21,6 +21,7 @@ NO_VARIANTS = (
     "flanks",
 )
 
+SPANS = ("cycle", "tooth", "revolution")
 CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 
@@ -42,13 +43,15 @@ def overlap(pair, face, groove):
 
 def phase_array(phases, span, pair, overlap=0.0):
     """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
-    if span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
+    if span not in SPANS:
+        raise ValueError(f"span = {span!r}, but it must be one of {', '.join(SPANS)}")
     if np.ndim(phases) == 0:
         phases = check_count(phases)
         if span == "tooth":
             return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
-        return np.arange(phases) / phases
+        return np.arange(phases * (pair.gear_1.z if span == "revolution" else 1)) / phases
+    if span == "revolution":
+        raise ValueError("span = 'revolution' with phases spelled out: give their number in each mesh cycle")
     phases = numbers("phases", phases, "")
     if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
         raise ValueError("phases must be a non-empty array of finite numbers")

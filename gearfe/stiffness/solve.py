@@ -15,7 +15,7 @@ from geometry.tooth.modified import Flank
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
-from .curve import StiffnessCurve
+from .curve import StiffnessCurve, joined
 from .inputs import (
     by_gear,
     check_method,
@@ -147,9 +147,10 @@ def mesh_stiffness(
         stand otherwise.
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves.
-    span : {"cycle", "tooth"}
+    span : {"cycle", "tooth", "revolution"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
-        after it (where the damaged tooth is); in three dimensions pair 0 enters at one end at phase 0.
+        after it (where the damaged tooth is), or every cycle of one revolution of the pinion (for pitch deviations); in three
+        dimensions pair 0 enters at one end at phase 0.
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
@@ -235,18 +236,23 @@ def mesh_stiffness(
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
+    same: dict[str, Any] = {
+        "method": own or row.name,
+        "damage": damage,
+        "flanks": flanks,
+        "misalignment": misalignment,
+        "extended": extended,
+        "state": state,
+        "refine": refine,
+    }
+    same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
+    same |= {"error": error, "cache": cache, "tell": tell}
+    if span == "revolution":
+        more = same | {"pose": pose, "cache": solved}
+        cycles = np.split(phase, pair.gear_1.z)
+        turns = [mesh_stiffness(pair, np.array(forces), materials, phases=part, **more) for part in cycles]
+        return _as_asked([joined(parts) for parts in zip(*turns, strict=True)], force, torque)
     if pose != "mean":
-        same: dict[str, Any] = {
-            "method": own or row.name,
-            "damage": damage,
-            "flanks": flanks,
-            "misalignment": misalignment,
-            "extended": extended,
-            "state": state,
-            "refine": refine,
-        }
-        same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
-        same |= {"error": error, "cache": cache, "tell": tell}
         curves = [
             in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
             for value in forces

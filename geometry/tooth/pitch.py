@@ -51,7 +51,7 @@ def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
     >>> places = np.array(random_pitch(gear, 6, seed=1))
     >>> single = np.diff(places, append=places[0])
     >>> [round(1e3 * float(value), 2) for value in (abs(single).max(), np.ptp(places))]  # um
-    [8.26, 14.8]
+    [8.26, 14.75]
     """
     if isinstance(iso_class, bool) or iso_class not in CLASSES:
         raise ValueError(f"iso_class = {iso_class!r}, but ISO 1328-1 has the classes 1 to 11")
