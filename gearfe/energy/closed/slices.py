@@ -91,7 +91,7 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
                 found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()))
                 rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
     table = np.concatenate(rows) if rows else np.zeros((0, 6))
-    i, j, roll, weight, touching = table[:, 0].astype(int), table[:, 1].astype(int), *table[:, 2:5].T
+    (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
     roll_2, gap = pair.mate_roll(roll), None
     if flanks is not None:
         backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # there, the end z = b touches first
