@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
-`motion`, `stress`; `studies`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
+`stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -30,9 +30,12 @@ _HOME = {
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",
+    "Surrogate": "gearfe.surrogates.surrogate",
     "ToothDamage": "gearfe.machine.gear_mesh",
     "batch": "gearfe.studies.batches",
+    "cepstrum": "gearfe.signal.time_frequency",
     "compare": "gearfe.studies.by_zone",
+    "curve_bands": "gearfe.sweeps.effects",
     "demodulate": "gearfe.signal.demodulation",
     "contact_pattern": "gearfe.stiffness.pattern",
     "decimate": "gearfe.signal.series",
@@ -42,6 +45,8 @@ _HOME = {
     "disc": "gearfe.machine.member",
     "error_map": "gearfe.studies.errormap",
     "gear_pair": "gearfe.machine.gear_pair",
+    "gear_indicator_table": "gearfe.signal.gear_indicators",
+    "gear_indicators": "gearfe.signal.gear_indicators",
     "herringbone_planetary": "gearfe.machine.herringbone_planetary",
     "mesh_excitation": "gearfe.machine.mesh_excitation",
     "natural_frequencies": "gearfe.machine.tables",
@@ -49,14 +54,17 @@ _HOME = {
     "single_mesh": "gearfe.machine.single_mesh",
     "stage_phases": "gearfe.machine.planetary",
     "steady_state": "gearfe.motion.steady",
+    "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",
     "expected_lines": "gearfe.signal.spectral_lines",
+    "fit_surrogate": "gearfe.surrogates.fit",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",
+    "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",
     "new_scene": "gearfe.scene.new",
     "order_spectrum": "gearfe.signal.orders",
@@ -67,6 +75,7 @@ _HOME = {
     "plot_contact": "gearfe.pictures.contact_plot",
     "plot_kurtogram": "gearfe.pictures.vibration_plots",
     "plot_phase": "gearfe.pictures.vibration_plots",
+    "plot_spectrogram": "gearfe.pictures.vibration_plots",
     "plot_spectra": "gearfe.pictures.vibration_plots",
     "poincare_section": "gearfe.motion.portrait",
     "power_spectral_density": "gearfe.signal.spectra",
@@ -75,20 +84,29 @@ _HOME = {
     "read_model": "gearfe.studies.model_file",
     "read_topography": "gearfe.stiffness.topography_file",
     "read_signal": "gearfe.signal.signal_file",
+    "read_signals": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
+    "Runs": "gearfe.sweeps.runs",
+    "open_runs": "gearfe.sweeps.runs",
+    "plan_sweep": "gearfe.sweeps.plan",
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
+    "spectrogram": "gearfe.signal.time_frequency",
     "spectral_kurtosis": "gearfe.signal.kurtogram",
     "TransmissionError": "gearfe.stiffness.transmission_error",
     "transmission_error": "gearfe.stiffness.transmission_error",
+    "sobol_indices": "gearfe.sweeps.effects",
     "spectrum": "gearfe.signal.spectra",
+    "told_apart": "gearfe.sweeps.effects",
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
+    "sweep": "gearfe.sweeps.run",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
-    "write_contact_inp": "gearfe.elements.contact_deck",
+    "write_contact_inp": "gearfe.elements.contact_inp",
     "write_inp": "gearfe.elements.deck",
+    "write_line_inp": "gearfe.elements.line_deck",
 }
 __all__ = sorted(_HOME)
 

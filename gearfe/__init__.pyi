@@ -9,9 +9,10 @@ from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
 from geometry.tooth.pitch import random_pitch as random_pitch
 
-from .elements.contact_deck import write_contact_inp as write_contact_inp
+from .elements.contact_inp import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
 from .elements.fracture import stress_intensity as stress_intensity
+from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.loaded_tooth import root_stress as root_stress
 from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .machine.compound_planetary import compound_planetary as compound_planetary
@@ -48,10 +49,13 @@ from .pictures.contact_plot import plot_contact as plot_contact
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
+from .pictures.vibration_plots import plot_spectrogram as plot_spectrogram
 from .reports.page import report as report
 from .scene.load import load_scene as load_scene
 from .scene.new import new_scene as new_scene
 from .signal.demodulation import demodulate as demodulate
+from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
+from .signal.gear_indicators import gear_indicators as gear_indicators
 from .signal.housing import housing_signal as housing_signal
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
@@ -64,11 +68,15 @@ from .signal.series import decimate as decimate
 from .signal.series import envelope as envelope
 from .signal.series import integrate as integrate
 from .signal.signal_file import read_signal as read_signal
+from .signal.signal_file import read_signals as read_signals
 from .signal.spectra import power_spectral_density as power_spectral_density
 from .signal.spectra import spectrum as spectrum
 from .signal.spectra import squared_envelope_spectrum as squared_envelope_spectrum
 from .signal.spectral_lines import expected_lines as expected_lines
 from .signal.spectral_lines import find_lines as find_lines
+from .signal.tachometer import with_tachometer as with_tachometer
+from .signal.time_frequency import cepstrum as cepstrum
+from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
@@ -82,6 +90,16 @@ from .studies.by_zone import compare as compare
 from .studies.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
+from .surrogates.fit import fit_surrogate as fit_surrogate
+from .surrogates.surrogate import Surrogate as Surrogate
+from .sweeps.effects import curve_bands as curve_bands
+from .sweeps.effects import main_effects as main_effects
+from .sweeps.effects import sobol_indices as sobol_indices
+from .sweeps.effects import told_apart as told_apart
+from .sweeps.plan import plan_sweep as plan_sweep
+from .sweeps.run import sweep as sweep
+from .sweeps.runs import Runs as Runs
+from .sweeps.runs import open_runs as open_runs
 
 __all__: list[str]
 

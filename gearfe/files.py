@@ -226,7 +226,7 @@ def read_mat(path):
         try:
             return {name: value for name, value in loadmat(file).items() if not name.startswith("__")}
         except NotImplementedError as error:
-            raise ValueError(f"{path} is a MATLAB file of version 7.3 (HDF5): save it with '-v7'") from error
+            raise ValueError(f"{path} says it is a MATLAB file of version 7.3, but holds no HDF5: it is damaged") from error
         except (
             MatReadError,
             ValueError,
@@ -234,8 +234,8 @@ def read_mat(path):
             EOFError,
             IndexError,
             KeyError,
-            OverflowError,
             MemoryError,
+            ArithmeticError,
             zlib.error,
         ) as error:
             raise ValueError(f"{path} is not a MATLAB file: {error}") from error
@@ -262,8 +262,9 @@ class Format(NamedTuple):
 FORMATS = {
     ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
     ".txt": Format((), ("signal",), None, read_text),
-    ".npz": Format(("curve", "response"), ("signal",), write_npz, read_npz),
+    ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
+    **{suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet")},
     ".json": Format(("curve",), (), write_json, None),
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..files import save_figure
+from ..units import NEWTON_PER_UM
 
 if TYPE_CHECKING:
     pass
 
 
-NEWTON_PER_UM = 1e6  # one N/um in N/m: the unit of k in every picture
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")  # apart for the colour-blind
 DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
 SQUASHED = 0.3  # lowest over largest stiffness from which on an axis from zero would waste the picture

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
     from ..signal.kurtogram import Kurtogram
     from ..signal.spectra import Spectrum
+    from ..signal.time_frequency import Spectrogram
 
 
 def plot_spectra(
@@ -57,7 +58,8 @@ def plot_spectra(
         figure.suptitle(title, fontsize=10)
     end = 1.2 * max(lines.values()) if lines and top is None else top
     rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
-    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
+    axis = {"order": "order", "s": "quefrency [s]"}.get(found.axis, f"frequency [{found.axis}]")
+    rows[-1].set_xlabel(axis)
     return save_figure(figure, path, dpi=dpi)
 
 
@@ -102,6 +104,22 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
     axes.set_ylabel("level")
     found = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
     axes.set_title(f"{title}: {found}" if title else found, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
+def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 4), layout="constrained")
+    axes = figure.subplots()
+    largest = max(float(spectrogram.values.max()), 1e-300)
+    shown = 20 * np.log10(np.maximum(spectrogram.values / largest, 1e-4))
+    drawn = axes.pcolormesh(spectrogram.time, spectrogram.frequency, shown, cmap="viridis", shading="nearest", rasterized=True)
+    figure.colorbar(drawn, ax=axes, label=f"amplitude [dB re {largest:.3g} {spectrogram.unit}]")
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("frequency [Hz]")
+    axes.set_title(title or spectrogram.name, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
 

@@ -1,22 +1,33 @@
-"""Measured signals from files: CSV, MATLAB and numpy. Rate and unit are stated, in the file or by the caller."""
+"""Measured signals from files of many formats. Rate and unit are stated, in the file or by the caller, never guessed."""
 
 import math
 import os
 import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..files import read
+from ..files import read, suffix_of
+from .array_file import array_file, hdf_file
+from .found import ANGLES, RATES, SHAFTS, TIMES, Found
+from .recorder_file import parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
+from .tachometer import with_tachometer
+from .text_table import text_table
 
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
-RATES = ("rate", "fs", "sampling rate", "sampling frequency")
-TIMES, ANGLES, SHAFTS = ("time", "t"), ("angle", "shaft angle"), ("shaft frequency",)
 UNEVEN = 0.1  # of a step: times printed with few digits stay below, a lost sample does not
+LONGEST = 60  # characters of a unit
 AGREE = 1e-3  # between a stated rate and the time column
+READERS = {
+    ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
+    ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
+}  # fmt: skip
 
 
 def read_signal(
@@ -26,26 +37,38 @@ def read_signal(
     rate: float | None = None,
     unit: str | None = None,
     shaft_frequency: float | None = None,
+    header: str | None = None,
+    scale: float = 1.0,
 ) -> Signal:
-    """Read one signal from a ``.csv`` (or ``.txt``), ``.mat`` or ``.npz`` file.
+    """Read one channel of a file of measured signals; `read_signals` reads several.
 
-    The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sampling_frequency``) [Hz], or follows from ``time`` (or ``t``), or is
-    given here; where it is given twice the values must agree. The unit is stated beside the values, or here.
+    The rate is ``rate`` (or ``fs``, ``sampling_rate``, ``sample_rate``, ``sampling_frequency``) [Hz], or follows from ``time``
+    (or ``t``), or is given here; where it is given twice the values must agree. The unit is stated beside the values, or here.
 
-    - CSV: columns by comma, semicolon or tab, numbers with a decimal point. A header line, or the last comment (# or %)
-      above the numbers, names the columns and their units: ``time [s], housing [m/s^2]``; time in s, ms or us, a shaft's
-      ``angle`` in rad or deg. Comments may state ``# rate = 61440 Hz``, ``# unit = m/s^2``, ``# shaft_frequency = 16.7 Hz``.
-    - .mat (up to version 7) and .npz: vectors by name, ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency``
-      [Hz]; text ``unit``. A response that gearfe wrote (``values``, ``names``, ``units``): columns by channel.
+    - ``.csv``, ``.txt``: columns by comma, semicolon, tab or blanks, numbers with a decimal point or comma. The last row above
+      the numbers, or the last comment (# or %), names the columns and their units: ``time [s], housing [m/s^2]``; units may
+      stand in a row below the names. Rows above are titles. Time in s, ms or us, a shaft's ``angle`` in rad or deg. Titles and
+      comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``.
+    - ``.mat`` (also of version 7.3), ``.npz``, ``.h5``, ``.hdf5``: vectors by name, columns of long matrices (``acc 1``), fields
+      of structs (``run.acc``) and cells (``run{2}``); ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency`` [Hz];
+      text or attribute ``unit``. A response that gearfe wrote: columns by channel.
+    - ``.wav``: ``channel 1``...; parts of full scale, to be given `unit` and `scale`.
+    - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated.
+
+    Nothing is unpickled. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
 
     Parameters
     ----------
     path : path
     column : str, optional
-        Name of the column or vector; needed if there are several.
+        Name of the channel, without its groups if it is the only one of that name; needed if there are several channels.
     rate, shaft_frequency : float, optional
-        [Hz].
+        [Hz]. Where the file itself gives several rates, the one that `rate` names counts.
     unit : str, optional
+    header : str, optional
+        Of a text table without names: ``"time [s], housing [m/s^2]"``.
+    scale : float
+        Factor on the values, for instance of the sensor: `unit` per unit in the file. Then `unit` replaces what the file states.
 
     Returns
     -------
@@ -56,76 +79,185 @@ def read_signal(
     ------
     ValueError
         Naming file and cause: no rate, two rates, times that fall or have gaps, no unit, an unknown unit, several columns, a
-        cell that is no number (with its line), a sample that is not finite.
+        cell that is no number (with its line), a sample that is not finite, a damaged file; what was found in it.
+    RuntimeError
+        If the library that reads the format is missing.
     """
-    found = read(path, "signal")
-    vectors, units, stated = _from_arrays(path, found) if isinstance(found, dict) else _from_lines(path, found)
-    time, angle = (_special(path, vectors, units, names, scale) for names, scale in ((TIMES, TIME), (ANGLES, TURN)))
-    name = _choose(path, vectors, column)
-    unit_stated = {text.strip() for text in (unit, units.get(name), stated.get("unit")) if text and text.strip()}
-    if len(unit_stated) != 1:
-        given = f"units {', '.join(sorted(unit_stated))}" if unit_stated else "no unit"
-        raise ValueError(f"{path}: {given} for {name!r}; give one, in the file ('{name} [m/s^2]', 'unit = m/s^2') or as unit=")
-    turning = _one(path, "shaft_frequency", [shaft_frequency, *(stated[key] for key in SHAFTS if key in stated)])
+    found = channels(path, header)
+    name = _choose(path, found, column)
+    return _signal(path, found, name, rate=rate, unit=unit, shaft_frequency=shaft_frequency, scale=scale)
+
+
+def read_signals(
+    path: str | os.PathLike[str],
+    columns: Sequence[str] | None = None,
+    *,
+    units: str | Mapping[str, str] | None = None,
+    rate: float | None = None,
+    header: str | None = None,
+    scale: float = 1.0,
+    tachometer: str | None = None,
+    pulses: int = 1,
+) -> dict[str, Signal]:
+    """Read channels of a file, by name; see `read_signal` for the formats.
+
+    Parameters
+    ----------
+    path : path
+    columns : sequence of str, optional
+        Default: all, the tachometer excepted.
+    units : str or dict of str to str, optional
+        Of all channels, or by channel; where the file states none.
+    rate, header, scale
+        As of `read_signal`.
+    tachometer : str, optional
+        Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`.
+    pulses : int
+        Of the tachometer, in a turn.
+
+    Returns
+    -------
+    dict of str to Signal
+    """
+    found = channels(path, header)
+    pulse = None if tachometer is None else _choose(path, found, tachometer)
+    names = [one for one in found.channels() if one != pulse]
+    if columns is not None:
+        names = [_choose(path, found, one) for one in columns]
+    if not names:
+        _choose(path, found, None)
+    given = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
+    unknown = [name for name in given if name not in found.vectors and given[name] is not None]
+    if unknown:
+        raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {found.told()}")
+    out = {name: _signal(path, found, name, rate=rate, unit=given.get(name), scale=scale) for name in names}
+    if pulse is None:
+        return out
+    clock = _signal(path, found, pulse, rate=rate, unit="1" if not found.units.get(pulse) else None)
+    return {name: with_tachometer(one, clock, pulses) for name, one in out.items()}
+
+
+def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
+    """What a file holds: its channels, their units and rates.
+
+    Raises
+    ------
+    ValueError
+        If its suffix is of no format, it cannot be read or is damaged, or holds no channel.
+    """
+    suffix = suffix_of(path, "signal", reading=True)
+    if header is not None and suffix in READERS:
+        raise ValueError(f"{path}: header = {header!r}, but only text tables can lack names; leave it out")
+    try:
+        found = READERS[suffix](path) if suffix in READERS else text_table(path, read(path, "signal"), header)
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+    if not found.vectors:
+        raise ValueError(f"{path}: no vector of real numbers; it has {found.told()}")
+    strange = [name for name, unit in found.units.items() if not unit.isprintable() or len(unit) > LONGEST]
+    if strange:
+        raise ValueError(f"{path}: the unit of {strange[0]!r} is no text one can read: the file is damaged")
+    return found
+
+
+def _signal(
+    path: Any,
+    found: Found,
+    name: str,
+    *,
+    rate: float | None = None,
+    unit: str | None = None,
+    shaft_frequency: float | None = None,
+    scale: float = 1.0,
+) -> Signal:
+    """A channel with its rate, unit and angle."""
+    if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale):
+        raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
+    time, angle = (_axis(path, found, name, names, factors) for names, factors in ((TIMES, TIME), (ANGLES, TURN)))
+    turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)])
+    rates = found.nearest(found.stated, name, RATES) + ([found.rates[name]] if name in found.rates else [])
+    values = found.vectors[name]
     return Signal(
-        vectors[name],
-        _rate(path, rate, stated, time, vectors[name].size),
-        unit_stated.pop(),
+        values if scale == 1 else scale * np.asarray(values, dtype=float),
+        _rate(path, rate, rates, time, values.size),
+        _unit(path, found, name, unit, scale),
         f"{Path(path).stem} {name}",
         angle,
         turning,
     )
 
 
-def _plain(name):
-    return name.strip().lower().replace("_", " ")
+def _unit(path, found, name, given, scale):
+    said = [found.units.get(name, ""), *map(str, found.nearest(found.stated, name, ("unit",)))]
+    stated = {text.strip() for text in said if text.strip()}
+    if given and given.strip() and scale != 1:
+        return given.strip()
+    stated |= {given.strip()} if given and given.strip() else set()
+    if len(stated) != 1:
+        text = f"units {', '.join(sorted(stated))}" if stated else "no unit"
+        raise ValueError(f"{path}: {text} for {name!r}; give one, in the file ('{name} [m/s^2]', 'unit = m/s^2') or as unit=")
+    return stated.pop()
 
 
-def _special(path, vectors, units, names, scale):
-    """Take the time or angle vector out of `vectors`, in s or rad; None if there is none."""
-    found = [name for name in vectors if _plain(name) in names]
-    if not found:
+def _axis(path: Any, found: Found, channel: str, names: tuple[str, ...], factors: dict[str, float]) -> NDArray[Any] | None:
+    """Time [s] or angle [rad] of a channel: of its own group, else of the whole file; None if there is none."""
+    chosen = found.nearest({name: name for name in found.vectors}, channel, names)
+    if not chosen:
         return None
-    if len(found) > 1:
-        raise ValueError(f"{path}: {' and '.join(map(repr, found))}; keep one of them")
-    unit = units.get(found[0], "")
-    if unit not in scale:
+    if len(chosen) > 1:
+        raise ValueError(f"{path}: {' and '.join(map(repr, chosen))}; keep one of them")
+    unit = found.units.get(chosen[0], "")
+    if unit not in factors:
         raise ValueError(
-            f"{path}: column {found[0]!r} has unit {unit!r}, but must state one of {', '.join(scale)}: '{found[0]} [s]'".replace(
-                "[s]", f"[{next(iter(scale))}]"
-            )
+            f"{path}: column {chosen[0]!r} has unit {unit!r}, but must state one of {', '.join(factors)}: "
+            f"'{chosen[0]} [{next(iter(factors))}]'"
         )
-    return scale[unit] * vectors.pop(found[0])
+    return factors[unit] * found.vectors[chosen[0]]
 
 
-def _choose(path, vectors, column):
-    if column is None and len(vectors) == 1:
-        return next(iter(vectors))
-    if column is None or column not in vectors:
-        asked = f"no column {column!r}" if column is not None else f"{len(vectors) or 'no'} columns of values"
-        raise ValueError(f"{path}: {asked}; it has {', '.join(map(repr, vectors)) or 'none'}: give one as column=")
-    return column
+def _choose(path, found, column):
+    """Full name of the channel meant."""
+    names = found.channels()
+    if column is None and len(names) == 1:
+        return names[0]
+    if column in found.vectors:
+        return column
+    same = [name for name in names if found.leaf(name) == column]
+    if len(same) == 1:
+        return same[0]
+    if column is None and found.hint:
+        raise ValueError(f"{path}: {found.hint}, or a column")
+    if not names:
+        raise ValueError(f"{path}: no column of values, only {' and '.join(map(repr, found.vectors))}; name one otherwise")
+    asked = f"no column {column!r}" if column is not None else f"{len(names)} columns of values"
+    raise ValueError(f"{path}: {asked}; it has {found.told()}: give one as column=")
 
 
 def _one(path, name, values):
-    """The one finite positive number among `values` [Hz], which may be None; None if there is none."""
-    numbers = []
-    for value in (v for v in values if v is not None):
-        match = re.fullmatch(r"\s*([-+.\d]+(?:e[-+]?\d+)?)\s*(\w*)\s*", str(value), re.IGNORECASE)
-        try:
-            number = float(match[1]) * HERTZ[match[2].lower()]
-        except (TypeError, ValueError, KeyError):
-            number = math.nan
-        if not 0 < number < math.inf:
-            raise ValueError(f"{path}: {name} = {str(value).strip()!r}, but give a positive number of Hz")
-        numbers.append(number)
-    if numbers and max(numbers) > min(numbers) * (1 + 1e-9):
+    """The one finite positive number among `values` [Hz], the first of which may be None; None if there is none."""
+    numbers = [_hertz(path, name, value) for value in values if value is not None]
+    if not numbers:
+        return None
+    if values[0] is not None and any(abs(number / numbers[0] - 1) < 1e-9 for number in numbers[1:]):
+        return numbers[0]
+    if max(numbers) > min(numbers) * (1 + 1e-9):
         raise ValueError(f"{path}: {name} is given as {' and '.join(f'{number:g}' for number in numbers)} Hz; give it once")
-    return numbers[0] if numbers else None
+    return numbers[0]
+
+
+def _hertz(path, name, value):
+    match = re.fullmatch(r"\s*([-+.\d]+(?:e[-+]?\d+)?)\s*(\w*)\s*", str(value), re.IGNORECASE)
+    try:
+        number = float(match[1]) * HERTZ[match[2].lower()]
+    except (TypeError, ValueError, KeyError):
+        number = math.nan
+    if not 0 < number < math.inf:
+        raise ValueError(f"{path}: {name} = {str(value).strip()!r}, but give a positive number of Hz")
+    return number
 
 
 def _rate(path, given, stated, time, samples):
-    rate = _one(path, "rate", [given, *(stated[key] for key in RATES if key in stated)])
+    rate = _one(path, "rate", [given, *stated])
     if time is None:
         if rate is None:
             raise ValueError(
@@ -148,97 +280,3 @@ def _rate(path, given, stated, time, samples):
     if rate is not None and abs(rate * step - 1) > AGREE:
         raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; give one of them")
     return 1 / step if rate is None else rate
-
-
-def _from_lines(path, lines):
-    """Columns of a text table, their units, and what its comments state."""
-    numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
-    comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
-    rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
-    if not rows:
-        raise ValueError(f"{path}: no rows of numbers")
-    separator = next((s for s in ";\t," if s in rows[-1][1]), ",")
-    first = rows[0][1].split(separator)
-    statements = [(_plain(m[1]), m[2].strip()) for c in comments if (m := re.fullmatch(r"([\w ]+?)\s*[:=]\s*(.+)", c))]
-    stated = {}
-    for key, value in statements:
-        if stated.setdefault(key, value) != value and key in (*RATES, *SHAFTS, "unit"):
-            raise ValueError(f"{path}: {key} is stated twice, {stated[key]} and {value}; keep one")
-    if not any(map(_is_number, first)):
-        header = rows.pop(0)[1].split(separator)
-    else:
-        named = [c.split(separator) for c in comments if len(c.split(separator)) == len(first)]
-        named = [cells for cells in named if len(cells) > 1 or re.fullmatch(r"[^:=]+\[.+\]", cells[0].strip())]
-        header = named[-1] if named else ["signal"] if len(first) == 1 else _no_header(path, len(first))
-    units, names = {}, []
-    for cell in header:
-        match = re.fullmatch(r"(.*?)\s*(?:\[(.*)\]|\((.*)\))?", cell.strip().strip('"').strip())
-        names.append(match[1])
-        units[match[1]] = (match[2] or match[3] or "").strip()
-    if len(set(names)) < len(names):
-        raise ValueError(f"{path}: two columns have the same name ({', '.join(names)})")
-    table = _table(path, rows, separator, len(names))
-    return dict(zip(names, table.T, strict=True)), units, stated
-
-
-def _no_header(path, count):
-    raise ValueError(f"{path}: {count} columns without names; write a header above the numbers: 'time [s], acceleration [m/s^2]'")
-
-
-def _is_number(cell):
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return True
-
-
-def _table(path, rows, separator, count):
-    if not rows:
-        raise ValueError(f"{path}: no rows of numbers")
-    try:
-        table = np.loadtxt([line for _, line in rows], delimiter=separator, ndmin=2)
-    except ValueError as error:
-        raise ValueError(_bad_row(path, rows, separator, count) or f"{path}: {error}") from error
-    if table.shape[1] != count:
-        raise ValueError(_bad_row(path, rows, separator, count))
-    return table
-
-
-def _bad_row(path, rows, separator, count):
-    for i, line in rows:
-        cells = line.split(separator)
-        if len(cells) != count or not all(map(_is_number, cells)):
-            hint = "; use a decimal point" if any(re.fullmatch(r"\s*[-+\d]*,\d+(e.*)?\s*", cell) for cell in cells) else ""
-            return f"{path}, line {i}: {line!r} is not a row of {count} numbers{hint}"
-    return None
-
-
-def _from_arrays(path, arrays):
-    """Vectors, their units, and what scalars and text state."""
-    vectors, stated = {}, {}
-    arrays, named = _channels(arrays)
-    for name, value in arrays.items():
-        if value.dtype.kind in "US" and value.size == 1:
-            stated[_plain(name)] = str(value.reshape(-1)[0])
-        elif value.size == 1 and value.dtype.kind in "fiu":
-            stated[_plain(name)] = float(value.reshape(-1)[0])
-        elif value.size > 1 and value.size == max(value.shape) and value.dtype.kind in "fiu":
-            vectors[name] = value.reshape(-1)
-    if not vectors:
-        kinds = ", ".join(f"{name} {value.dtype}{list(value.shape)}" for name, value in arrays.items())
-        raise ValueError(f"{path}: no vector of real numbers; it has {kinds or 'nothing'}")
-    units = {name: "s" if _plain(name) in TIMES else "rad" if _plain(name) in ANGLES else "" for name in vectors}
-    return vectors, units | named, stated
-
-
-def _channels(arrays):
-    """Columns of ``values`` as vectors by ``names``, and their ``units``: a response as `gearfe.Response.save` writes it."""
-    if not {"values", "names", "units"} <= arrays.keys() or arrays["values"].ndim != 2:
-        return arrays, {}
-    names, units = ([str(np.ravel(one)[0]).strip() for one in arrays[key].reshape(-1)] for key in ("names", "units"))
-    if not len(names) == len(units) == arrays["values"].shape[1]:
-        return arrays, {}
-    columns = dict(zip(names, arrays["values"].T, strict=True))
-    rest = {key: value for key, value in arrays.items() if key not in ("values", "names", "units")}
-    return rest | columns, dict(zip(names, units, strict=True))

@@ -20,7 +20,7 @@ class Spectrum:
     Attributes
     ----------
     frequency : ndarray, shape (m,)
-        Frequencies from 0 on [Hz], or shaft orders (per turn), as `axis` says.
+        Frequencies from 0 on [Hz], or shaft orders (per turn), or quefrencies [s], as `axis` says.
     values : ndarray, shape (m,)
         Values at these frequencies, in `unit`.
     unit : str
@@ -29,7 +29,7 @@ class Spectrum:
     bandwidth : float
         Equivalent noise bandwidth of a bin, 1.5 times `resolution` with a Hann window.
     name, axis : str
-        `axis` is ``Hz`` or ``order``.
+        `axis` is ``Hz``, ``order``, or ``s`` of a cepstrum.
     """
 
     frequency: NDArray[np.float64]

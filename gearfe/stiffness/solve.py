@@ -15,6 +15,7 @@ from geometry.tooth.modified import Flank
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
+from ..steps import part, steps
 from .curve import StiffnessCurve, joined
 from .inputs import (
     by_gear,
@@ -236,22 +237,16 @@ def mesh_stiffness(
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
-    same: dict[str, Any] = {
-        "method": own or row.name,
-        "damage": damage,
-        "flanks": flanks,
-        "misalignment": misalignment,
-        "extended": extended,
-        "state": state,
-        "refine": refine,
-    }
+    same: dict[str, Any] = {"method": own or row.name, "damage": damage, "flanks": flanks, "misalignment": misalignment}
+    same |= {"extended": extended, "state": state, "refine": refine}
     same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
     same |= {"error": error, "cache": cache, "tell": tell}
     if span == "revolution":
         more = same | {"pose": pose, "cache": solved}
         cycles = np.split(phase, pair.gear_1.z)
-        turns = [mesh_stiffness(pair, np.array(forces), materials, phases=part, **more) for part in cycles]
-        return _as_asked([joined(parts) for parts in zip(*turns, strict=True)], force, torque)
+        turns = [mesh_stiffness(pair, np.array(forces), materials, phases=cycle, **more) for cycle in cycles]
+        whole = [joined(parts) for parts in zip(*turns, strict=True)]
+        return _as_asked([replace(one, meta=one.meta | {"why": why}) for one in whole], force, torque)
     if pose != "mean":
         curves = [
             in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
@@ -270,19 +265,21 @@ def mesh_stiffness(
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
         options["flanks"] = forms
-        curves = [wide_curve(value, case, meta, **options) for value in forces]
+        curves = [wide_curve(value, case, meta, **options) for value in steps(forces, lambda value: f"{row.name}, {value:g} N")]
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
         sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
         numeric |= {"cracks": cracks, "flanks": forms, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
-        solve, details = section_solver(row, own, pair, materials, phase, **numeric)
+        with part(row.name, 0.0, 0.4 if error else 1.0):
+            solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None
     curves = [curve(pair, phase, value, solve, meta, hurt) for value in forces]
     if error and row.error:
-        curves = with_error(row, curves, (pair, materials, phase), numeric)
+        with part("estimate of the error", 0.4, 1.0):
+            curves = with_error(row, curves, (pair, materials, phase), numeric)
     return _answered(curves, pair, materials, force, torque)
 
 

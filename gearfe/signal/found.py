@@ -1,0 +1,88 @@
+"""`Found`: the channels that a file of measured signals holds, whatever its format, and what it states about them."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+RATES = ("rate", "fs", "sr", "sampling rate", "sample rate", "sampling frequency")
+TIMES, ANGLES, SHAFTS = ("time", "t"), ("angle", "shaft angle"), ("shaft frequency",)
+KEYS = (*RATES, *SHAFTS, "unit")
+
+
+@dataclass(slots=True)
+class Found:
+    """Channels of a file.
+
+    Attributes
+    ----------
+    vectors : dict of str to ndarray, shape (n,)
+        By name.
+    units : dict of str to str
+        As stated; missing or empty where nothing is stated.
+    stated : dict of str to number or str
+        What is said under the names of `KEYS`, by full name.
+    rates : dict of str to float
+        Sampling rates [Hz] of single channels, in formats that state them there.
+    nested : str
+        What parts a group from the names in it: ``.`` in MATLAB structs, ``/`` in HDF5 and TDMS; empty where there are none.
+    other : list of str
+        What else the file holds, in words, for the answer to who finds no channel in it.
+    hint : str
+        Of a file whose columns have no names: what to do.
+    """
+
+    vectors: dict[str, NDArray[Any]]
+    units: dict[str, str] = field(default_factory=dict)
+    stated: dict[str, Any] = field(default_factory=dict)
+    rates: dict[str, float] = field(default_factory=dict)
+    nested: str = ""
+    other: list[str] = field(default_factory=list)
+    hint: str = ""
+
+    def state(self, name: str, value: Any) -> None:
+        """Note a value, if `KEYS` has its name."""
+        if plain(self.leaf(name)) in KEYS:
+            self.stated[name] = value
+
+    def nearest(self, table: dict[str, Any], channel: str, kind: tuple[str, ...]) -> list[Any]:
+        """Values of a table by names of a kind: of the group of a channel, else of the whole file, else of all groups."""
+        fit = {name: value for name, value in table.items() if plain(self.leaf(name)) in kind}
+        for group in (self.group(channel), ""):
+            near = [value for name, value in fit.items() if self.group(name) == group]
+            if near:
+                return near
+        return list(fit.values())
+
+    def leaf(self, name: str) -> str:
+        """Name without its groups."""
+        return name.rsplit(self.nested, 1)[-1] if self.nested else name
+
+    def group(self, name: str) -> str:
+        """Groups of a name."""
+        return name.rsplit(self.nested, 1)[0] if self.nested and self.nested in name else ""
+
+    def axes(self, kind: tuple[str, ...]) -> list[str]:
+        """Names of the vectors that are times or angles."""
+        return [name for name in self.vectors if plain(self.leaf(name)) in kind]
+
+    def channels(self) -> list[str]:
+        """Names of all other vectors."""
+        axes = {*self.axes(TIMES), *self.axes(ANGLES)}
+        return [name for name in self.vectors if name not in axes]
+
+    def told(self) -> str:
+        """Channels with their units, and what else there is, in words."""
+        found = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
+        return ", ".join(found + self.other) or "nothing"
+
+
+def plain(name: str) -> str:
+    """Name in small letters, its underscores as blanks."""
+    return name.strip().lower().replace("_", " ")
+
+
+def numeric(value: Any) -> bool:
+    """Whether an array holds real numbers."""
+    return isinstance(value, np.ndarray) and value.dtype.kind in "fiu"

@@ -1,0 +1,166 @@
+"""Indicators of one gear from its synchronous average: FM0, FM4, M6A, M8A, NA4, NB4, energy ratio, sideband level factor.
+
+The average of one turn is parted: the *regular* signal holds the orders of a healthy gear (shaft, mesh and its harmonics with one
+sideband each), the *difference* signal what is left; the *residual* signal keeps the sidebands too (`gearfe.residual_signal`).
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.fft import fft, ifft, rfft
+
+from .orders import residual_signal, synchronous_average
+from .series import Signal
+
+GEAR_SOURCES = {
+    "FM0": "peak to peak of the average over the sum of its mesh harmonics' amplitudes; Stewart 1977, NASA TM 105950; a lone line 2",
+    "FM4": "kurtosis of the difference signal d, N sum(d**4) / sum(d**2)**2; noise 3; Stewart 1977, gearConditionMetrics",
+    "M6A": "N**2 sum(d**6) / sum(d**2)**3; noise 15; Martin 1989, gearConditionMetrics",
+    "M8A": "N**3 sum(d**8) / sum(d**2)**4; noise 105; Martin 1989, gearConditionMetrics",
+    "NA4": "N sum(r**4) over the square of the mean of sum(r**2) over this and all earlier records, r residual; NASA TM 105950",
+    "NB4": "as NA4, of the envelope of the band around f_m without its mean; NASA TM 106467",
+    "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005, gearConditionMetrics",
+    "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
+}
+EMPTY = 1e-9  # of the average: a rest that small is rounding
+
+
+def gear_indicators(
+    average: ArrayLike, teeth: int, *, before: Sequence[ArrayLike] = (), shaft_orders: int = 2
+) -> dict[str, float]:
+    """Indicators of a gear from its synchronous average, by the names of `GEAR_SOURCES`, which states their formulae.
+
+    ::
+
+        d = x - regular,  FM4 = kurtosis(d),  M6A, M8A: its sixth and eighth moments,  ER = rms(d) / rms(regular)
+        FM0 = (max x - min x) / sum_n A(n teeth),  SLF = (A(teeth - 1) + A(teeth + 1)) / rms(x)
+        NA4 = N sum(r**4) / mean_j(sum(r_j**2))**2,  r = x without shaft and mesh orders, j over all records so far
+        NB4: the same of |b + i H b| without its mean, b the orders from teeth / 2 to 3 teeth / 2
+
+    x is the average without its mean. Those named by `gearConditionMetrics` follow MATLAB's documentation of that function.
+
+    Parameters
+    ----------
+    average : ndarray, shape (n,)
+        Synchronous average over one turn of the gear's shaft, see `gearfe.synchronous_average`.
+    teeth : int
+    before : sequence of ndarray
+        Earlier averages of the same gear, in any order: NA4 and NB4 grow when the gear changes. Without them NA4 is the kurtosis
+        of the residual signal.
+    shaft_orders : int
+        Orders of the shaft that a healthy gear shows too.
+
+    Returns
+    -------
+    dict of str to float
+        Without unit. Of a gear whose difference signal is nothing but rounding, nan for what would divide by it.
+
+    Raises
+    ------
+    ValueError
+        If the average is too short for its teeth, constant, or has no mesh line.
+
+    References
+    ----------
+    - R. M. Stewart, Some useful data analysis techniques for gearbox diagnostics, ISVR (1977).
+    - H. R. Martin, Statistical moment analysis as a means of surface damage detection, Proc. 7th Int. Modal Analysis Conf. (1989).
+    - J. J. Zakrajsek, D. P. Townsend, H. J. Decker, NASA TM 105950 (1993); J. J. Zakrajsek, R. F. Handschuh, H. J. Decker, NASA
+      TM 106467 (1994).
+    - P. Vecer, M. Kreidl, R. Smid, Condition indicators for gearbox condition monitoring systems, Acta Polytechnica 45(6) (2005).
+    - M. Lebold et al., Review of vibration analysis methods for gearbox diagnostics and prognostics, MFPT 54 (2000).
+    """
+    x = _oscillation(average)
+    difference = residual_signal(x, teeth, sidebands=1, shaft_orders=shaft_orders)
+    regular = x - difference
+    amplitude = 2 / x.size * np.abs(rfft(x))
+    mesh = amplitude[teeth::teeth].sum()
+    if not mesh > EMPTY * np.abs(x).max():
+        raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
+    history = [x, *map(_oscillation, before)]
+    residuals = [residual_signal(one, teeth, shaft_orders=shaft_orders) for one in history]
+    envelopes = [_band_envelope(one, teeth) for one in history]
+    floor = EMPTY * _rms(x)
+    return {
+        "FM0": float(np.ptp(x) / mesh),
+        "FM4": _moment(difference, 4, floor),
+        "M6A": _moment(difference, 6, floor),
+        "M8A": _moment(difference, 8, floor),
+        "NA4": _against_history(residuals, floor),
+        "NB4": _against_history(envelopes, floor),
+        "energy ratio": _rms(difference) / _rms(regular),
+        "sideband level factor": float((amplitude[teeth - 1] + amplitude[teeth + 1]) / _rms(x)),
+    }
+
+
+def gear_indicator_table(
+    signals: Mapping[str, Signal], teeth: int, *, samples_per_turn: int | None = None
+) -> dict[str, dict[str, float]]:
+    """`gear_indicators` of several records, in the order in which they were taken.
+
+    Parameters
+    ----------
+    signals : dict of str to Signal
+        By name, the earliest first, each with the `angle` or `shaft_frequency` of the gear's shaft.
+    teeth : int
+    samples_per_turn : int, optional
+        See `gearfe.synchronous_average`; all records get the largest number any of them needs by itself.
+
+    Returns
+    -------
+    dict of str to dict of str to float
+        ``table[record][indicator]``; NA4 and NB4 over this and all earlier records.
+    """
+    averages = {name: synchronous_average(one, samples_per_turn)[0] for name, one in signals.items()}
+    if len({one.size for one in averages.values()}) > 1:
+        most = max(one.size for one in averages.values())
+        averages = {name: synchronous_average(one, most)[0] for name, one in signals.items()}
+    done: list[NDArray[np.float64]] = []
+    out = {}
+    for name, average in averages.items():
+        out[name] = gear_indicators(average, teeth, before=done)
+        done.append(average)
+    return out
+
+
+def gear_table_text(table: Mapping[str, Mapping[str, float]]) -> str:
+    """`gear_indicator_table` as Markdown: a row for each indicator, a column for each record."""
+    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
+    lines += [
+        [name, *(f"{row[name]:.4g}" if math.isfinite(row[name]) else "-" for row in table.values())] for name in GEAR_SOURCES
+    ]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _oscillation(average: Any) -> NDArray[np.float64]:
+    x = np.asarray(average, dtype=float)
+    x = x - x.mean()
+    if not np.abs(x).max() > 1e-12 * np.abs(average).max():
+        raise ValueError("a constant average has no indicators")
+    return x
+
+
+def _rms(x):
+    return math.sqrt(np.mean(np.square(x)))
+
+
+def _moment(x, power, floor):
+    """Even moment over that power of the root mean square: the kurtosis for 4; nan of rounding."""
+    spread = _rms(x)
+    return float(np.mean((x / spread) ** power)) if spread > floor else math.nan
+
+
+def _against_history(parts, floor):
+    """Fourth moment of the first part over the square of the mean variance of all."""
+    mean = float(np.mean([np.mean(np.square(one)) for one in parts]))
+    return float(np.mean(parts[0] ** 4)) / mean**2 if mean > floor**2 else math.nan
+
+
+def _band_envelope(x, teeth):
+    """Envelope of the band around the first mesh order, without its mean."""
+    order = np.arange(x.size)
+    kept = (order > teeth / 2) & (order < 1.5 * teeth) & (order < x.size / 2)
+    envelope = np.abs(ifft(np.where(kept, 2 * fft(x), 0)))
+    return envelope - envelope.mean()

@@ -1,0 +1,172 @@
+"""Channels of files that recorders write: WAV, universal file 58 (UFF), TDMS, Parquet; each read by its own library."""
+
+import logging
+import os
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ..files import missing
+from .found import Found, numeric
+from .text_table import named
+
+TIME_RESPONSE = 1  # function type of a data set 58 that holds a quantity over time
+DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
+TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
+SAID_NOTHING = ("", "none", "unknown")
+
+
+def wav_file(path: str | os.PathLike[str]) -> Found:
+    """Channels of a WAV file as parts of its full scale: whole numbers are divided by the largest the file can hold."""
+    from scipy.io import wavfile
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", wavfile.WavFileWarning)
+            warnings.filterwarnings("ignore", ".*not understood", wavfile.WavFileWarning)  # chunks of other programs
+            rate, data = wavfile.read(path)
+    except Exception as error:  # struct, index and other errors of a parser that trusts its file
+        raise _damaged(path, "WAV", error) from error
+    values = _full_scale(np.atleast_2d(data.T))
+    found = Found({f"channel {i}": one for i, one in enumerate(values, 1)})
+    found.rates = dict.fromkeys(found.vectors, float(rate))
+    return found
+
+
+def _full_scale(data):
+    if data.dtype.kind == "f":
+        return data
+    if data.dtype == np.uint8:
+        return (data.astype(float) - 128) / 128
+    return data / -float(np.iinfo(data.dtype).min)
+
+
+def uff_file(path: str | os.PathLike[str]) -> Found:
+    """Channels of the data sets 58 (functions at nodes) of a universal file that are responses over time."""
+    try:
+        import pyuff
+    except ImportError as error:
+        raise missing("pyuff", "signals", error) from error
+    try:
+        with open(path, "rb") as file:
+            end = file.read().split()[-1:]
+    except OSError as error:
+        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
+    if end != [b"-1"]:
+        raise ValueError(f"{path} is not a whole universal file (UFF): it does not end with -1")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            sets = pyuff.UFF(os.fspath(path)).read_sets()
+    except Exception as error:  # pyuff raises no narrower class
+        raise _damaged(path, "universal file (UFF)", error) from error
+    found = Found({})
+    for one in sets if isinstance(sets, list) else [sets]:
+        _uff_set(found, one)
+    return found
+
+
+def _uff_set(found: Found, one: dict[str, Any]) -> None:
+    """Add a data set."""
+    kind, data = one.get("type"), one.get("data")
+    if kind != 58 or one.get("func_type") != TIME_RESPONSE or not numeric(data):
+        text = f"function type {one.get('func_type')}" if kind == 58 else f"of type {kind}"
+        found.other.append(f"a data set {text} (no response over time)")
+        return
+    said = [str(one.get(key, "")).strip() for key in ("id1", "rsp_ent_name")]
+    told = next((text for text in said if text.lower() not in SAID_NOTHING), "channel")
+    name = f"{told} {one['rsp_node']}{DIRECTIONS.get(one['rsp_dir'], '')}"
+    name = _free(found, name)
+    unit = str(one.get("ordinate_axis_units_lab", "")).strip()
+    found.vectors[name], found.units[name] = np.asarray(data), "" if unit.lower() in SAID_NOTHING else unit
+    if one.get("abscissa_spacing") == 1 and one.get("abscissa_inc", 0) > 0:
+        found.rates[name] = 1 / float(one["abscissa_inc"])
+
+
+def _free(found, name):
+    """Name, with a number behind it if it is taken."""
+    taken = [one for one in found.vectors if one == name or one.startswith(f"{name} (")]
+    return f"{name} ({len(taken) + 1})" if taken else name
+
+
+def tdms_file(path: str | os.PathLike[str]) -> Found:
+    """Channels of a TDMS file, ``group/channel`` (``channel`` if there is one group), with their units and increments."""
+    try:
+        from nptdms import TdmsFile
+    except ImportError as error:
+        raise missing("npTDMS", "signals", error) from error
+    try:
+        with open(path, "rb") as file:
+            if file.read(4) != b"TDSm":
+                raise ValueError("it does not begin with TDSm")
+        file = _quiet_tdms(TdmsFile, path)
+        groups = file.groups()
+        values = {(group.name, one.name): one[:] for group in groups for one in group.channels()}
+        status = file.file_status
+    except Exception as error:  # struct, index and other errors of a parser that trusts its file
+        raise _damaged(path, "TDMS", error) from error
+    if status.incomplete_final_segment:
+        raise ValueError(f"{path} is not a whole TDMS file: its last segment is cut; record or copy it again")
+    found = Found({}, nested="/" if len(groups) > 1 else "")
+    for key, value in file.properties.items():
+        found.state(str(key), value)
+    for (group, channel), data in values.items():
+        name = f"{group}/{channel}" if found.nested else channel
+        _tdms_channel(found, name, np.asarray(data), file[group][channel].properties)
+    return found
+
+
+def _quiet_tdms(kind, path):
+    """Read without what the library logs about damage, which is told otherwise."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        return kind.read(path)
+    finally:
+        logging.disable(before)
+
+
+def _tdms_channel(found: Found, name: str, data: Any, properties: Any) -> None:
+    """Add a channel."""
+    if not numeric(data) or data.size < 2:
+        found.other.append(f"{name!r} ({data.dtype}, {data.size} values)")
+        return
+    found.vectors[name] = data
+    found.units[name] = next((str(properties[key]).strip() for key in TDMS_UNITS if properties.get(key)), "")
+    step = properties.get("wf_increment", 0)
+    if isinstance(step, (int, float)) and step > 0:
+        found.rates[name] = 1 / float(step)
+
+
+def parquet_file(path: str | os.PathLike[str]) -> Found:
+    """Columns of a Parquet file; units in the names, ``a [m/s^2]``, or as ``unit`` in the metadata of a field."""
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError as error:
+        raise missing("pyarrow", "signals", error) from error
+    try:
+        table = pq.ParquetFile(path).read()
+    except (OSError, pa.ArrowException, ValueError) as error:
+        raise _damaged(path, "Parquet", error) from error
+    found = Found({})
+    for key, value in (table.schema.metadata or {}).items():
+        found.state(key.decode("utf-8", "replace"), value.decode("utf-8", "replace"))
+    for field, column in zip(table.schema, table.columns, strict=True):
+        name, unit = named(field.name)
+        if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type)):
+            found.other.append(f"{field.name!r} ({field.type})")
+            continue
+        told = (field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace")
+        name = _free(found, name)
+        found.vectors[name], found.units[name] = column.to_numpy(), unit or told
+    return found
+
+
+def _damaged(path, kind, error):
+    """Return what to raise for a file that its library cannot read, in one line."""
+    if isinstance(error, OSError) and error.strerror:
+        return ValueError(f"cannot read {path}: {error.strerror}")
+    told = " ".join(str(error).split()) or type(error).__name__
+    return ValueError(f"{path} is not a whole {kind} file: {told}")

@@ -1,0 +1,105 @@
+"""How a spectrum changes with time (spectrogram), and how its lines repeat (cepstrum)."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
+from scipy.signal import ShortTimeFFT, get_window
+
+from .spectra import Spectrum
+
+if TYPE_CHECKING:
+    from .series import Signal
+
+FLOOR = 1e-12  # of the largest amplitude: what a logarithm takes for zero
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spectrogram:
+    """Amplitudes over frequency and time.
+
+    Attributes
+    ----------
+    frequency : ndarray, shape (m,)
+        [Hz].
+    time : ndarray, shape (k,)
+        Middle of each frame [s].
+    values : ndarray, shape (m, k)
+        Amplitudes: a lasting sine of amplitude A on a bin gives A, in `unit`.
+    unit, name : str
+    """
+
+    frequency: NDArray[np.float64]
+    time: NDArray[np.float64]
+    values: NDArray[np.float64]
+    unit: str
+    name: str = "spectrogram"
+
+
+def spectrogram(signal: "Signal", size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
+    """Amplitude spectra of frames that overlap by three quarters.
+
+    Parameters
+    ----------
+    signal : Signal
+        Its mean is taken out.
+    size : int, optional
+        Samples in a frame: bins are ``rate / size`` apart, and what is shorter than a frame is smeared. Default: a power of two
+        near the square root of 8 times the number of samples, which resolves both alike.
+    window : str or tuple
+
+    Returns
+    -------
+    Spectrogram
+        Of whole frames only.
+    """
+    n = signal.values.size
+    size = 2 ** round(np.log2(8 * n) / 2) if size is None else size
+    if not 8 <= size <= n // 2:
+        raise ValueError(f"size = {size} samples, but {signal.name} has {n}: give 8 to {n // 2}")
+    weights = get_window(window, size)
+    transform = ShortTimeFFT(weights * (2 / weights.sum()), size // 4, signal.rate)
+    first, end = transform.lower_border_end[1], transform.upper_border_begin(n)[1]
+    values = np.abs(transform.stft(signal.values - signal.values.mean(), p0=first, p1=end))
+    values[0] /= 2
+    if size % 2 == 0:
+        values[-1] /= 2  # 0 Hz and Nyquist's frequency have no twin
+    time = transform.t(n, p0=first, p1=end)
+    return Spectrogram(transform.f, time, values, signal.unit, f"spectrogram of {signal.name}")
+
+
+def cepstrum(signal: "Signal") -> Spectrum:
+    """Real cepstrum: the inverse Fourier transform of the logarithm of the amplitudes.
+
+    ::
+
+        c(t) = IFFT(log|FFT(x)|)
+
+    A family of sidebands f apart, and equally an echo after ``1 / f``, makes one peak at the quefrency ``1 / f`` (and smaller ones
+    at its multiples). An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth periods,
+    modulations at turns of the shaft.
+
+    Parameters
+    ----------
+    signal : Signal
+        Its mean is taken out. Amplitudes below 1e-12 of the largest count as that.
+
+    Returns
+    -------
+    Spectrum
+        Over quefrency [s], from 0 to half the duration; without unit ("1"), as a logarithm is.
+
+    References
+    ----------
+    B. P. Bogert, M. J. R. Healy, J. W. Tukey, Proc. Symp. Time Series Analysis (1963) 209-243; R. B. Randall, Mech. Syst. Signal
+    Process. 97 (2017) 3-19.
+    """
+    x = signal.values - signal.values.mean()
+    amplitude = np.abs(rfft(x))
+    if not amplitude.max() > 1e-12 * np.abs(signal.values).max() * x.size:
+        raise ValueError(f"{signal.name} is constant: it has no cepstrum")
+    values = irfft(np.log(np.maximum(amplitude, FLOOR * amplitude.max())), x.size)[: x.size // 2 + 1]
+    step = 1 / signal.rate
+    return Spectrum(np.arange(values.size) * step, values, "1", step, step, f"cepstrum of {signal.name}", "s")
