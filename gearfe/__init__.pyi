@@ -2,10 +2,12 @@
 
 from geometry.damage.crack import Crack as Crack
 from geometry.damage.pit import Pit as Pit
+from geometry.pair.flanks import Misalignment as Misalignment
 from geometry.pair.gear_pair import GearPair as GearPair
 from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
+from geometry.tooth.pitch import random_pitch as random_pitch
 
 from .datasets.make import dataset as dataset
 from .datasets.opened import Dataset as Dataset
@@ -31,6 +33,7 @@ from .machine.layout import Layout as Layout
 from .machine.member import Member as Member
 from .machine.member import disc as disc
 from .machine.mesh_errors import with_errors as with_errors
+from .machine.mesh_excitation import mesh_excitation as mesh_excitation
 from .machine.modes import natural_frequencies as natural_frequencies
 from .machine.of_scene import build_machine as build_machine
 from .machine.pitted_planetary import pitted_planetary as pitted_planetary
@@ -50,7 +53,7 @@ from .motion.portrait import poincare_section as poincare_section
 from .motion.response import Response as Response
 from .motion.simulate import simulate as simulate
 from .motion.steady import steady_state as steady_state
-from .pictures.stiffness_plots import plot_contact as plot_contact
+from .pictures.contact_plot import plot_contact as plot_contact
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra
@@ -87,7 +90,9 @@ from .signal.time_frequency import cepstrum as cepstrum
 from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
+from .stiffness.pattern import contact_pattern as contact_pattern
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
+from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
 from .stress.mesh_picture import render_mesh as render_mesh

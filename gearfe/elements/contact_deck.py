@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from geometry.mesh.outline import stations
 from geometry.mesh.relieved import relieved
 from geometry.mesh.section_mesh import section
+from geometry.pair.flanks import flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank, flank_forms
+from geometry.tooth.modified import Flank
 from geometry.tooth.profile import arc_at
 
 from ..files import written
