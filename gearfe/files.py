@@ -268,7 +268,8 @@ FORMATS = {
     ".json": Format(("curve",), (), write_json, None),
     ".png": Format(("picture", "stress")),
     **{suffix: Format(("picture",)) for suffix in (".svg", ".pdf", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".eps")},
-    ".vtu": Format(("stress",)),
+    ".vtu": Format(("stress", "mesh")),
+    ".msh": Format(("mesh",)),
     ".html": Format(("page",)),
-    ".inp": Format(("deck",)),
+    ".inp": Format(("deck", "mesh")),
 }

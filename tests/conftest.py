@@ -29,6 +29,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "signal": ("signal/test_signals.py", "signal/test_spectral_lines.py", "signal/test_demodulation.py"),
     "scene": ("scene/test_scene.py", "scene/test_references.py", "test_golden.py::test_verdicts_follow_from_the_numbers"),
     "studies": ("studies/test_case_table.py",),
+    "datasets": ("datasets/test_dataset_plan.py",),
     "surrogates": ("surrogates/test_space.py",),
     "store": ("store/test_store.py",),
     "sweeps": ("sweeps/test_study.py",),
@@ -41,6 +42,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     ),
     "reports": ("reports/test_page.py::test_unknown_case_and_suffix_are_refused_before_work",),
     "docs": ("docs/test_tutorials.py::test_scripts_are_found", "docs/test_site.py"),
+    "pictures": ("pictures/test_look.py",),
     "layout": ("test_layout.py", "test_types.py"),
     "hostile": ("hostile/test_hostile.py::test_gears", "hostile/test_hostile.py::test_damage"),
 }

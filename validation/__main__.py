@@ -19,6 +19,7 @@ PAGES = {
     "cracks": "crack reductions and their conventions",
     "assumptions": "what the assumptions of the scenes do to the stiffness",
     "truth": "independent values of others, and CalculiX, beside ours",
+    "measured": "measured gearboxes of others, as far as their numbers are public",
     "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
     "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
     "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
@@ -26,13 +27,18 @@ PAGES = {
     "speed": "seconds against error of every method",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
+    "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",
+    "dataset": "a classifier trained on a simulated data set, and what it finds by severity",
     "hard": "hard cases, each with its outcome",
     "three": "three dimensions: energy model against hexahedra of the whole gear",
     "pairs_three": "stiffness of pairs in three dimensions against hexahedra of both gears (long: --reference)",
+    "outsider_three": "three dimensions against CalculiX: whole gears in contact and under line loads (--reference)",
+    "holed_cracks": "pits cut out of cracked teeth: the ten rows of S4 with holes (resumable)",
     "holes": "pits as real holes: volume cut, and what the missing material does to k",
     "pictures": "stress pictures of every scene and damage case",
     "hard_three": "hard cases in three dimensions, each with its outcome",
     "speed_three": "seconds and memory against error in three dimensions",
+    "cost_three": "cost of the energy model in three dimensions over teeth, width, helix angle, order and phases",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
     "dynamics": "integrators: seconds against error on 55 degrees of freedom",
     "hard_dynamics": "hard cases of the dynamics, each with its outcome",
@@ -42,7 +48,7 @@ PAGES = {
     "tutorials": "what the scripts of the documentation print, for their test",
 }
 
-LONG_RUNS = ("pairs_three", "herringbone")  # pages whose finite elements --reference computes
+LONG_RUNS = ("pairs_three", "herringbone", "outsider_three")  # pages whose finite elements --reference computes
 LONG = {
     "sample": "a new sample of random pairs",
     "herringbone_scan": "an hour of energy models, where it is not kept",

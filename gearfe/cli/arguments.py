@@ -4,8 +4,10 @@ import argparse
 import os
 
 from ..stiffness.methods import NAMES, described, having
-from . import shell, sweeping, tools
+from . import labelling, shell, signals, sweeping, tools
 from . import verbs as run
+
+SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.files
 
 
 def main(argv=None):
@@ -67,6 +69,14 @@ def main(argv=None):
     verb.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
     )
+    verb = _verb(verbs, "mesh", run.mesh, "write the mesh of a damaged gear, whole or a few teeth, for other programs")
+    _scene_arguments(verb, count=False)
+    verb.add_argument("--gear", choices=("pinion", "wheel"), default="pinion", help="which gear of the pair (default: pinion)")
+    verb.add_argument("--cells", choices=("hexahedra", "tetrahedra"), help="default: tetrahedra with pits or --teeth")
+    verb.add_argument("--teeth", type=int, metavar="N", help="odd number of teeth around the damaged one (default: all)")
+    verb.add_argument("-o", "--output", metavar="FILE", required=True, help="the mesh: .msh, .vtu or .inp")
+    verb.add_argument("--picture", metavar="FILE", help="draw it too: .png")
+    verb.add_argument("--close-up", choices=("crack", "pits"), help="with --picture: only what is around the damage")
     verb = _verb(
         verbs, "dynamics", run.dynamics, "response of a scene's machine: spectrum lines and indicators, healthy and damaged"
     )
@@ -82,15 +92,26 @@ def main(argv=None):
     verb.add_argument("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
     _analysis_arguments(verb)
-    verb = _verb(verbs, "signal", run.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
-    verb.add_argument("file", metavar="FILE", nargs="+", help="signal as .csv, .mat or .npz; several: cases, the first healthy")
+    verb = _verb(verbs, "signal", signals.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
+    verb.add_argument(
+        "file", metavar="FILE", nargs="+", help=f"signal as {', '.join(SIGNALS)}; several: cases, the first healthy"
+    )
+    verb.add_argument("--list", action="store_true", help="only list the channels of the files")
     verb.add_argument("--rate", type=float, metavar="HZ", help="sampling rate, if the file does not state it")
     verb.add_argument("--unit", metavar="U", help="unit, if the file does not state it")
     verb.add_argument("--column", metavar="NAME", help="column, if there are several")
+    verb.add_argument("--header", metavar="TEXT", help="names of the columns of a table without, 'time [s], a [m/s^2]'")
+    verb.add_argument("--scale", type=float, default=1.0, metavar="X", help="factor on the values; --unit is then theirs")
     verb.add_argument("--mesh", type=float, metavar="HZ", help="mesh frequency")
     verb.add_argument("--fault", type=float, metavar="HZ", help="how often the faulty tooth meshes")
     verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
+    verb.add_argument("--teeth", type=int, metavar="Z", help="of a gear: FM0, FM4, NA4 and others from the mean of its turns")
+    verb.add_argument("--shaft", type=float, metavar="HZ", help="turns of that gear in a second")
+    verb.add_argument("--tacho", metavar="NAME", help="column with pulses of its shaft, in place of --shaft")
+    verb.add_argument("--pulses", type=int, default=1, metavar="N", help="pulses of the tachometer in a turn (default: 1)")
     _analysis_arguments(verb)
+    verb.add_argument("--cepstrum", metavar="FILE", help="draw the cepstrum of the last case: .png, .svg or .pdf")
+    verb.add_argument("--spectrogram", metavar="FILE", help="draw the spectrogram of the last case: .png, .svg or .pdf")
     verb = _verb(
         verbs, "report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration"
     )
@@ -109,6 +130,12 @@ def main(argv=None):
         "--dry-run", action="store_true", help="say how many cases, how long, how much memory and disk; write nothing"
     )
     verb.add_argument("--mixed", action="store_true", help="go on although another version of gearfe began it")
+    verb = _verb(verbs, "dataset", labelling.dataset, "make labelled vibration windows for learning, split without leakage")
+    verb.add_argument("plan", metavar="DATASET", help="a .toml file: machine, faults, operation, sensors, noise, split")
+    verb.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder of the data set: new, or of this one")
+    verb.add_argument("--also", nargs="+", choices=("mat", "hdf5"), default=[], help="each side of the split as one file too")
+    verb.add_argument("--workers", type=int, metavar="N", help="processes of this machine (default: one per core)")
+    verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
     verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")

@@ -15,6 +15,10 @@ EXTRAS = {  # package: (module, extra, what it is good for)
     "jinja2": ("jinja2", "report", "gearfe report"),
     "pandas": ("pandas", "data", "curve.to_pandas()"),
     "xarray": ("xarray", "data", "curve.to_xarray()"),
+    "h5py": ("h5py", "signals", "signals in HDF5 and MATLAB 7.3"),
+    "pyuff": ("pyuff", "signals", "signals in universal files (UFF58)"),
+    "npTDMS": ("nptdms", "signals", "signals in TDMS"),
+    "pyarrow": ("pyarrow", "signals", "signals in Parquet"),
 }
 
 

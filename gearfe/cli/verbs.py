@@ -47,7 +47,7 @@ def stiffness(arguments):
     for text in left_out:
         print(f"{text}\n")
     if arguments.forces:
-        _transmission_error(arguments, run)
+        _transmission_error(scene, arguments, run)
         return
     with working(f"stiffness by {arguments.method}") as tell:
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
@@ -71,7 +71,7 @@ def stiffness(arguments):
         print(f"written: {arguments.plot}")
 
 
-def _transmission_error(arguments, run):
+def _transmission_error(scene, arguments, run):
     """``gearfe stiffness --forces``."""
     from ..stiffness.transmission_error import transmission_error
 
@@ -87,7 +87,9 @@ def _transmission_error(arguments, run):
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(found.table())
     if arguments.plot:
-        found.plot(arguments.plot)
+        from ..pictures.stiffness_plots import told
+
+        found.plot(arguments.plot, _title(scene, arguments, told(found.curves[0], load=False)))
         print(f"written: {arguments.plot}")
 
 
@@ -161,11 +163,38 @@ def render(arguments):
     print(f"written: {arguments.output}")
 
 
+def mesh(arguments):
+    """``gearfe mesh``."""
+    from ..contact.bodies import seen_gears
+    from ..elements.mesh_file import export_mesh
+    from ..scene.load import load_scene
+    from ..stiffness.inputs import by_gear
+
+    _check_outputs(arguments, output="mesh", picture="picture")
+    if arguments.close_up and not arguments.picture:
+        raise ValueError("--close-up is of a picture: give --picture FILE too")
+    chosen = load_scene(arguments.scene).pair(arguments.pair)
+    side = ("pinion", "wheel").index(arguments.gear)
+    cracks, pits = by_gear(chosen.pair, chosen.case(arguments.case).get("damage"))
+    gear = (chosen.pair.gear_1, chosen.pair.gear_2)[side]
+    if chosen.face == "herringbone":
+        gear = seen_gears(chosen.pair, chosen.face, chosen.groove)[side][0]
+    options = {"cells": arguments.cells, "teeth": arguments.teeth, "refine": arguments.refine}
+    with working("mesh"):
+        made = export_mesh(arguments.output, gear, (*cracks[side], *pits[side]), **options)
+        if arguments.picture:
+            from ..stress.mesh_picture import render_mesh
+
+            render_mesh(made, arguments.picture, close_up=arguments.close_up)
+    print(f"{arguments.gear}, z = {gear.z}: {made.points.shape[1]:,} nodes, {made.cells.shape[1]:,} cells")
+    print(f"written: {arguments.output}" + (f", {arguments.picture}" if arguments.picture else ""))
+
+
 def dynamics(arguments):
     """``gearfe dynamics``."""
     from dataclasses import replace
 
-    from ..machine.tables import natural_frequencies
+    from ..machine.modes import natural_frequencies
     from ..scene.load import load_scene
     from ..studies.vibration import analysis, responses
 
@@ -190,33 +219,14 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
-    _print_analysis(analysis(found, arguments.channel), arguments)
+    _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
         print(f"written: {arguments.output}")
 
 
-def signal(arguments):
-    """``gearfe signal``."""
-    from ..signal.signal_file import read_signal
-    from ..steps import part, steps
-    from ..studies.vibration import analyse
-
-    _check_outputs(arguments, plot="picture", kurtogram="picture")
-    options = {"column": arguments.column, "rate": arguments.rate, "unit": arguments.unit}
-    with working("reading and spectra"):
-        with part("", 0.0, 0.5):
-            read = [read_signal(file, **options) for file in steps(arguments.file, lambda file: f"reading {file}")]
-        signals = {one.name: one for one in read}
-        if len(signals) < len(read):
-            raise ValueError("two files have the same name: their cases could not be told apart; rename one")
-        with part("spectra and indicators", 0.5, 1.0):
-            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=read[0].name)
-    _print_analysis(found, arguments)
-
-
-def _print_analysis(report, arguments):
-    """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`."""
+def _print_analysis(report, arguments, name=""):
+    """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`; `name` of the scene, if it is one."""
     from ..signal.demodulation import demodulate
 
     if report.lines:
@@ -234,10 +244,10 @@ def _print_analysis(report, arguments):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram, f"{last.name}, {report.channel}")
+        plot_kurtogram(kurtogram, arguments.kurtogram, ", ".join(filter(None, (name, last.name, report.channel))))
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
-        report.plot(arguments.plot)
+        report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))
         print(f"written: {arguments.plot}")
 
 

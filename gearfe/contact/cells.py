@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from geometry.mesh.outline import spaced
 from geometry.pair.lines import covered
+from geometry.pair.modified import first_touch
 
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
@@ -31,7 +32,8 @@ class Cells:
     it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
     `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0,
     or 1 or 2 for the gear whose tip corner touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's
-    [MPa], nan at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`).
+    [MPa], nan at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`); `radius`
+    relative radius of curvature in the transverse section [mm] where flanks are modified, otherwise 0: that of the involutes.
     """
 
     half: NDArray[np.int64]
@@ -45,8 +47,21 @@ class Cells:
     gap: NDArray[np.float64]
     corner: NDArray[np.int64]
     floor: NDArray[np.float64]
+    radius: NDArray[np.float64]
     load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
     pressure: NDArray[np.float64] = None  # type: ignore[assignment]
+
+    def at_ends(self, pair):
+        """Where a contact line carries the most at an end face of the common width: (z, roll length of the pinion) [mm]."""
+        out, width = [], min(pair.gear_1.b, pair.gear_2.b)
+        for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):
+            at = np.flatnonzero((self.order == order) & (self.half == half) & (self.load > 0))
+            if not at.size:
+                continue
+            most = at[np.argmax(self.load[at] / self.width[at])]
+            z, reach = float(self.z[most]), float(self.width[most]) / 2
+            out += [(end, float(self.roll_1[most])) for end in (0.0, width) if abs(z - end) < reach * (1 + 1e-6)]
+        return out
 
 
 class Piece(NamedTuple):
@@ -231,8 +246,8 @@ def _taken(pair, pits, bands, pieces, slope):
     return out
 
 
-def cells_of(pair, pieces, bands, slope, step):
-    """`Cells` of the pieces of one phase, at most `step` [mm] along the width."""
+def cells_of(pair, pieces, bands, slope, step, flanks=None):
+    """`Cells` of the pieces of one phase, at most `step` [mm] along the width; of modified `flanks`, if given."""
     rows = []
     for piece in pieces:
         a, b = piece.first, piece.last
@@ -259,10 +274,14 @@ def cells_of(pair, pieces, bands, slope, step):
         )
     half, order, z, width, depth, nominal, corner, floor = np.hstack(rows)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
-    there = corner > 0
+    there, radius = corner > 0, np.zeros(z.size)
     if there.any():
         roll_1[there], roll_2[there], gap[there] = touching(pair, nominal[there])
+    if flanks is not None:
+        met = first_touch(pair, flanks, nominal, order.astype(int), gap, z)
+        roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner
     gap = gap + floor * math.sqrt(1 + slope**2)  # pits are measured along the normal
     whole = (half.astype(int), order.astype(int), z, width, depth, nominal, roll_1, roll_2, gap, corner.astype(int), floor)
+    whole = (*whole, radius)
     kept = np.isfinite(gap)
     return Cells(*(values[kept] for values in whole)) if not kept.all() else Cells(*whole)

@@ -49,7 +49,19 @@ class ContactZone:
     order: np.ndarray
 
 
-def full_contact(pair, line_load, phase, materials, *, state="plane strain", per_width=6, reach=3.0, refine=1.0, extended=True):
+def full_contact(
+    pair,
+    line_load,
+    phase,
+    materials,
+    *,
+    state="plane strain",
+    per_width=6,
+    reach=3.0,
+    refine=1.0,
+    extended=True,
+    flanks=None,
+):
     """Solve the frictionless contact of all tooth pairs at one phase on the surface influence matrix.
 
     Parameters
@@ -68,17 +80,20 @@ def full_contact(pair, line_load, phase, materials, *, state="plane strain", per
         tip corner.
     refine : float
         Divides the edge lengths away from the zone.
+    extended : bool
+    flanks : (FlankForm, FlankForm), optional
+        Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`; the meshed teeth are the unmodified ones.
 
     Returns
     -------
     ContactZone
     """
-    found = pair.contacts([phase], extended=extended)
+    found = pair.contacts([phase], extended=extended, flanks=flanks)
     near = np.flatnonzero(found.gap[0] < 0.02 * pair.gear_1.m_n)
-    order, nominal = found.order[near], found.nominal[0, near]
+    order = found.order[near]
     first, second, gaps = [], [], []
-    for k, place in zip(near, nominal, strict=True):
-        arcs = _zone(pair, found, k, line_load, contact_modulus(materials, state), per_width, reach, place)
+    for k in near.tolist():
+        arcs = _zone(pair, found, k, line_load, contact_modulus(materials, state), per_width, reach, flanks)
         first.append(arcs[0])
         second.append(arcs[1])
         gaps.append(arcs[2])
@@ -93,7 +108,7 @@ def full_contact(pair, line_load, phase, materials, *, state="plane strain", per
     return ContactZone(approach, np.array([h.sum() for h in hat]), *rolls, tuple(hat), tuple(first), order)
 
 
-def _zone(pair, found, k, line_load, modulus, per_width, reach, nominal):
+def _zone(pair, found, k, line_load, modulus, per_width, reach, flanks):
     """Arcs of the hat tops on both flanks [mm] and their gaps [mm], pinion arc rising."""
     roll_1, roll_2 = found.roll_1[0, k], found.roll_2[0, k]
     a = float(half_width(line_load, pair.relative_radius(roll_1, roll_2), modulus))
@@ -106,7 +121,12 @@ def _zone(pair, found, k, line_load, modulus, per_width, reach, nominal):
     else:
         arc = arc + max(top - middle - a / per_width * np.floor((top - middle) * per_width / a), 0.0)
     arc = arc[(arc <= top + 1e-9 * a) & (arc > arc_at(gear, gear.roll_f))]
-    gap, met = pair.opposite(roll_at_arc(gear, arc), np.full(arc.shape, nominal), driver=driver)
+    nominal = np.full(arc.shape, found.nominal[0, k])
+    if flanks is None:
+        gap, met = pair.opposite(roll_at_arc(gear, arc), nominal, driver=driver)
+    else:
+        own = {"start": found.gap[0, k], "flanks": flanks, "order": found.order[k]}
+        gap, met = pair.approach(roll_at_arc(gear, arc), nominal, driver=driver, **own)
     other = pair.gear_2 if driver else pair.gear_1
     opposite = arc_at(other, np.nan_to_num(met, nan=-1.0))
     there = np.isfinite(met) & (opposite <= arc_at(other, other.roll_a)) & (opposite > arc_at(other, other.roll_f))

@@ -28,8 +28,9 @@ STEP = 0.4  # longest cell along the width [mm]
 class Contact3D:
     """Contact of a pair at some phases.
 
-    `phase` (phases,): of the end that touches first; `k` (phases,) ``force / approach`` [N/m]; `approach` (phases,) of the gears
-    along the transverse line of action [mm]; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
+    `phase` (phases,): of the end that touches first; `k` (phases,) ``force / (approach - unloaded)`` [N/m]; `approach` (phases,)
+    of the gears along the transverse line of action [mm]; `unloaded` (phases,) the approach at which modified flanks first touch
+    without load [mm], 0 of involutes; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
     `error` (phases,) difference of k from that of coarser bodies [N/m], or None.
@@ -44,6 +45,7 @@ class Contact3D:
     dofs: tuple[int, int]
     closed: tuple[int, ...] = ()
     error: NDArray[np.float64] | None = None
+    unloaded: NDArray[np.float64] | None = None
 
 
 def pair_stiffness3d(
@@ -54,6 +56,7 @@ def pair_stiffness3d(
     *,
     pits=((), ()),
     cracks=((), ()),
+    flanks=None,
     face="helical",
     groove=0.0,
     step=STEP,
@@ -67,9 +70,9 @@ def pair_stiffness3d(
 ):
     """Mesh stiffness of a pair of finite width.
 
-    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it. The flanks
-    press at right angles, ``F / cos(beta_b)`` in all, and approach by ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the
-    normal force per normal approach.
+    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it (of modified
+    flanks: under load less without load). The flanks press at right angles, ``F / cos(beta_b)`` in all, and approach by
+    ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the normal force per normal approach.
 
     Parameters
     ----------
@@ -83,6 +86,8 @@ def pair_stiffness3d(
     pits, cracks : (sequence, sequence)
         Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
         Faces of cracks are kept from passing through each other if `model` gives their opening, as the energy model does.
+    flanks : (FlankForm, FlankForm), optional
+        Modifications of pinion and wheel and misalignment, `geometry.pair.flanks.flank_forms`.
     face : {"spur", "helical", "herringbone"}
         The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
         otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
@@ -125,6 +130,7 @@ def pair_stiffness3d(
         check_pits(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
+    options["flanks"] = flanks
     contact = PhaseContact(pair, force, materials, **options)
 
     def energy(order, less):
@@ -161,10 +167,12 @@ def _solved(contact, phase, bodies):
         own, approach[i], shut = contact.solve(at, bodies, reach)
         closed += [i] if shut else []
         cells.append(own)
-        reach = REACH * approach[i]
+        reach = contact.least + REACH * (approach[i] - contact.least)
     orders = np.array(sorted({order for own in cells for order in own.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
     for i, own in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
-    return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs, tuple(closed))
+    unloaded = contact.unloaded(cells)
+    k = 1e3 * contact.force / (approach - unloaded)
+    return Contact3D(phase, k, approach, orders, load, tuple(cells), dofs, tuple(closed), unloaded=unloaded)

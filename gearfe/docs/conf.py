@@ -12,7 +12,13 @@ sys.path[:0] = [str(TOP), str(HERE)]
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
 os.environ.setdefault("MPLBACKEND", "Agg")
 
+import matplotlib  # noqa: E402
+from matplotlib import cycler  # noqa: E402
 from site_pictures import pictures  # noqa: E402
+
+from gearfe.pictures.look import COLOURS, DASHES  # noqa: E402
+
+matplotlib.rcParams["axes.prop_cycle"] = cycler(color=COLOURS) + cycler(linestyle=DASHES)  # in pictures of scripts, too
 
 PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from geometry.mesh.outline import stations
 from geometry.mesh.relieved import relieved
 from geometry.mesh.section_mesh import section
+from geometry.pair.flanks import flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank, flank_forms
+from geometry.tooth.modified import Flank
 from geometry.tooth.profile import arc_at
 
 from ..files import written
@@ -58,7 +59,7 @@ def read_rows(path: str | os.PathLike[str]) -> dict[int, tuple[float, float, flo
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()
     except FileNotFoundError as error:
-        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME' first; if it ran, its own output says why it stopped") from error
+        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME'; if it ran, its output says why it stopped") from error
     rows = [line.split() for line in lines]
     found = {int(r[0]): (float(r[1]), float(r[2]), float(r[3])) for r in rows if len(r) == 4 and r[0].isdigit()}
     if not found:

@@ -99,7 +99,7 @@ def write_contact_inp(
             path, pair, phase, approach, line_load, materials, flanks=flanks, per_width=per_width or SECTION, **rest
         )
     if face not in ("spur", "helical") or (face == "spur") == bool(pair.gear_1.beta):
-        raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' without helix, else 'helical'")
+        raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
     if flanks:
         raise ValueError("flanks with face: only the section's mesh carries modifications; leave one of them out")
     own = damage_by_gear(damage)

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -48,8 +48,8 @@ class SolidDeck(ContactDeck):
 class Touching:
     """Tooth pairs that may touch, n of them.
 
-    `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths there
-    [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side.
+    `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths
+    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side.
     """
 
     order: list[int]
@@ -101,7 +101,7 @@ def write_contact_solid(
     penalty: float = 500.0,
     refine: float = 1.0,
 ) -> SolidDeck:
-    """The deck of `gearfe.elements.contact_inp.write_contact_inp` for gears of finite width; `damage` in each gear's own frame."""
+    """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame."""
     common = min(pair.gear_1.b, pair.gear_2.b)
     found = touching(pair, phase, approach, line_load, materials)
     parts = []
@@ -115,11 +115,8 @@ def write_contact_solid(
         else:
             patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
-            body = part_of(
-                solid(
-                    gear, layer=gear.b / layers, loaded=teeth, cracks=tuple(own), patches=patches, refine=refine, sizes=SIZES, fine=fine
-                )
-            )
+            options = {"layer": gear.b / layers, "loaded": teeth, "patches": patches, "fine": fine}
+            body = part_of(solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
         mirror = (1, pair.outward)[number]
         x, y = _posed(body.points[:2], turn, mirror)
@@ -136,9 +133,7 @@ def write_contact_solid(
     first = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, first, strict=True)]
     place = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
-    return SolidDeck(
-        (held[0], held[1]), (place[0], place[1]), (pair.gear_1.r_b, pair.gear_2.r_b), (parts[0], parts[1]), slaves
-    )
+    return SolidDeck((held[0], held[1]), (place[0], place[1]), (pair.gear_1.r_b, pair.gear_2.r_b), (parts[0], parts[1]), slaves)
 
 
 def _flank(pair, number, order):
@@ -153,7 +148,7 @@ def _patch(gear, found, number, k, per_width):
 
 
 def _strip(gear, found, number, k, tooth, low, per_width):
-    """The contact line on a tooth in the frame that turns with the helix, how far around it the mesh is finer, edge length [mm]."""
+    """A contact line in the frame that turns with the helix, how far around it the mesh is finer, the edge length there [mm]."""
     radius, angle = flank(gear, found.rolls[number][k])
     line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
     return line, 1.5 * found.width[k], found.width[k] / per_width
@@ -188,7 +183,7 @@ def _from_centre(pair, part, number):
 def _text(pair, parts, materials, found, turned, penalty):
     yield "** gearfe: gear pair of finite width in contact; mm, N, MPa"
     yield "*NODE, NSET=ALL"
-    first, element, blocks, ends = 0, 0, [], []
+    first, element, ends = 0, 0, []
     for part in parts:
         yield from node_lines(part, first)
         first += part.points.shape[1]

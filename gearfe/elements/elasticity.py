@@ -100,13 +100,6 @@ class Body:
         return np.array([np.bincount(flat, part.ravel(), minlength=count.size) for part in parts]) / count
 
 
-def von_mises(stress, nu, state):
-    """Von Mises stress [MPa] of plane stress components ``(3, n)``."""
-    xx, yy, xy = stress
-    zz = nu * (xx + yy) if state == "plane strain" else 0.0
-    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
-
-
 def _node_of_dof(basis):
     """Node number of each local shape function ``(6, triangles)``: vertices, then edges."""
     mesh = basis.mesh

@@ -21,6 +21,7 @@ ORDER = (
 )
 TWENTY = np.array([HEX.index(place) for place in ORDER])
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
+MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
 FACES = {  # corners of the faces, in CalculiX's order
     20: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
     10: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
@@ -56,7 +57,8 @@ def holed_part(mesh: Holed) -> Part:
             a, b, c = found
             own = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
             x, y, z = nodes[:, own]
-            radius = np.clip(np.hypot(x, y), *sorted((gear.r_form, gear.r_a)))
+            low, high = sorted((gear.r_form, gear.r_a))
+            radius = np.clip(np.hypot(x, y), low, high)
             angle = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
             turn = 2 * np.pi * int(name.split()[1]) / gear.z + gear.twist_rate * z
             nodes[:2, own] = cartesian(radius, angle + turn)
@@ -71,8 +73,8 @@ def holed_part(mesh: Holed) -> Part:
 
 def placed(part: Part, points: NDArray[np.float64], *, mirrored: bool = False) -> Part:
     """A body with its nodes at `points`; `mirrored` if they are a mirror image of its own."""
-    order = {20: MIRROR, 10: [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}[len(part.cells)] if mirrored else slice(None)
-    return replace(part, points=points, cells=part.cells[order])
+    cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
+    return replace(part, points=points, cells=cells)
 
 
 def sides_of(cells, faces):
@@ -80,7 +82,7 @@ def sides_of(cells, faces):
     corners = np.array(FACES[len(cells)])
     every = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
     wanted = np.sort(faces, axis=0)
-    both, place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)
+    place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)[1]
     side, element = np.divmod(np.flatnonzero(np.isin(place[: every.shape[1]], place[every.shape[1] :])), cells.shape[1])
     return np.array([element, side])
 

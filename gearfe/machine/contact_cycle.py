@@ -4,14 +4,12 @@ All are for gears whose damaged tooth is tooth 0 of the pinion, at the phases of
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..flexibility.hertz import contact_modulus
 from .contact_law import friction_coefficient
-from .gear_mesh import Samples, Table, cycle_table, table
+from .gear_mesh import Samples, table
 
 SI = 1e3**1.5  # N/mm^1.5 to N/m^1.5
 
@@ -43,25 +41,6 @@ def impact_cycle(pair, materials, *, lost=None, count=256):
 def _hertz(pair, phase, materials):
     one, two = pair.curvature_radii(phase)
     return 4 / 3 * np.sqrt(pair.relative_radius(one, two)) * contact_modulus(materials)
-
-
-def pit_loss(pair, *, count, diameter, radius=None, width=None):
-    """Part of the contact line of a spur tooth lost to `count` circular pits in a row, as a function of its phase.
-
-    Pits of `diameter` [mm] lie side by side across the width at `radius` of the pinion (default: its pitch point); each
-    takes the chord at which the line of contact crosses it.
-    """
-    gear, width = pair.gear_1, width or min(pair.gear_1.b, pair.gear_2.b)
-    if count * diameter > width:
-        raise ValueError(f"{count} pits of {diameter} mm do not fit side by side on a width of {width} mm")
-    centre = math.sqrt((radius or pair.pitch_radius_1) ** 2 - gear.r_b**2)
-
-    def lost(phase):
-        roll = pair.path[0] + np.asarray(phase) * pair.p_bt
-        along = (roll**2 - centre**2) / (2 * gear.r_b)  # arc of an involute
-        return count * 2 * np.sqrt(np.maximum(diameter**2 / 4 - along**2, 0.0)) / width
-
-    return lost
 
 
 def contact_line(pair, phase, *, width=None):
@@ -118,67 +97,6 @@ def ellipse_loss(pair, pits, *, width=None):
         return out
 
     return lost
-
-
-def sliced(curve, overlap, *, healthy=None, count=128):
-    """Stiffness of a helical pair from that of its transverse section: the mean over the slices across the width.
-
-    ``k(phase) = 1/eps_beta integral of k_section from phase - eps_beta to phase``, exactly (by a cumulative integral, not a sum
-    of slices); neighbouring slices are not coupled.
-
-    Parameters
-    ----------
-    curve : StiffnessCurve or Samples
-        Of the section, as of a spur gear of the same width; with `healthy` a damaged tooth's over its whole engagement.
-    overlap : float
-        ``eps_beta`` of one helix.
-    healthy : StiffnessCurve or Samples, optional
-    count : int
-        Samples per cycle.
-
-    Returns
-    -------
-    Samples
-    """
-    base = cycle_table(curve if healthy is None else healthy)
-    first, rise = _integral(base)
-
-    def mean(phase):
-        return (_running(base, first, rise, phase) - _running(base, first, rise, phase - overlap)) / overlap
-
-    if healthy is None:
-        phase = np.arange(count) / count
-        return Samples(phase, mean(phase))
-    phase = np.arange(math.floor(curve.phase[0] * count) - 1, math.ceil((curve.phase[-1] + overlap) * count) + 2) / count
-    change = table(np.concatenate([[0.0], curve.k - base(curve.phase % 1.0), [0.0]]), 0.0, 1.0, periodic=False)
-    grid = np.diff(curve.phase)
-    if not np.allclose(grid, grid[0], rtol=1e-6):
-        raise ValueError("a damaged tooth's curve must have equally spaced phases to be sliced")
-    change = replace(change, start=curve.phase[0] - grid[0], width=grid[0])
-    low, up = _integral(change)
-
-    def total(phase):
-        inside = np.clip(phase, change.start, change.end)
-        return _running(change, low, up, inside, periodic=False)
-
-    return Samples(phase, mean(phase) + (total(phase) - total(phase - overlap)) / overlap)
-
-
-def _integral(one):
-    """Integral of a table up to the start of each cell, and coefficients of it within."""
-    inside = one.cells * (1, 1 / 2, 1 / 3, 1 / 4) * one.width
-    return np.concatenate([[0.0], np.cumsum(inside.sum(axis=1))]), inside
-
-
-def _running(
-    one: Table, first: NDArray[np.float64], inside: NDArray[np.float64], phase: NDArray[np.float64], *, periodic: bool = True
-) -> NDArray[np.float64]:
-    place = (np.asarray(phase) - one.start) / one.width
-    turns = np.floor(place / len(inside)) if periodic else np.zeros_like(place)
-    place = place - turns * len(inside)
-    cell = np.clip(place.astype(np.int64), 0, len(inside) - 1)
-    u, c = place - cell, inside[cell]
-    return turns * first[-1] + first[cell] + u * (c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3])))
 
 
 def friction_weights(pair, speeds, *, static, dynamic, v_static, v_dynamic, count=512):

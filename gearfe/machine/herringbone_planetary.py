@@ -50,7 +50,7 @@ def herringbone_planetary(
     stage : PlanetarySet
         Helical gears with the width of *one half*.
     stiffness : dict
-        ``{"sun_planet": ..., "planet_ring": ...}`` of one half (`gearfe.machine.contact_cycle.sliced`) [N/m].
+        ``{"sun_planet": ..., "planet_ring": ...}`` of one half [N/m].
     damage : dict, optional
         ``{"sun": (tooth, {"sun_planet": curve})}`` as in `gearfe.machine.pitted_planetary.pitted_planetary`; in both halves.
     speed, torque : float

@@ -1,7 +1,7 @@
 """Rows of springs and meshes from where bodies are and how they touch, and the phases of meshes along a train of gears.
 
 Axes: x and y in the plane of the gears, z along their axes; angles counter-clockwise about z. Planetary trains are seen from
-their carrier: its rotation, and with it centrifugal and gyroscopic terms, is left out.
+their carrier; what its rotation adds, centripetal and gyroscopic terms, a `Machine` has with a `spin`.
 """
 
 import math

@@ -1,34 +1,47 @@
-"""Mesh errors of a whole machine: of the profiles at mesh frequency, of eccentric bodies, of misplaced ones."""
+"""Mesh errors of a whole machine: of the profiles, as a sinusoid or tabulated, of eccentric bodies, of misplaced ones."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
+from .mesh_excitation import harmonics
 from .tables import Machine
 
 
 def with_errors(
     machine: Machine,
     *,
-    profile: float | Mapping[str, float] = 0.0,
+    profile: Any = 0.0,
     runout: Mapping[str, tuple[float, float, float]] | None = None,
     place: Mapping[str, tuple[float, float]] | None = None,
 ) -> Machine:
-    """The machine with sinusoidal errors in every mesh, the three kinds that the article on the herringbone stage lists.
+    """The machine with errors in every mesh, the three kinds that the article on the herringbone stage lists.
+
+    A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
 
     Parameters
     ----------
     machine : Machine
-    profile : float or dict
-        Amplitude of the manufacturing error at mesh frequency [m], by mesh name if a dict; its phase is that of the mesh.
+    profile : float, array or Samples, or a dict of them by mesh name
+        Manufacturing error [m]: the amplitude of a sine at mesh frequency; or the error over the mesh phase, as samples over one
+        cycle or as `Samples` over several, for example of a revolution (`gearfe.mesh_excitation` makes them from a curve). Its
+        phase is that of the mesh. Positive: it opens the mesh.
     runout : dict, optional
         Eccentric bodies: ``{"sunL": (amplitude [m], frequency [Hz], start [rad])}``: the axis of the teeth turns about that of
         the body at `frequency` (relative to the carrier; counter-clockwise if positive) from angle `start`.
     place : dict, optional
         Misplaced bodies: ``{"planet1L": (dx, dy)}`` [m], a constant error.
 
-    A shift s of a body's teeth closes a mesh by ``row s`` with the translations of the mesh's row, so that ``e = -row s``.
+    Raises
+    ------
+    ValueError
+        If there is no such body or mesh, or an error is none.
     """
+    names = [mesh.name for mesh in machine.meshes]
+    for name in profile if isinstance(profile, Mapping) else ():
+        if name not in names:
+            raise ValueError(f"no mesh {name!r}; there are {', '.join(names)}")
     known = {dof.partition(".")[0] for dof in machine.dofs}
     for name in (*(runout or {}), *(place or {})):
         if name not in known:
@@ -36,7 +49,7 @@ def with_errors(
     meshes = []
     for mesh in machine.meshes:
         own = profile.get(mesh.name, 0.0) if isinstance(profile, Mapping) else profile
-        errors = [(own, mesh.frequency, 2 * math.pi * (mesh.phase % 1.0))] if own else []
+        errors = harmonics(own, mesh.frequency, mesh.phase)
         for name, (amplitude, frequency, start) in (runout or {}).items():
             dx, dy = (_entry(machine, mesh, f"{name}.{axis}") for axis in "xy")
             size, angle = math.hypot(dx, dy), math.atan2(dy, dx)

@@ -7,11 +7,13 @@ one row here.
 from collections.abc import Callable
 
 from ..scene.load import Scene
+from ..stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
 from .mesh_errors import with_errors
+from .mesh_excitation import mesh_excitation
 from .pitted_planetary import scene_planetary
 from .tables import Machine
 
@@ -65,7 +67,17 @@ def build_machine(scene: Scene, case: str | None = None, *, phases: int = 64, me
     if contact == "impact":
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
     out, play = MACHINES[model][contact](scene, case, phases=phases, method=method), scene.machine.get("backlash_um")
-    return with_scene_errors(scene, out.with_meshes(backlash=1e-6 * play) if play else out)
+    return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
+
+
+def with_flanks(machine):
+    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves have one."""
+    found = {
+        mesh.name: mesh_excitation(mesh.stiffness)[1]
+        for mesh in machine.meshes
+        if isinstance(mesh.stiffness, StiffnessCurve) and mesh.stiffness.unloaded is not None
+    }
+    return with_errors(machine, profile=found) if found else machine
 
 
 def with_scene_errors(scene, machine):

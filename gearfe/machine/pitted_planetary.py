@@ -31,6 +31,7 @@ def pitted_planetary(
     density: float = 7800.0,
     zeta: float = 0.02,
     friction: Mapping[str, float] | None = None,
+    gyroscopic: bool = False,
     **mesh: Any,
 ) -> Machine:
     """The planetary gearbox with pitted sun teeth (articles on 21/31/84): sun drives, ring held, load on the carrier.
@@ -61,6 +62,8 @@ def pitted_planetary(
         Damping ratio of supports, assumed 0.02.
     friction : dict, optional
         ``static, dynamic, v_static, v_dynamic`` of Coulomb friction at the sun's meshes (0.08, 0.05, 1e-4, 1e-2 m/s).
+    gyroscopic : bool
+        Take in the gyroscopic and centripetal terms of the turning carrier.
     **mesh
         Further fields of every `GearMesh`: for the impact law ``power=1.5, push=True, depth=1e-4, damping=..., backlash=...``.
     """
@@ -84,6 +87,7 @@ def pitted_planetary(
         mesh=lambda kind, i: phases[f"{kind}{i + 1}"] | mesh,
         loads={"sun": torque, "carrier": _against(load)},
         zeta=zeta,
+        spin=turn if gyroscopic else 0.0,
     )
     notes: dict[str, Any] = {
         "mesh frequency [Hz]": frequency,

@@ -20,7 +20,7 @@ from .tables import History, Load, Machine
 
 def planetary(
     sun: Member,
-    planet: Member,
+    planet: Member | Sequence[Member],
     ring: Member,
     carrier: Member,
     *,
@@ -31,15 +31,18 @@ def planetary(
     loads: Mapping[str, History] | None = None,
     zeta: float = 0.0,
     places: Sequence[float] | None = None,
+    spin: float = 0.0,
 ) -> Machine:
-    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier, without gyroscopic terms.
+    """A planetary stage in its plane, 3 degrees of freedom per body, seen from the carrier.
 
     The model of J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, in coordinates that do not turn with the planets; for
     its frequencies see ``tests/machine/test_models.py``.
 
     Parameters
     ----------
-    sun, planet, ring, carrier : Member
+    sun, ring, carrier : Member
+    planet : Member or sequence of Member
+        One for all planets, or one for each.
     n_planets : int
     alpha : (float, float)
         Working pressure angles sun-planet and planet-ring [rad].
@@ -53,27 +56,32 @@ def planetary(
         Damping ratio of the supports.
     places : sequence of float, optional
         Angles of the planets [rad]; default: equal spacing from 0.
+    spin : float
+        Speed of the carrier [rad/s], whose gyroscopic and centripetal terms are then taken in; 0: they are left out.
     """
     names = [f"planet{i + 1}" for i in range(n_planets)]
     angles = 2 * math.pi * np.arange(n_planets) / n_planets if places is None else np.asarray(places, dtype=float)
+    planets = [planet] * n_planets if isinstance(planet, Member) else list(planet)
+    if len(planets) != n_planets:
+        raise ValueError(f"planet: {len(planets)} bodies, but n_planets = {n_planets}: give one for all, or one for each")
     central = {"sun": sun, "ring": ring, "carrier": carrier}
     bodies = [Body(name, m.mass, m.inertia) for name, m in central.items()] + [
-        Body(n, planet.mass, planet.inertia) for n in names
+        Body(n, m.mass, m.inertia) for n, m in zip(names, planets, strict=True)
     ]
     layout, springs, meshes = Layout(bodies), [], []
     for name, m in central.items():
         springs += layout.springs(name, None, {"x": m.bearing, "y": m.bearing, "theta": m.torsion}, zeta)
-    for i, (name, angle) in enumerate(zip(names, angles, strict=True)):
+    for i, (name, angle, own) in enumerate(zip(names, angles, planets, strict=True)):
         arm = carrier.r_b * np.array([math.cos(angle), math.sin(angle)])
-        springs += layout.springs(name, "carrier", {"x": planet.bearing, "y": planet.bearing}, zeta, arm)
+        springs += layout.springs(name, "carrier", {"x": own.bearing, "y": own.bearing}, zeta, arm)
         for kind, one, two, r, sense, inside in (
-            ("sun_planet", "sun", name, (sun.r_b, planet.r_b), 1, False),
-            ("planet_ring", name, "ring", (planet.r_b, ring.r_b), -1, True),
+            ("sun_planet", "sun", name, (sun.r_b, own.r_b), 1, False),
+            ("planet_ring", name, "ring", (own.r_b, ring.r_b), -1, True),
         ):
-            own = layout.mesh(one, two, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
-            meshes.append(GearMesh(f"{kind}{i + 1}", own, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
+            row = layout.mesh(one, two, angle=angle, alpha=alpha[inside], radii=r, sense=sense, internal=inside)
+            meshes.append(GearMesh(f"{kind}{i + 1}", row, stiffness[kind], **({} if mesh is None else mesh(kind, i))))
     torques = tuple(Load(f"{name} torque", layout.unit(name, "theta"), value) for name, value in (loads or {}).items())
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques)
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), torques, spin=spin)
 
 
 def stage_phases(

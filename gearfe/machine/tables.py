@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 
 from .contact_law import LAW, force, slopes
 from .gear_mesh import GearMesh
-
-RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
+from .speed import Speed
+from .turning_frame import frame_terms
 
 # of a load: a number, times and values, or a function of an array of times
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray[np.float64]], ArrayLike]
@@ -147,11 +146,18 @@ class Machine:
         What had to be assumed, and derived numbers to be printed (phases, frequencies).
     stages : tuple of Stage
         What spectra and errors of the machine ask for; the last one is the driven one.
+    speed : Speed, optional
+        A speed that changes (`gearfe.with_speed`); None: the frequencies stated, for ever.
+    spin : float
+        Angular velocity of the frame, that of the carrier, counter-clockwise [rad/s]: with gyroscopic and centripetal terms. 0:
+        without them.
 
     Attributes
     ----------
     K, C : ndarray, shape (n, n)
-        Stiffness and damping matrices of the springs alone, without the meshes.
+        Stiffness and damping matrices of the springs alone, without the meshes; with a `spin` its terms, too.
+    frame : ndarray, shape (n, n)
+        What of K is due to the spin (`gearfe.machine.turning_frame.frame_terms`).
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
@@ -165,10 +171,13 @@ class Machine:
     loads: tuple[Load, ...] = ()
     notes: dict[str, Any] = field(default_factory=dict)
     stages: tuple[Stage, ...] = ()
+    speed: Speed | None = None
+    spin: float = 0.0
     K: NDArray[np.float64] = field(init=False)
     C: NDArray[np.float64] = field(init=False)
     G: NDArray[np.float64] = field(init=False)
     law: dict[str, NDArray[Any]] = field(init=False)
+    frame: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
         """Assemble; refuse masses that are not, rows that do not fit."""
@@ -184,8 +193,14 @@ class Machine:
                 raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
         R = np.array([s.row for s in self.springs]).reshape(-1, n)
         object.__setattr__(self, "mass", mass)
-        object.__setattr__(self, "K", R.T @ (np.array([s.k for s in self.springs])[:, None] * R))
-        object.__setattr__(self, "C", R.T @ (np.array([s.c for s in self.springs])[:, None] * R))
+        K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
+        frame = np.zeros((n, n))
+        if self.spin:
+            gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin)
+            frame, C = centripetal + circulatory, C + gyroscopic
+        object.__setattr__(self, "K", K + frame)
+        object.__setattr__(self, "C", C)
+        object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
         law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW if key != "per_depth"}
         law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
@@ -217,6 +232,15 @@ class Machine:
         if name not in self.dofs:
             raise ValueError(f"no degree of freedom {name!r}; there are {', '.join(self.dofs)}")
         return np.eye(len(self.dofs))[self.dofs.index(name)]
+
+    def turned(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]: what angles follow."""
+        return np.asarray(t, dtype=float) if self.speed is None else self.speed.turned(t)
+
+    @property
+    def fastest(self) -> float:
+        """Largest speed over the nominal one."""
+        return 1.0 if self.speed is None else self.speed.fastest
 
     def mean_stiffness(self) -> NDArray[np.float64]:
         """Mean of each mesh's stiffness over its healthy cycle ``(m,)`` [N/m^power]."""
@@ -277,40 +301,3 @@ class Machine:
 def _weighted_solve(matrix, right, mass):
     scale = 1 / np.sqrt(mass)
     return scale * np.linalg.lstsq(matrix * scale[:, None] * scale[None, :], right * scale, rcond=1e-13)[0]
-
-
-def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Natural frequencies and modes without damping, meshes at their mean stiffness.
-
-    Parameters
-    ----------
-    machine : Machine
-    x : ndarray, shape (m,), optional
-        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
-
-    Returns
-    -------
-    frequencies : ndarray, shape (n,)
-        [Hz], rising; 0 for rigid-body modes.
-    modes : ndarray, shape (n, n)
-        In columns, ``modes.T @ diag(mass) @ modes = 1``.
-    """
-    if x is None and (machine.law["power"] != 1).any():
-        x = machine.G @ machine.rest()
-    squared, modes = modal(machine.linear(x)[0], machine.mass)
-    return np.sqrt(squared) / (2 * math.pi), modes
-
-
-def modal(K: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
-
-    Raises
-    ------
-    ValueError
-        If the stiffness is not positive semi-definite.
-    """
-    scale = 1 / np.sqrt(mass)
-    squared, modes = eigh(K * scale[:, None] * scale[None, :])
-    if squared[0] < -1e-8 * squared[-1]:
-        raise ValueError(f"the stiffness matrix has a negative eigenvalue {squared[0]:.4g}: a spring of negative stiffness?")
-    return np.where(squared < RIGID * squared[-1], 0.0, squared), scale[:, None] * modes

@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..machine.speed import turned
+
 
 class Flat(NamedTuple):
     """The tables of a machine as arrays.
@@ -13,7 +15,8 @@ class Flat(NamedTuple):
     damaged tooth: its mesh, number of teeth, first cycle, and start, width, place and number of cells of the change. Of each
     sinusoid of an error: mesh, amplitude, angular frequency, phase. Of each friction row: mesh, place and number of cells. Of
     each load: where its knots start and end.
-    `twin` is the first mesh whose stiffness is always that of a mesh.
+    `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `gearfe.machine.speed.Speed`, none
+    at a constant speed.
     """
 
     cells: np.ndarray
@@ -33,6 +36,7 @@ class Flat(NamedTuple):
     knots: np.ndarray  # (n, 2): time, value
     knot_place: np.ndarray
     twin: np.ndarray
+    pace: np.ndarray  # (n, 3): time, speed over the nominal one, turned time
 
 
 def flatten(machine, times):
@@ -69,6 +73,7 @@ def flatten(machine, times):
         np.concatenate(knots) if knots else np.zeros((1, 2)),
         np.cumsum([0, *map(len, knots)]).astype(whole),
         np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
+        np.zeros((0, 3)) if machine.speed is None else machine.speed.knots,
     )
 
 
@@ -94,7 +99,7 @@ def _knots(load, times):
 
 def stiffness(flat, t):
     """Stiffness of all meshes at times `t` ``(..., m)`` and the running phases."""
-    phase = flat.phase + flat.frequency * np.asarray(t, dtype=float)[..., None]
+    phase = flat.phase + flat.frequency * _paced(flat, t)[0][..., None]
     k = _value(flat, phase - np.floor(phase), flat.place, flat.count)
     for mesh, (z, first, start, width), place, count in zip(
         flat.change_mesh, flat.change, flat.change_place, flat.change_count, strict=True
@@ -110,6 +115,12 @@ def stiffness(flat, t):
     return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
 
 
+def _paced(flat, t):
+    """Turned times at times `t`, and the speed over the nominal one."""
+    t = np.asarray(t, dtype=float)
+    return (turned(flat.pace, t), np.interp(t, flat.pace[:, 0], flat.pace[:, 1])) if len(flat.pace) else (t, 1.0)
+
+
 def _value(flat, part, place, count):
     at = part * count
     cell = np.minimum(at.astype(np.int64), count - 1)
@@ -119,11 +130,11 @@ def _value(flat, part, place, count):
 
 def errors(flat, t):
     """Errors [m] of all meshes at times `t` and their rates [m/s], ``(..., m)`` each."""
-    t = np.asarray(t, dtype=float)
+    t, pace = _paced(flat, t)
     e, rate = np.zeros((*t.shape, len(flat.phase))), np.zeros((*t.shape, len(flat.phase)))
     for mesh, (amplitude, omega, angle) in zip(flat.error_mesh, flat.error, strict=True):
         e[..., mesh] += amplitude * np.sin(omega * t + angle)
-        rate[..., mesh] += amplitude * omega * np.cos(omega * t + angle)
+        rate[..., mesh] += amplitude * omega * pace * np.cos(omega * t + angle)
     return e, rate
 
 

@@ -37,6 +37,26 @@ def _load(knots, low, high, t):
 
 
 @njit(cache=True, error_model="numpy")
+def _paced(pace, t):
+    """Turned time at time `t`, and the speed over the nominal one; both from the knots of `gearfe.machine.speed.Speed`."""
+    last = pace.shape[0] - 1
+    if t <= pace[0, 0] or last == 0:
+        return pace[0, 2] + pace[0, 1] * (t - pace[0, 0]), pace[0, 1]
+    if t >= pace[last, 0]:
+        return pace[last, 2] + pace[last, 1] * (t - pace[last, 0]), pace[last, 1]
+    low, high = 0, last
+    while high - low > 1:
+        middle = (low + high) // 2
+        if pace[middle, 0] <= t:
+            low = middle
+        else:
+            high = middle
+    own = t - pace[low, 0]
+    now = pace[low, 1] + own * (pace[high, 1] - pace[low, 1]) / (pace[high, 0] - pace[low, 0])
+    return pace[low, 2] + own * (pace[low, 1] + now) / 2, now
+
+
+@njit(cache=True, error_model="numpy")
 def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
@@ -46,19 +66,22 @@ def lookup(flat, now, first, last, origin, h, low, share):
     cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
     change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
     error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
-    rub_mesh, rub_place, rub_count = flat.rub_mesh, flat.rub_place, flat.rub_count
+    rub_mesh, rub_place, rub_count, pace = flat.rub_mesh, flat.rub_place, flat.rub_count, flat.pace
     m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
     for row in range(first, last):
         t = origin + h * (low + share * (row - first))
+        turned, fast = t, 1.0
+        if pace.shape[0] > 0:
+            turned, fast = _paced(pace, t)
         for i in range(m):
             now[row, m + i] = now[row, 2 * m + i] = 0.0
             if twin[i] == i:
-                phase = phases[i] + frequency[i] * t
+                phase = phases[i] + frequency[i] * turned
                 now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
         for j in range(changes):
             i = change_mesh[j]
             if twin[i] == i:
-                z, own = change[j, 0], phases[i] + frequency[i] * t - change[j, 1] - change[j, 2]
+                z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
                 own = (own - z * np.floor(own / z)) / change[j, 3]
                 if own < change_count[j]:
                     now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
@@ -67,12 +90,12 @@ def lookup(flat, now, first, last, origin, h, low, share):
             if changes:
                 now[row, i] = max(now[row, i], 0.0)
         for j in range(error_mesh.size):
-            i, turn = error_mesh[j], error[j, 1] * t + error[j, 2]
+            i, turn = error_mesh[j], error[j, 1] * turned + error[j, 2]
             now[row, m + i] += error[j, 0] * np.sin(turn)
-            now[row, 2 * m + i] += error[j, 0] * error[j, 1] * np.cos(turn)
+            now[row, 2 * m + i] += error[j, 0] * error[j, 1] * fast * np.cos(turn)
         for j in range(rub):
             i = rub_mesh[j]
-            phase = phases[i] + frequency[i] * t
+            phase = phases[i] + frequency[i] * turned
             now[row, 3 * m + j] = _cubic(cells, rub_place[j], rub_count[j], (phase - np.floor(phase)) * rub_count[j])
         for j in range(loads):
             now[row, 3 * m + rub + j] = _load(knots, knot_place[j], knot_place[j + 1], t)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig
 
-from ..machine.tables import modal, natural_frequencies
+from ..machine.modes import modal, natural_frequencies
 
 LEVELS = 6  # a step is halved at most so often
 LOCAL = 1e-3  # of the largest mesh force, at the default step: what `Plan.allowed` is there
@@ -64,11 +64,11 @@ def is_affine(machine):
 def plan(machine, h, x=None, adapt=False):
     """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]; `adapt`: with what is `allowed`."""
     K, C, k, c = machine.linear(x)
-    squared, modes = modal(K, machine.mass)
+    squared, modes = modal(K - machine.frame, machine.mass)
     n = len(squared)
     unit = math.sqrt(squared[-1]) or 1.0  # so that displacements and velocities are of one size
     D = modes.T @ C @ modes
-    A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-np.diag(squared) / unit, -D]])
+    A = np.block([[np.zeros((n, n)), unit * np.eye(n)], [-(np.diag(squared) + modes.T @ machine.frame @ modes) / unit, -D]])
     turn, size = _blocks(A, squared, D)
     back = np.linalg.inv(turn)
     A = (back @ A @ turn).reshape(2 * n // size, size, 2 * n // size, size)
@@ -103,7 +103,7 @@ def default_step(machine):
 
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
     """
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+    highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
     x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
     own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
     top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]

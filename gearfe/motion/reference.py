@@ -63,7 +63,7 @@ class _Run:
     def __init__(self, machine, duration, count, state, method, rtol, start):
         self.machine, self.n, self.law = machine, len(machine.dofs), machine.law
         self.flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 20 * count + 1))
-        highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+        highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
         unit = max(2 * math.pi * highest, 1.0)  # velocities of the size of the displacements
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
         rest = machine.rest()
@@ -100,9 +100,9 @@ class _Run:
             )
             self.calls += done.nfev
             if not done.success or not all(np.isfinite(part).all() for part in (done.y, *(done.y_events or ())) if np.size(part)):
-                reached = done.t[-1] if done.t.size else low
+                reached = done.t[-1] if len(done.t) else low
                 raise RuntimeError(f"{self.options['method']} gave up at t = {reached:.4g} s: {done.message}")
-            kept = done.t.size if done.status == 1 else wanted.size
+            kept = len(done.t) if done.status == 1 else wanted.size  # no array but a list where a change came before any output
             if kept:
                 found.append((done.y[:, :kept] / self.scale[:, None]).T)
             if done.status != 1:

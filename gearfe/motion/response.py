@@ -13,6 +13,7 @@ from ..files import Content, save_as, suffix_of
 from ..machine.contact_law import force, sided_force
 from ..machine.tables import Machine
 from ..pictures.inline import line_svg
+from ..signal.series import Signal
 from . import excitation
 
 KINDS = {"velocity": "/s", "acceleration": "/s2"}
@@ -113,6 +114,15 @@ class Response:
         """Accelerations ``(t, n)``, from the equations of motion."""
         return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
 
+    def signal(self, name: str, turning: float | None = None) -> Signal:
+        """Channel `name` as a `gearfe.Signal`.
+
+        With `turning`, the turns per second of a shaft at the machine's nominal speed [Hz], it has the angle of that shaft, so
+        that `gearfe.order_spectrum` and the synchronous average follow a speed that changes.
+        """
+        angle = None if turning is None else 2 * np.pi * turning * self.machine.turned(self.time)
+        return Signal(self[name], 1 / float(self.time[1] - self.time[0]), self.unit(name), name, angle)
+
     def save(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
         """Write channels `names` (default: displacements and mesh forces); the suffix decides: .csv, .npz or .mat."""
         suffix = suffix_of(path, "response")
@@ -161,7 +171,7 @@ def acceleration(machine, flat, t, q, v, side=None):
     e, rate = excitation.errors(flat, t)
     law, x, speed = machine.law, q @ machine.G.T - e, v @ machine.G.T - rate
     total = force(x, speed, k, law) if side is None else sided_force(x, speed, k, law, side)
-    out = -q @ machine.K - v @ machine.C - total @ machine.G
+    out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
     if rub:
         out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)

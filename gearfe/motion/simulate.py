@@ -16,11 +16,22 @@ from ..machine.tables import Machine
 from .fixed_step import fixed_steps
 from .reference import SOLVERS, reference
 from .response import Response
-from .step_control import WANTED_OPEN, chosen_step, default_step, difference, estimate
+from .step_control import (
+    WANTED_OPEN,
+    Estimate,
+    acceleration_difference,
+    chosen_step,
+    default_step,
+    difference,
+    estimate,
+    longest_seen,
+    unseen,
+)
 
 FINER = 3  # times the step of a whole run is halved where contact is lost
 DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
+WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
 SLOW = 5.0  # s: above it the seconds expected are told
 LONGEST = 300.0  # s: a run without numba that would take longer is refused
@@ -78,8 +89,8 @@ def simulate(
     rtol : float
         Of the reference; its atol is a thousandth of that of the largest value at rest.
     error : bool, optional
-        Fast path: True integrates once more with half the step, ``stats["error"]`` is then of the whole run; False leaves a
-        given step unestimated.
+        Fast path: True integrates the whole run again with half the step, until two runs agree within 1e-3 where the step is
+        chosen; ``stats["error"]`` is then of the whole run. False leaves a given step unestimated.
     numba : bool, optional
         Fast path: use the compiled loop; default: if numba is installed. The first run compiles it, which takes about 10 s;
         numba keeps the result on the disk.
@@ -90,8 +101,9 @@ def simulate(
     -------
     Response
         Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
-        step, over their ranges (`gearfe.motion.step_control.difference`), on the first ``stats["error_seconds"]`` of a run about
-        the worst damaged tooth, or of the whole run.
+        step, over their ranges (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the
+        worst damaged tooth or where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the
+        accelerations. Without damping the error goes on growing after such a stretch: ask for the whole run (``error=True``).
 
     Raises
     ------
@@ -191,21 +203,24 @@ class _Runs:
         out = self(every)
         if error is False:
             return out
+        length = float(self.duration)
         if error:
-            doubt, length = max(difference(out, self(2 * every))), float(self.duration)
+            finer = self(2 * every)
+            found = Estimate(max(difference(out, finer)), False, length, 0.0, acceleration_difference(out, finer))
         else:
             try:
-                doubt, _, length, _ = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
+                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
             except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
-                doubt, length = math.inf, float(self.duration)
+                found = Estimate(math.inf, False, length, 0.0, math.inf)
+        doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
         if not doubt <= COARSE:
             warnings.warn(
                 f"a step of {out.stats['dt']:.3g} s is too long for this machine: its error is about {100 * doubt:.2g} % of the "
                 "range of the motion; leave the step open and state the rate of the output by rate=",
                 stacklevel=3,
             )
-        stats = {"error": doubt, "error_seconds": length, "seconds": time.perf_counter() - started}
-        return replace(out, stats=out.stats | stats)
+        stats = {"error": doubt, "error_acceleration": found.acceleration, "error_seconds": found.length}
+        return replace(out, stats=out.stats | stats | {"seconds": time.perf_counter() - started})
 
     def controlled(self, error):
         """Run at the chosen step; where contact is lost, until two whole runs agree, or by the reference."""
@@ -214,19 +229,23 @@ class _Runs:
         def told(one, **more):
             return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
 
-        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba, adapt=True, watch=self._watch)
+        longest = longest_seen(self.machine, self.start, self.duration)
+        options = {"adapt": True, "watch": self._watch, "longest": longest}
+        dt, found = chosen_step(self.machine, self.duration, self.own, self.numba, **options)
         every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
-            return told(out, error=doubt, error_seconds=length)
+            return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
         length = float(self.duration)
         for _ in range(FINER):
             every *= 2
             finer = self(every, adapt=True)
-            doubt = max(difference(out, finer))
+            doubt, shaken = max(difference(out, finer)), acceleration_difference(out, finer)
             out = finer
-            if doubt <= ALLOWED or not out.stats["losses"]:
-                return told(out, error=doubt, error_seconds=length)
+            if doubt <= (ALLOWED if out.stats["losses"] else WHOLE):
+                break
+        if doubt <= ALLOWED or not out.stats["losses"]:
+            return told(out, error=doubt, error_acceleration=shaken, error_seconds=length)
         h = out.stats["dt"]
         why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
         rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])

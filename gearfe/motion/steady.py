@@ -59,6 +59,8 @@ def common_period(machine: Machine) -> float:
     """
     if any(one.breaks.size > 1 or callable(one.value) for one in machine.loads):
         raise ValueError("the loads change with time: give the period")
+    if machine.speed is not None:
+        raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
     rates = [abs(m.frequency) / m.cycles() for m in machine.meshes if m.frequency]
     rates += [abs(f) for m in machine.meshes for _, f, _ in m.error if f]
     if not rates:

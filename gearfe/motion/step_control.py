@@ -6,6 +6,7 @@ changed until both agree.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,8 @@ WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed a
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
 SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to half the step: of order four, and where local halving rules
+SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
+PROBES = 50_000  # times at which that is looked at
 TURNS = ("theta", "tilt_x", "tilt_y")
 
 
@@ -29,10 +32,7 @@ def difference(one, two):
     force : float
         Of any mesh force over its own range; forces that vary by less than a millionth of the largest do not count.
     """
-    away, size = np.abs(one.q - two.q).max(axis=0), np.ptp(two.q, axis=0)
-    turns = np.array([name.rpartition(".")[2] in TURNS for name in two.machine.dofs])
-    kinds = [(away[kind].max(), size[kind].max()) for kind in (turns, ~turns) if kind.any()]
-    displacement = max(float(error / limit) if limit else 0.0 for error, limit in kinds)
+    displacement = _by_kind(one.q, two.q, two.machine)
     if not two.machine.meshes:
         return displacement, 0.0
     force, reference = one.mesh(), two.mesh()
@@ -41,12 +41,61 @@ def difference(one, two):
     return displacement, float((np.abs(force - reference).max(axis=0) / size).max())
 
 
+def _by_kind(one, two, machine):
+    away, size = np.abs(one - two).max(axis=0), np.ptp(two, axis=0)
+    turns = np.array([name.rpartition(".")[2] in TURNS for name in machine.dofs])
+    kinds = [(away[kind].max(), size[kind].max()) for kind in (turns, ~turns) if kind.any()]
+    return max(float(error / limit) if limit else 0.0 for error, limit in kinds)
+
+
+def acceleration_difference(one, two):
+    """Largest difference of the accelerations of two responses at the same times, over ranges as `difference` takes them."""
+    return _by_kind(one.accelerations(), two.accelerations(), two.machine)
+
+
+def unseen(machine, start, duration, h):
+    """How far loads that are functions are from what steps of `h` seconds see of them, over their spread; the worst.
+
+    A run knows them at quarters of its steps and draws straight lines between. Asked at times by chance over the whole run, not
+    on a stretch: a burst, or a tone far above the meshes, shows.
+    """
+    functions = [one for one in machine.loads if callable(one.value)]
+    if not functions:
+        return 0.0
+    t = start + duration * np.random.default_rng(0).random(PROBES)
+    part, whole = np.modf((t - start) / (h / 4))
+    low = start + h / 4 * whole
+    worst = 0.0
+    for load in functions:
+        value, left, right = load(t), load(low), load(low + h / 4)
+        spread = float(np.std(value))
+        off = float(np.sqrt(np.mean((left + part * (right - left) - value) ** 2)))
+        worst = max(worst, off / spread if spread else 0.0)
+    return worst
+
+
+def longest_seen(machine, start, duration):
+    """Longest step that sees the loads to `SEEN` [s]; at most `default_step`, and that over ``2**12`` if none does."""
+    h = default_step(machine)
+    for _ in range(12):
+        if unseen(machine, start, duration, h) <= SEEN:
+            break
+        h /= 2
+    return h
+
+
 def stretch(machine, duration):
-    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them."""
+    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them.
+
+    Of a speed that changes: where it is fastest.
+    """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
         return 0.0, min(duration, 1000 * default_step(machine))
-    length = min(duration, CYCLES / min(rates))
+    length = min(duration, CYCLES / (min(rates) * machine.fastest))
+    if machine.speed is not None:
+        times = np.linspace(0.0, duration - length, 1000)
+        return float(times[np.argmax(np.diff(machine.turned([times, times + length]), axis=0))]), length
     worst, start = 0.0, 0.0
     for mesh in machine.meshes:
         for (_, _, change), times in zip(mesh.changes, mesh.entries(duration) if mesh.frequency else (), strict=False):
@@ -57,7 +106,7 @@ def stretch(machine, duration):
     return max(0.0, min(start, duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None):
+def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None, longest=math.inf):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -74,51 +123,63 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
         Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
     watch : callable, optional
         Gets the seconds that a simulated second takes at each step tried; may raise.
+    longest : float
+        Step to begin with [s], if it is shorter than `default_step`.
 
     Returns
     -------
     dt : float
         [s]
-    error : float
-        Difference of displacements and mesh forces at half the step, the larger of `difference`, times `SMOOTH` or `ROUGH`.
-    length : float
-        Of the stretch [s].
+    found : Estimate
     """
 
     def error(h):
         try:
-            doubt, lost, _, cost = estimate(machine, duration, h, initial, numba, adapt=adapt)
+            found = estimate(machine, duration, h, initial, numba, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
-            return math.inf, False
+            return Estimate(math.inf, False, length, 0.0, math.inf)
         if watch is not None:
-            watch(cost)
-        return doubt, lost
+            watch(found.cost)
+        return found
 
     length = stretch(machine, duration)[1]
-    h = min(default_step(machine), length)
+    h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
-    doubt, lost = error(h)
-    while doubt > (WANTED_OPEN if lost else WANTED) and h > low:
-        h *= max(0.25, min(0.8, 0.9 * (WANTED / doubt) ** 0.25)) if not lost else 0.5
-        doubt, lost = error(h)
-    return h, doubt, length
+    found = error(h)
+    while found.error > (WANTED_OPEN if found.lost else WANTED) and h > low:
+        h *= max(0.25, min(0.8, 0.9 * (WANTED / found.error) ** 0.25)) if not found.lost else 0.5
+        found = error(h)
+    return h, found
 
 
-def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
-    """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times `SMOOTH` or `ROUGH`.
+class Estimate(NamedTuple):
+    """What a run at a step and one at half of it say on a stretch.
 
-    Returns
-    -------
+    Attributes
+    ----------
     error : float
+        Of displacements and mesh forces, the larger of `difference`, times `SMOOTH` or `ROUGH`.
     lost : bool
         Whether contact is lost there.
     length : float
         Of the stretch [s].
     cost : float
         Seconds for a simulated second at this step, from what the run at half of it took longer.
+    acceleration : float
+        Error of the accelerations, likewise.
     """
+
+    error: float
+    lost: bool
+    length: float
+    cost: float
+    acceleration: float
+
+
+def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
+    """`Estimate` of the step `h` on a `stretch`."""
     start, length = stretch(machine, duration)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
@@ -126,4 +187,6 @@ def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
     options = {"numba": numba, "start": start, "adapt": adapt}
     one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
     cost = max(two.stats["seconds"] - one.stats["seconds"], 0.0) / length
-    return (ROUGH if adapt and is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length, cost
+    more = ROUGH if adapt and is_bent(machine) else SMOOTH
+    acceleration = more * acceleration_difference(one, two)
+    return Estimate(more * max(difference(one, two)), two.stats["losses"] > 0, length, cost, acceleration)

@@ -3,9 +3,10 @@
 import numpy as np
 
 from ..files import save_figure
+from .stiffness_plots import told
 
 
-def plot_transmission_error(found, path=None):
+def plot_transmission_error(found, path=None, title=None):
     """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` if given.
 
     Parameters
@@ -13,6 +14,8 @@ def plot_transmission_error(found, path=None):
     found : TransmissionError
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
+    title : str, optional
+        Default: teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`.
 
     Returns
     -------
@@ -30,8 +33,9 @@ def plot_transmission_error(found, path=None):
         top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
     phase, te = _closed(found.phase, found.unloaded)
     top.plot(phase, 1e6 * te, color="black", linestyle=":", label="unloaded")
+    top.set_title(told(found.curves[0], load=False) if title is None else title, fontsize=10)
     top.set_xlabel("mesh phase (0: a pair enters, 1: one base pitch later)")
-    top.set_ylabel("transmission error [um]")
+    top.set_ylabel("transmission error [µm]")
     top.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     rising, swing = order[::-1], 1e6 * found.peak_to_peak
     bottom.plot(found.force[rising], swing[rising], "o-", label="under load")
@@ -39,7 +43,7 @@ def plot_transmission_error(found, path=None):
     bottom.set_xlim(left=0)
     bottom.set_ylim(bottom=0)
     bottom.set_xlabel("force along the line of action [N]")
-    bottom.set_ylabel("peak-to-peak [um]")
+    bottom.set_ylabel("peak-to-peak [µm]")
     bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=120)
 

@@ -1,28 +1,18 @@
-"""Plots (matplotlib) of stiffness: curves, error maps, contact lines."""
+"""Plots (matplotlib) of stiffness: curves, error maps, lengths of contact lines."""
 
 import math
-import os
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.damage.pit import Pit, centre_arc
-from geometry.pair.gear_pair import GearPair
-from geometry.tooth.profile import roll_at_arc
-
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
+from .look import SQUASHED, look
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from ..contact.solid import Contact3D
+    pass
 
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")  # apart for the colour-blind
-DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
-SQUASHED = 0.3  # lowest over largest stiffness from which on an axis from zero would waste the picture
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
     "bore_1": "pinion bore / root radius",
@@ -57,13 +47,11 @@ def plot_curves(curves, path=None, title=None):
     figure = Figure(figsize=(7.5, 5.4), layout="constrained")
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):
-        look = {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
-        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look)
+        top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look(number))
     first = next(iter(curves.values()))
     share = np.where(first.force > 0, first.share, np.nan)
     for column, order in enumerate(first.order):
-        look = {"color": COLOURS[column % len(COLOURS)], "linestyle": DASHES[column % len(DASHES)]}
-        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look)
+        bottom.plot(first.phase, share[:, column], label=f"pair {order:+d}", **look(column))
     k = np.concatenate([curve.k for curve in curves.values()]) / NEWTON_PER_UM
     if k.min() < SQUASHED * k.max():
         top.set_ylim(0, 1.06 * k.max())
@@ -77,8 +65,8 @@ def plot_curves(curves, path=None, title=None):
     return save_figure(figure, path, dpi=120)
 
 
-def told(curve):
-    """Teeth, damage, load and width of a curve in one line, as far as its `meta` has them."""
+def told(curve, *, load=True):
+    """Teeth, damage, width and (if `load`) load of a curve in one line, as far as its `meta` has them."""
     meta = curve.meta
     parts = []
     if "gear_1" in meta and "gear_2" in meta:
@@ -86,7 +74,7 @@ def told(curve):
     hurt = {side: len(found) for side, found in meta.get("damage", {}).items() if found}
     parts += [f"{number} damage{'s' if number > 1 else ''} of the {side}" for side, number in hurt.items()]
     if "force_N" in meta and "width_mm" in meta:
-        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm")
+        parts.append(f"{meta['force_N']:g} N on {meta['width_mm']:g} mm" if load else f"{meta['width_mm']:g} mm wide")
     return ", ".join(parts)
 
 
@@ -154,6 +142,7 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
         axes.set_yticks(range(len(names_y)), names_y, fontsize=7)
     row[0].set_ylabel(COLUMNS.get(y, y), fontsize=9)
     figure.colorbar(image, ax=row, label=f"median error of k, {zone} [%]")
+    figure.suptitle(f"{found.columns['load'].size} gears, loads and cracks, errors against ritz", fontsize=9)
     return save_figure(figure, path, dpi=100)
 
 
@@ -193,114 +182,20 @@ def plot_errors(errors, rows, columns, path=None, largest=30.0):
     return save_figure(figure, path, dpi=100)
 
 
-def plot_lengths(phase, lengths, others=None, path=None):
-    """Lengths of contact lines [mm] over the phase, by case; `others` dashed in the same colours."""
+def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
+    """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 3.5), layout="constrained")
+    figure = Figure(figsize=(7.5, 3.7), layout="constrained")
     axes = figure.subplots()
-    for name, length in lengths.items():
-        (drawn,) = axes.plot(phase, length, label=name)
+    for number, (name, length) in enumerate(lengths.items()):
+        axes.plot(phase, length, label=name, **look(number))
         if name in (others or {}):
-            axes.plot(phase, others[name], "--", color=drawn.get_color(), linewidth=0.8)
+            axes.plot(phase, others[name], label=f"{name}, {told}", linewidth=0.7, **look(number))
     axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
     axes.set_ylabel("contact line [mm]")
-    axes.set_ylim(bottom=0)
-    axes.legend(fontsize=8)
+    axes.set_title(title, fontsize=10)
+    if min(length.min() for length in lengths.values()) < SQUASHED * max(length.max() for length in lengths.values()):
+        axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=100)
-
-
-def plot_contact(
-    pair: GearPair,
-    contact: "Contact3D",
-    phase: int = 0,
-    path: str | os.PathLike[str] | None = None,
-    pits: Sequence[Pit] = (),
-    title: str = "",
-) -> "Figure":
-    """Contact lines of one phase on the unrolled flank, coloured by Hertz's pressure, and the load along the width below.
-
-    Parameters
-    ----------
-    pair : GearPair
-    contact : gearfe.contact.solid.Contact3D
-    phase : int
-        Which of its phases.
-    path : path, optional
-        Picture file; its suffix decides (png, svg, pdf).
-    pits : sequence of Pit
-        Of the pinion, to be drawn; only the line of their own tooth pair is cut by them.
-    title : str
-        What is shown: scene, pair, case.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    from matplotlib.collections import LineCollection
-    from matplotlib.figure import Figure
-
-    cells, gear = contact.cells[phase], pair.gear_1
-    offset = (gear.b - min(gear.b, pair.gear_2.b)) / 2
-    figure = Figure(figsize=(9, 5.5), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
-    segments, colours = [], [f"C{k}" for k in range(10)]
-    for at in _lines_of(cells):
-        z, radius = cells.z[at], np.hypot(gear.r_b, cells.roll_1[at])
-        ends = np.array([z - cells.width[at] / 2, z + cells.width[at] / 2])
-        along = np.interp(ends, z, radius)
-        segments += [[(a, r), (b, s)] for a, b, r, s in zip(*ends, *along, strict=True)]
-    drawn = LineCollection(segments, cmap="viridis", linewidths=5, zorder=2)
-    drawn.set_array(np.concatenate([cells.pressure[at] for at in _lines_of(cells)]))
-    top.add_collection(drawn)
-    for pit in pits:
-        z, radius = _pit_edge(gear, pit)
-        label = {"label": f"pits, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
-        top.fill(z - offset, radius, facecolor="0.85", edgecolor="black", linewidth=0.9, zorder=1, **label)
-    for limit, name in ((gear.r_form, "form circle"), (gear.r_a, "tip circle")):
-        top.axhline(limit, color="gray", linewidth=0.8)
-        top.annotate(name, (0.005, limit), xycoords=("axes fraction", "data"), fontsize=7, color="gray", va="bottom")
-    top.set_ylabel("contact radius on the pinion [mm]")
-    force = contact.load[phase].sum()
-    where = f"contact lines, phase {contact.phase[phase]:.3g}, {force:.0f} N in the transverse plane"
-    top.set_title(f"{title}: {where}" if title else where, fontsize=10)
-    figure.colorbar(drawn, ax=top, label="Hertz pressure [MPa]")
-    for at in _lines_of(cells):
-        order = int(cells.order[at[0]])
-        z, load = _stairs(cells.z[at], cells.width[at], cells.load[at] / cells.width[at])
-        named = f"pair {order:+d}" if f"pair {order:+d}" not in bottom.get_legend_handles_labels()[1] else None
-        bottom.plot(z, load, color=colours[order % 10], linewidth=1.3, label=named)
-    bottom.set_ylabel("load [N/mm]")
-    bottom.set_ylim(bottom=0)
-    bottom.set_xlabel("along the width [mm]")
-    figure.legend(fontsize=8, loc="outside lower center", ncol=6)
-    return save_figure(figure, path, dpi=110)
-
-
-def _lines_of(cells):
-    """Cells of each contact line along the width."""
-    keys = [(order, half) for order in np.unique(cells.order) for half in np.unique(cells.half)]
-    lines = [np.flatnonzero((cells.order == order) & (cells.half == half)) for order, half in keys]
-    return [at[np.argsort(cells.z[at])] for at in lines if at.size]
-
-
-def _stairs(z, width, value):
-    """Corners of a function that is constant on intervals and zero between them."""
-    low, high = z - width / 2, z + width / 2
-    place, height = [low[0]], [0.0]
-    for k in range(z.size):
-        if k and low[k] - high[k - 1] > 1e-6 * width[k]:
-            place += [high[k - 1], low[k]]
-            height += [0.0, 0.0]
-        place += [low[k], high[k]]
-        height += [value[k], value[k]]
-    return np.array([*place, high[-1]]), np.array([*height, 0.0])
-
-
-def _pit_edge(gear, pit):
-    """Heights [mm] and radii [mm] of a pit's edge."""
-    turn = np.linspace(0, 2 * np.pi, 90)
-    p, q = pit.axes[0] * np.cos(turn), pit.axes[1] * np.sin(turn)
-    u = p * np.cos(pit.angle) - q * np.sin(pit.angle)
-    w = p * np.sin(pit.angle) + q * np.cos(pit.angle)
-    return pit.z + w, np.hypot(gear.r_b, roll_at_arc(gear, centre_arc(gear, pit) + u))

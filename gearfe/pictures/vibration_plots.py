@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files import save_figure
+from .look import COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,6 +16,8 @@ if TYPE_CHECKING:
     from ..signal.kurtogram import Kurtogram
     from ..signal.spectra import Spectrum
     from ..signal.time_frequency import Spectrogram
+
+LETTER = 0.014  # height of a letter, which lines' names need beside each other, over the width of the axes
 
 
 def plot_spectra(
@@ -47,24 +50,38 @@ def plot_spectra(
     rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
     largest = max(one.values.max() for one in spectra.values())
     for axes, (name, found) in zip(rows, spectra.items(), strict=True):
-        axes.semilogy(found.frequency, found.values, linewidth=0.8)
+        axes.semilogy(found.frequency, found.values, linewidth=0.8, color=COLOURS[0])
         axes.set_ylim(1e-6 * largest, 2 * largest)  # common axes: the first would decide for all
         axes.set_ylabel(f"{name} [{found.unit}]")
         for value in (lines or {}).values():
             axes.axvline(value, linestyle=":", linewidth=0.7, color="gray", zorder=0)
-    for name, value in (lines or {}).items():
-        rows[0].annotate(name, (value, 1), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom")
     if title:
         figure.suptitle(title, fontsize=10)
     end = 1.2 * max(lines.values()) if lines and top is None else top
-    rows[-1].set_xlim(0, end if end is not None else found.frequency[-1])
-    axis = {"order": "order", "s": "quefrency [s]"}.get(found.axis, f"frequency [{found.axis}]")
-    rows[-1].set_xlabel(axis)
+    end = found.frequency[-1] if end is None else end
+    rows[-1].set_xlim(0, end)
+    for name, place in _apart({name: value for name, value in (lines or {}).items() if value <= end}, LETTER * end).items():
+        rows[0].annotate(
+            name, (place, 1.02), xycoords=("data", "axes fraction"), rotation=90, fontsize=7, ha="center", va="bottom"
+        )
+    rows[-1].set_xlabel("order" if found.axis == "order" else f"frequency [{found.axis}]")
     return save_figure(figure, path, dpi=dpi)
 
 
-def plot_waves(signals, path, seconds=0.25, *, dpi=60):
-    """Draw the first `seconds` of signals by name below each other, with one scale."""
+def _apart(places, least):
+    """Places of labels by name, each at least `least` from the one before it, as near to where they belong as that allows."""
+    names = sorted(places, key=places.get)
+    wanted = np.array([places[name] for name in names], dtype=float)
+    found = wanted.copy()
+    for _ in range(len(names)):
+        gaps = least - np.diff(found)
+        push = np.where(gaps > 0, gaps / 2, 0.0)
+        found += np.append(0.0, push) - np.append(push, 0.0)
+    return dict(zip(names, found.tolist(), strict=True))
+
+
+def plot_waves(signals, path, seconds=0.25, *, dpi=60, title=""):
+    """Draw the first `seconds` of signals by name below each other, with one scale, under a `title`."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
@@ -72,11 +89,12 @@ def plot_waves(signals, path, seconds=0.25, *, dpi=60):
         np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
     ):
         values = one.values[: round(seconds * one.rate)]
-        axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7)
+        axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7, color=COLOURS[0])
         axes.set_title(name, fontsize=9)
         axes.set_ylabel(one.unit)
     axes.set_xlabel("time [s]")
-    figure.savefig(path, dpi=dpi)
+    figure.suptitle(title, fontsize=10)
+    return save_figure(figure, path, dpi=dpi)
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
@@ -123,26 +141,44 @@ def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | 
     return save_figure(figure, path, dpi=120)
 
 
+def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
+    """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 3), layout="constrained")
+    axes = figure.subplots()
+    first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
+    axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
+    axes.set_xlabel("quefrency [s]")
+    axes.set_ylabel("cepstrum [-]")
+    axes.set_title(title or found.name, fontsize=9)
+    return save_figure(figure, path, dpi=120)
+
+
 def plot_phase(
     portrait: tuple[NDArray[np.float64], NDArray[np.float64]],
     section: NDArray[np.float64] | None = None,
     unit: str = "m",
     path: str | os.PathLike[str] | None = None,
+    title: str = "",
 ) -> "Figure":
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(5, 4), layout="constrained")
     axes = figure.subplots()
-    axes.plot(*portrait, linewidth=0.4)
+    axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
     if section is not None:
-        axes.plot(*np.transpose(section), "k.", markersize=4)
+        axes.plot(*np.transpose(section), ".", color=COLOURS[1], markersize=5, label="Poincaré section")
+        axes.legend(fontsize=8)
+    axes.ticklabel_format(scilimits=(-2, 3))
+    axes.set_title(title, fontsize=10)
     axes.set_xlabel(f"displacement [{unit}]")
     axes.set_ylabel(f"velocity [{unit}/s]")
     return save_figure(figure, path, dpi=120)
 
 
-def plot_phases(portraits, unit="m", path=None):
+def plot_phases(portraits, unit="m", path=None, *, title=""):
     """Phase portraits with their Poincare points side by side, on common axes.
 
     Parameters
@@ -152,6 +188,8 @@ def plot_phases(portraits, unit="m", path=None):
     unit : str
         Of the displacement.
     path : path, optional
+    title : str
+        What is shown: scene, channel.
 
     Returns
     -------
@@ -164,10 +202,16 @@ def plot_phases(portraits, unit="m", path=None):
     figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
-        place.plot(x, v, linewidth=0.3)
-        place.plot(*np.transpose(points), "k.", markersize=3)
+        place.plot(x, v, linewidth=0.3, color=COLOURS[0])
+        place.plot(*np.transpose(points), ".", color=COLOURS[1], markersize=4)
         place.set_title(name, fontsize=8)
         place.tick_params(labelsize=7)
+        place.ticklabel_format(scilimits=(-2, 3))
+        place.locator_params(axis="x", nbins=4)
+        place.xaxis.get_offset_text().set_size(7)
+    for place in axes.flat[len(portraits) :]:
+        place.set_visible(False)
+    figure.suptitle(title, fontsize=9)
     figure.supxlabel(f"displacement [{unit}]", fontsize=8)
     figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
     return save_figure(figure, path, dpi=80)

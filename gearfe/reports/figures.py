@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..pictures.stiffness_plots import COLOURS, closed
+from ..pictures.look import COLOURS
+from ..pictures.stiffness_plots import closed
 from ..units import NEWTON_PER_UM
 from .tooth import shown_tooth, towards_flank
 
@@ -54,9 +55,7 @@ def cases_figure(curves):
     figure.update_xaxes(title="mesh phase")
     figure.update_yaxes(title="mesh stiffness k [N/µm]")
     for number, (name, curve) in enumerate(curves.items()):
-        figure.add_scatter(
-            x=curve.phase, y=curve.k / NEWTON_PER_UM, name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm"
-        )
+        figure.add_scatter(x=closed(curve)[0], y=closed(curve)[1], name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm")
     return figure
 
 

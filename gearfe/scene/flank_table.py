@@ -2,9 +2,10 @@
 
 import math
 
+from geometry.pair.flanks import Misalignment, tilt_of
 from geometry.tooth.modified import Flank
 
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, known, placed
 
 RELIEFS = {
     f"{end}_{key}": (NUMBER, default)
@@ -22,6 +23,12 @@ FLANK = {
     "pair": (TEXT, None),
     **RELIEFS,
     "crowning_um": (NUMBER, 0.0),
+    "lead_crowning_um": (NUMBER, 0.0),
+    "lead_slope_um": (NUMBER, 0.0),
+    "twist_um": (NUMBER, 0.0),
+    "end_relief_um": (TWO, [0.0, 0.0]),
+    "end_length_mm": (TWO, [0.0, 0.0]),
+    "end_exponent": (NUMBER, 2.0),
     "slope_um": (NUMBER, 0.0),
     "table_roll_mm": (NUMBERS, None),
     "table_removed_um": (NUMBERS, None),
@@ -52,8 +59,28 @@ def flanks_of(file, rows, name, pairs, gears):
     return out
 
 
+MISALIGNMENT = {
+    "F_beta_um": (NUMBER, 0.0),
+    "f_sigma_beta_um": (NUMBER, 0.0),
+    "f_sigma_delta_um": (NUMBER, 0.0),
+    "bearing_span_mm": (NUMBER, None),
+}
+
+
+def misalignment_of(file, where, pair, row):
+    """`Misalignment` of a scene's `pair`, from the checked keys of its table; None if it has none."""
+    amounts = {name: row[f"{name}_um"] * 1e-3 for name in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
+    if not any(amounts.values()):
+        return None
+    made = placed(file, where, lambda: Misalignment(**amounts, length=row["bearing_span_mm"]))
+    placed(file, where, lambda: tilt_of(pair, made))
+    return made
+
+
 def _flank(row):
-    given = {"crowning": row["crowning_um"] * 1e-3, "slope": row["slope_um"] * 1e-3}
+    given = {name: row[f"{name}_um"] * 1e-3 for name in ("crowning", "slope", "lead_crowning", "lead_slope", "twist")}
+    given |= {"end_relief": tuple(value * 1e-3 for value in row["end_relief_um"]), "end_exponent": row["end_exponent"]}
+    given["end_length"] = tuple(row["end_length_mm"])
     for end in ("tip", "root"):
         given |= {f"{end}_relief": row[f"{end}_relief_um"] * 1e-3, f"{end}_exponent": row[f"{end}_exponent"]}
         given |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}

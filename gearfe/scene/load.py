@@ -10,13 +10,14 @@ from typing import Any
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit, pit_row
+from geometry.pair.flanks import Misalignment
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
 from ..material import Material
 from . import assumed, machine_table
-from .flank_table import FLANK, flanks_of
+from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .references import Reference, read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 
@@ -45,6 +46,7 @@ TABLES = {
         "a_mm": (NUMBER, None),
         "face": (TEXT, None),
         "groove_mm": (NUMBER, 0.0),
+        **MISALIGNMENT,
     },
     "flank": FLANK,
 }
@@ -89,7 +91,8 @@ ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEX
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, `flanks` what it takes as flanks.
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, `flanks` what it takes as flanks, `misalignment`
+    likewise.
     """
 
     pair: GearPair
@@ -99,6 +102,12 @@ class ScenePair:
     groove: float = 0.0
     damage: dict[str, dict[str, list[Crack | Pit]]] = field(default_factory=dict)
     flanks: dict[str, Flank] = field(default_factory=dict)
+    misalignment: Misalignment | None = None
+
+    @property
+    def wide(self) -> bool:
+        """Whether flanks change along the width, or lie askew."""
+        return bool(self.misalignment) or any(flank.wide for flank in self.flanks.values())
 
     def case(self, name: str | None = None) -> dict[str, Any]:
         """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
@@ -112,6 +121,7 @@ class ScenePair:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
         out |= {"flanks": self.flanks} if self.flanks else {}
+        out |= {"misalignment": self.misalignment} if self.misalignment else {}
         return out if name is None else out | {"damage": self.damage[name]}
 
 
@@ -217,7 +227,8 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
         found = _cases(file, damage, gears, name, rows["pair"])
         bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
-        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent)
+        askew = misalignment_of(file, where, made, row)
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent, askew)
     notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
     cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})

@@ -16,13 +16,13 @@ from .orders import residual_signal, synchronous_average
 from .series import Signal
 
 GEAR_SOURCES = {
-    "FM0": "peak to peak of the average over the sum of its mesh harmonics' amplitudes; Stewart 1977, NASA TM 105950; a lone line 2",
-    "FM4": "kurtosis of the difference signal d, N sum(d**4) / sum(d**2)**2; noise 3; Stewart 1977, gearConditionMetrics",
-    "M6A": "N**2 sum(d**6) / sum(d**2)**3; noise 15; Martin 1989, gearConditionMetrics",
-    "M8A": "N**3 sum(d**8) / sum(d**2)**4; noise 105; Martin 1989, gearConditionMetrics",
+    "FM0": "peak to peak of the average over the sum of its mesh lines' amplitudes; Stewart 1977, NASA TM 105950; one line 2",
+    "FM4": "kurtosis of the difference signal d, N sum(d**4) / sum(d**2)**2; noise 3; Stewart 1977",
+    "M6A": "N**2 sum(d**6) / sum(d**2)**3; noise 15; Martin 1989",
+    "M8A": "N**3 sum(d**8) / sum(d**2)**4; noise 105; Martin 1989",
     "NA4": "N sum(r**4) over the square of the mean of sum(r**2) over this and all earlier records, r residual; NASA TM 105950",
     "NB4": "as NA4, of the envelope of the band around f_m without its mean; NASA TM 106467",
-    "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005, gearConditionMetrics",
+    "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
 EMPTY = 1e-9  # of the average: a rest that small is rounding
@@ -40,7 +40,8 @@ def gear_indicators(
         NA4 = N sum(r**4) / mean_j(sum(r_j**2))**2,  r = x without shaft and mesh orders, j over all records so far
         NB4: the same of |b + i H b| without its mean, b the orders from teeth / 2 to 3 teeth / 2
 
-    x is the average without its mean. Those named by `gearConditionMetrics` follow MATLAB's documentation of that function.
+    x is the average without its mean. MATLAB's `gearConditionMetrics` has FM0, FM4, M6A, M8A, NA4 and energy ratio by the same
+    names and after the same sources; numbers of that program were not at hand to be compared.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ def gear_indicators(
     References
     ----------
     - R. M. Stewart, Some useful data analysis techniques for gearbox diagnostics, ISVR (1977).
-    - H. R. Martin, Statistical moment analysis as a means of surface damage detection, Proc. 7th Int. Modal Analysis Conf. (1989).
+    - H. R. Martin, Statistical moment analysis as a means of surface damage detection, 7th Int. Modal Analysis Conf. (1989).
     - J. J. Zakrajsek, D. P. Townsend, H. J. Decker, NASA TM 105950 (1993); J. J. Zakrajsek, R. F. Handschuh, H. J. Decker, NASA
       TM 106467 (1994).
     - P. Vecer, M. Kreidl, R. Smid, Condition indicators for gearbox condition monitoring systems, Acta Polytechnica 45(6) (2005).

@@ -77,9 +77,9 @@ def cepstrum(signal: "Signal") -> Spectrum:
 
         c(t) = IFFT(log|FFT(x)|)
 
-    A family of sidebands f apart, and equally an echo after ``1 / f``, makes one peak at the quefrency ``1 / f`` (and smaller ones
-    at its multiples). An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth periods,
-    modulations at turns of the shaft.
+    A family of sidebands f apart, and equally an echo after ``1 / f``, makes one peak at the quefrency ``1 / f`` (and smaller
+    ones at its multiples). An echo of part a adds ``a / 2`` there, ``-a**2 / 4`` at twice that. Mesh lines become peaks at tooth
+    periods, modulations at turns of the shaft.
 
     Parameters
     ----------

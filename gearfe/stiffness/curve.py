@@ -1,6 +1,7 @@
 """`StiffnessCurve`: a mesh stiffness over one mesh cycle, in SI units, with all it takes to repeat it."""
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -216,3 +217,29 @@ class StiffnessCurve:
             Its ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
         """
         return plot_curves({self.meta.get("method", "k"): self}, path, title)
+
+
+def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
+    """One curve of several that follow each other, of the same gears under the same load; columns of pairs by their order."""
+    order = np.unique(np.concatenate([one.order for one in curves]))
+
+    def rows(name: str) -> NDArray[np.float64]:
+        out = [np.zeros((one.phase.size, order.size)) for one in curves]
+        for part, one in zip(out, curves, strict=True):
+            part[:, np.searchsorted(order, one.order)] = getattr(one, name)
+        return np.concatenate(out)
+
+    def row(name: str) -> NDArray[np.float64] | None:
+        parts = [getattr(one, name) for one in curves]
+        return None if parts[0] is None else np.concatenate(parts)
+
+    whole = {name: np.concatenate([getattr(one, name) for one in curves]) for name in ("phase", "k", "k_tangent", "lte")}
+    return StiffnessCurve(
+        **whole,
+        order=order,
+        force=rows("force"),
+        pressure=rows("pressure"),
+        error=row("error"),
+        meta=curves[0].meta,
+        unloaded=row("unloaded"),
+    )

@@ -21,6 +21,7 @@ NO_VARIANTS = (
     "flanks",
 )
 
+SPANS = ("cycle", "tooth", "revolution")
 CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 
@@ -42,13 +43,15 @@ def overlap(pair, face, groove):
 
 def phase_array(phases, span, pair, overlap=0.0):
     """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
-    if span not in ("cycle", "tooth"):
-        raise ValueError(f"span = {span!r}, but it must be 'cycle' or 'tooth'")
+    if span not in SPANS:
+        raise ValueError(f"span = {span!r}, but it must be one of {', '.join(SPANS)}")
     if np.ndim(phases) == 0:
         phases = check_count(phases)
         if span == "tooth":
             return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
-        return np.arange(phases) / phases
+        return np.arange(phases * (pair.gear_1.z if span == "revolution" else 1)) / phases
+    if span == "revolution":
+        raise ValueError("span = 'revolution' with phases spelled out: give their number in each mesh cycle")
     phases = numbers("phases", phases, "")
     if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
         raise ValueError("phases must be a non-empty array of finite numbers")
@@ -75,13 +78,14 @@ def why_solid(pair, face, damage):
     return ""
 
 
-def choose(method, pair, cracks, pits, face, teeth):
+def choose(method, pair, cracks, pits, face, teeth, flanks=None):
     """The method that ``auto`` stands for, and why."""
     if method != "auto":
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
     why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
+    why = why or ("flanks change along the width" if any(form.wide for form in flanks or ()) else "")
     return ("ritz3d", why) if why else ("ritz", "spur gears, nothing changes along the width: plane strain")
 
 
@@ -140,6 +144,11 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
     if flanks is not None and not row.flanks:
         raise ValueError(f"modified flanks with {method}, which takes involutes only: use {having('flanks')}")
+    if row.kind == "section" and any(form.wide for form in flanks or ()):
+        raise ValueError(
+            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d', "
+            "'fe3d' or a plain sum"
+        )
     if variants and not row.variants:
         raise ValueError(f"variants = {variants!r} with {method}: only {having('variants')} have variants")
     if variants is not None and not isinstance(variants, dict):

@@ -89,7 +89,7 @@ ROWS = (
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
         "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="part of the width", pits=True, faces=FACES,
-        error=True, extended=True, order=3, kept="process",
+        error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
         "fe", "finite elements of the transverse section, the independent reference", "section",

@@ -17,7 +17,9 @@ COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elemen
 LESS = 2  # axial degrees less in it
 
 
-def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, order, error=False, cache=True, tell=None):
+def wide_curve(
+    force, case, meta, *, brute, face, groove, refine, extended, order, error=False, flanks=None, cache=True, tell=None
+):
     """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
 
     Parameters
@@ -40,6 +42,8 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         difference of k there, or, because that can vanish by chance, the mean of those at the fixed phases of one base pitch
         about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. Displacements approach
         their limit at least with the second power of the edges, so the difference is an upper bound.
+    flanks : (FlankForm, FlankForm), optional
+        `geometry.pair.flanks.flank_forms`.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     tell
@@ -54,6 +58,7 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
     cache = solved_gears(cache)
     pair, materials, phase, cracks, pits = case
     options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
+    options["flanks"] = flanks
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
@@ -81,18 +86,20 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         phase=phase,
         k=found.k,
         k_tangent=1e3 * (MORE - 1) * force / (more.approach - found.approach),
-        lte=1e-3 * found.approach,
+        lte=1e-3 * (found.approach - found.unloaded),
         order=found.order[used],
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
         error=doubt,
+        unloaded=None if flanks is None else 1e-3 * found.unloaded,
         meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
     )
 
 
 def _doubt(case, phase, found, options, brute):
     """Estimated error of k at `phase` [N/m], see `wide_curve`, and the part of the resolution it is estimated with."""
-    healthy = not any(options["cracks"]) and not any(options["pits"])
+    turns = any(form.flank.pitch for form in options["flanks"] or ())
+    healthy = not (any(options["cracks"]) or any(options["pits"]) or turns)
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]
     every = np.append(phase, further)

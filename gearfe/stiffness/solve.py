@@ -9,13 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank, flank_forms
+from geometry.tooth.modified import Flank
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
 from ..steps import part, steps
-from .curve import StiffnessCurve
+from .curve import StiffnessCurve, joined
 from .inputs import (
     by_gear,
     check_method,
@@ -50,6 +51,7 @@ def mesh_stiffness(
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
+    misalignment: Misalignment | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -77,6 +79,7 @@ def mesh_stiffness(
     span: str = ...,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
+    misalignment: Misalignment | None = ...,
     extended: bool = ...,
     state: str = ...,
     refine: float = ...,
@@ -103,6 +106,7 @@ def mesh_stiffness(
     span: str = "cycle",
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
     flanks: Mapping[str, Flank] | None = None,
+    misalignment: Misalignment | None = None,
     extended: bool = True,
     state: str = "plane strain",
     refine: float = 1.0,
@@ -144,17 +148,20 @@ def mesh_stiffness(
         stand otherwise.
     phases : int or array
         Number of equidistant phases per mesh cycle, or the phases themselves.
-    span : {"cycle", "tooth"}
+    span : {"cycle", "tooth", "revolution"}
         Which phases a number stands for: from 0 to 1, or the whole engagement of pair 0 and a quarter cycle before and
-        after it (where the damaged tooth is); in three dimensions pair 0 enters at one end at phase 0.
+        after it (where the damaged tooth is), or every cycle of one revolution of the pinion (for pitch deviations); in three
+        dimensions pair 0 enters at one end at phase 0.
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width: ``ritz3d`` and ``fe3d``; sloping ones: ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums. In ``ritz``
         and ``fe`` crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     flanks : dict, optional
-        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods of the
-        section and the plain sums of spur gears without pits. The curve's `te` then is the transmission error under load and
-        `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
+        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods; what
+        changes along the width needs ``ritz3d``, ``fe3d`` or a plain sum. The curve's `te` then is the transmission error under
+        load and `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
+    misalignment : Misalignment, optional
+        Axes that are not parallel, for the same. (A centre distance that is not the nominal one: the pair's `a`.)
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -217,8 +224,8 @@ def mesh_stiffness(
     check_state(state)
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
-    forms = flank_forms(pair, flanks)
-    method, why = choose(method, pair, cracks, pits, face, teeth)
+    forms = flank_forms(pair, flanks, misalignment)
+    method, why = choose(method, pair, cracks, pits, face, teeth, forms)
     row, own = row_of(method)
     if not is_number(groove):
         raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
@@ -230,17 +237,17 @@ def mesh_stiffness(
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
+    same: dict[str, Any] = {"method": own or row.name, "damage": damage, "flanks": flanks, "misalignment": misalignment}
+    same |= {"extended": extended, "state": state, "refine": refine}
+    same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
+    same |= {"error": error, "cache": cache, "tell": tell}
+    if span == "revolution":
+        more = same | {"pose": pose, "cache": solved}
+        cycles = np.split(phase, pair.gear_1.z)
+        turns = [mesh_stiffness(pair, np.array(forces), materials, phases=cycle, **more) for cycle in cycles]
+        whole = [joined(parts) for parts in zip(*turns, strict=True)]
+        return _as_asked([replace(one, meta=one.meta | {"why": why}) for one in whole], force, torque)
     if pose != "mean":
-        same: dict[str, Any] = {
-            "method": own or row.name,
-            "damage": damage,
-            "flanks": flanks,
-            "extended": extended,
-            "state": state,
-            "refine": refine,
-        }
-        same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
-        same |= {"error": error, "cache": cache, "tell": tell}
         curves = [
             in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
             for value in forces
@@ -250,12 +257,14 @@ def mesh_stiffness(
     numeric = {"refine": refine, "order": row.order if order is None else order}
     said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
     said |= {"flanks": {name: asdict(one) for name, one in flanks.items() if one}} if forms and flanks else {}
+    said |= {"misalignment": asdict(misalignment)} if misalignment is not None else {}
     if row.kind == "solid":
         options = {"face": face, "groove": groove, "extended": extended, **numeric}
         case = (pair, materials, phase, cracks, pits)
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
+        options["flanks"] = forms
         curves = [wide_curve(value, case, meta, **options) for value in steps(forces, lambda value: f"{row.name}, {value:g} N")]
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":

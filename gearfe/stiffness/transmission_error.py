@@ -74,9 +74,9 @@ class TransmissionError:
             lines.append(f"{force:12.6g}  {1e6 * span:12.3f}  {1e6 * te.mean():8.3f}  {told}")
         return "\n".join([*lines, f"    unloaded  {1e6 * np.ptp(self.unloaded):12.3f}  {1e6 * self.unloaded.mean():8.3f}"])
 
-    def plot(self, path: str | Path | None = None) -> Any:
+    def plot(self, path: str | Path | None = None, title: str | None = None) -> Any:
         """Draw it over phase, and peak-to-peak over load; save to `path` if given. Returns the matplotlib figure."""
-        return plot_transmission_error(self, path)
+        return plot_transmission_error(self, path, title)
 
 
 def transmission_error(

@@ -7,9 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from geometry.pair.flanks import flank_forms
+
 from ..elements.solver import plan
 from ..files import suffix_of, written
-from ..pictures.stiffness_plots import plot_contact
+from ..pictures.contact_plot import plot_contact
 from ..scene.load import ScenePair
 from ..steps import part
 from ..stiffness.inputs import by_gear
@@ -112,7 +114,7 @@ def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
     face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
     phases = None if phase is None else [phase]
     run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
-    found = contact_of(*run, order)
+    found = contact_of(*run, order, flanks=flank_forms(scene_pair.pair, scene_pair.flanks, scene_pair.misalignment))
     plot_contact(scene_pair.pair, found, path=path, pits=pits[0], title=title or (case or ""))
     pressure = found.cells[0].pressure
     corner = np.isnan(pressure)

@@ -191,6 +191,6 @@ def _methods(chosen, case):
     """Reference and formulations for a pair of a scene: those that have it whole, a ring's body included."""
     damage = [one for found in chosen.case(case).get("damage", {}).values() for one in found]
     rows = [row for row in ROWS if row.rings == "yes" or not chosen.pair.gear_2.internal]
-    if why_solid(chosen.pair, chosen.face, damage):
+    if chosen.wide or why_solid(chosen.pair, chosen.face, damage):
         return (REFERENCE_SOLID, *(row.name for row in rows if row.kind == "sum"))
     return (REFERENCE, *(row.name for row in rows if row.name in FORMULATIONS and (row.cracks or not damage)))

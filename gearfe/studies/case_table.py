@@ -162,7 +162,7 @@ def damage_cycle(chosen):
 def is_wide(chosen):
     """Whether a scene's pair needs three dimensions in any of its cases."""
     damage = [one for case in chosen.damage.values() for found in case.values() for one in found]
-    return bool(why_solid(chosen.pair, chosen.face, damage))
+    return chosen.wide or bool(why_solid(chosen.pair, chosen.face, damage))
 
 
 def case_curve(chosen, case, method, phase, **options):

@@ -104,7 +104,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
         }
 
 
-def recorded(machine, duration, rate, *, method="fast", progress=None):
+def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None):
     """Response of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
@@ -119,6 +119,8 @@ def recorded(machine, duration, rate, *, method="fast", progress=None):
     method : str
     progress : callable, optional
         Of `gearfe.simulate`.
+    start : float
+        Time at which the machine starts [s]: where its damaged tooth is then.
 
     Returns
     -------
@@ -129,10 +131,10 @@ def recorded(machine, duration, rate, *, method="fast", progress=None):
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
     whole = settle + duration
     with part("", 0.0, settle / whole):
-        before = simulate(machine, settle, rate=1 / settle, progress=progress)
-    start = before.q[-1], before.v[-1]
+        before = simulate(machine, settle, rate=1 / settle, start=start, progress=progress)
+    last = before.q[-1], before.v[-1]
     with part("", settle / whole, 1.0):
-        out = simulate(machine, duration, rate=rate, method=method, initial=start, start=settle, progress=progress)
+        out = simulate(machine, duration, rate=rate, method=method, initial=last, start=start + settle, progress=progress)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 
@@ -195,9 +197,8 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     first = next(iter(spectra.values()))
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
-    amplitudes = {
-        case: {name: two[1] for name, two in find_lines(one, lines, between=True).items()} for case, one in spectra.items()
-    }
+    placed = {case: find_lines(one, lines, between=True) for case, one in spectra.items()}
+    amplitudes = {case: {name: two[1] for name, two in one.items()} for case, one in placed.items()}
     both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
     table = indicator_table(signals, *both, healthy=next(iter(signals)))
     return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)

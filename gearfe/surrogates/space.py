@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -45,6 +45,19 @@ class Space:
     pair: GearPair
     ranges: dict[str, tuple[float, float]]
     held: dict[str, float]
+    logarithmic: int | None = field(init=False, repr=False)  # the place of the force
+    middle: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+    half: NDArray[np.float64] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Keep what `scaled` needs: it is asked thousands of times."""
+        place = list(self.ranges).index("force") if "force" in self.ranges else None
+        ends = np.array(list(self.ranges.values()))
+        if place is not None:
+            ends[place] = np.log(ends[place])
+        object.__setattr__(self, "logarithmic", place)
+        object.__setattr__(self, "middle", ends.mean(axis=1))
+        object.__setattr__(self, "half", (ends[:, 1] - ends[:, 0]) / 2)
 
     @property
     def cracked(self) -> bool:
@@ -78,12 +91,10 @@ class Space:
 
     def scaled(self, points: Any) -> NDArray[np.float64]:
         """Points ``(..., d)`` brought to -1 ... 1, forces by their logarithm."""
-        logarithmic = np.array([name == "force" for name in self.ranges])
-        ends = np.array(list(self.ranges.values())).T
-        low, high = np.where(logarithmic, np.log(np.where(logarithmic, ends, 1.0)), ends)
-        values = np.asarray(points, dtype=float)
-        values = np.where(logarithmic, np.log(np.where(logarithmic, values, 1.0)), values)
-        return 2 * (values - low) / (high - low) - 1
+        values = np.array(points, dtype=float)
+        if self.logarithmic is not None:
+            values[..., self.logarithmic] = np.log(values[..., self.logarithmic])
+        return (values - self.middle) / self.half
 
     def at(self, unit: NDArray[np.float64]) -> dict[str, float]:
         """Point of the ranges for numbers from 0 to 1: whole ones for teeth, forces on a logarithmic scale."""

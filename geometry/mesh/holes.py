@@ -72,8 +72,8 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     sizes : dict, optional
         Edge lengths instead of those of `SIZES`.
     strips : sequence of (ndarray (3, n), float, float)
-        Lines of points [mm] in the frame that turns with the helix, the distance from them within which the mesh is finer, and the
-        edge length there [mm].
+        Lines of points [mm] in the frame that turns with the helix, how far around them the mesh is finer, the edge length
+        there [mm].
     stretch : float
         Tets are so many times longer along the width than across it.
 

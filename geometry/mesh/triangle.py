@@ -33,9 +33,10 @@ def table(order):
     Returns
     -------
     namespace
-        `count` nodes, `inside` how many of them lie inside; quadrature `weight` (q,); at its points `value` (count, q), `slope`
-        (2, count, q) by the reference coordinates, the linear map's `corner` (3, q), and the blended bulges `bulge`
-        (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by the values at `bulge_points`.
+        `count` nodes, their barycentric coordinates `nodes` (3, count), `inside` how many of them lie inside; quadrature
+        `weight` (q,); at its points `value` (count, q), `slope` (2, count, q) by the reference coordinates, the linear map's
+        `corner` (3, q), and the blended bulges `bulge` (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by the
+        values at `bulge_points`.
     """
     line = (lobatto(order) + 1) / 2
     ends = np.eye(3)
@@ -69,6 +70,7 @@ def table(order):
         bulge_slope.append(along)
     return SimpleNamespace(
         count=nodes.shape[1],
+        nodes=nodes,
         inside=inside.shape[1],
         weight=weight,
         value=value,

@@ -176,15 +176,16 @@ def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: b
     return facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 
 
-def facing(pair, roll, nominal, driver):
+def facing(pair, roll, nominal, driver, turns=None):
     """What flank points face with both gears moved on from `nominal` by a length on the line of action [mm].
 
-    Gives `opposite`, and the distance at which the met normal passes the point's own centre, over its base radius.
+    Gives `opposite`, and the distance at which the met normal passes the point's own centre, over its base radius. `turns` is
+    ``pair.turn(nominal)``, if it is known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
     own, other = (0, 1) if driver else (1, 0)
-    turns, mate = pair.turn(nominal), gears[other]
+    turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]
     radius, angle = flank(gears[own], roll)
     ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
     r_b, base = gears[own].r_b, mate.r_b

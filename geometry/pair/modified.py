@@ -13,10 +13,10 @@ common approximation, errs by up to a quarter of the deflection at corners.
 """
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..tooth.modified import FlankForm
 from ..tooth.profile import arc_at, roll_at_arc
@@ -56,38 +56,96 @@ def modified_contacts(
     """
     plain = contacts(pair, phase, extended=extended)
     there = np.nonzero(np.isfinite(plain.gap))
-    nominal, order, start = plain.nominal[there], plain.order[there[1]], plain.gap[there]
     roll_1, roll_2 = plain.roll_1.copy(), plain.roll_2.copy()
-    gap = np.full(plain.gap.shape, np.inf)
+    gap, radius = np.full(plain.gap.shape, np.inf), np.ones(plain.gap.shape)
+    touch = first_touch(pair, forms, plain.nominal[there], plain.order[there[1]], plain.gap[there])
+    roll_1[there], roll_2[there], gap[there], radius[there] = touch.roll_1, touch.roll_2, touch.gap, touch.radius
+    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius)
+
+
+class Touch(NamedTuple):
+    """Where pairs of sections first touch, arrays of n: roll lengths, gap, relative radius [mm]; tip corner (1, 2) or 0."""
+
+    roll_1: NDArray[np.float64]
+    roll_2: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    corner: NDArray[np.int64]
+
+
+def first_touch(
+    pair: "GearPair",
+    forms: tuple[FlankForm, FlankForm],
+    nominal: NDArray[np.float64],
+    order: NDArray[np.int64],
+    start: NDArray[np.float64],
+    z: NDArray[np.float64] | None = None,
+) -> Touch:
+    """Where the modified flanks of transverse sections first touch: the one gap function of all contact models.
+
+    Parameters
+    ----------
+    pair : GearPair
+    forms : (FlankForm, FlankForm)
+        Of pinion and wheel.
+    nominal : ndarray, shape (n,)
+        Abscissae of the sections' contacts on the line of action [mm].
+    order : ndarray of int, shape (n,)
+        Numbers of their pairs.
+    start : ndarray, shape (n,)
+        Gaps of the unmodified flanks [mm]; inf where they cannot meet.
+    z : ndarray, shape (n,), optional
+        Heights over the common width of both gears, which lie centred on each other [mm]; without them what changes along the
+        width is left out.
+
+    Returns
+    -------
+    Touch
+        `gap` is the approach shared by both gears at which the section touches, inf where it cannot; `radius` 1 there.
+
+    Raises
+    ------
+    ValueError
+        If flanks are so hollow that they would conform.
+    """
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
+    here = forms[0].at(own_z[0]), forms[1].at(own_z[1])
     rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
-    near = start < FAR * pair.gear_1.m_n
-    rolls_1[near], rolls_2[near], found[near] = _inside(pair, forms, nominal[near], order[near], start[near])
+    near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
+    never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
+    inner = [form.at(None if h is None else h[near]) for form, h in zip(forms, own_z, strict=True)]
+    rolls_1[near], rolls_2[near], found[near] = _inside(pair, inner, nominal[near], order[near], start[near])
     for driver, own, met in ((True, rolls_1, rolls_2), (False, rolls_2, rolls_1)):
         tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
-        distance, facing_roll = approach(pair, tip.roll_a, nominal, driver=driver, start=start, flanks=forms, order=order)
+        distance, facing_roll = approach(pair, tip.roll_a, nominal, driver=driver, start=start, flanks=here, order=order)
         low, high = sorted((other.roll_f, other.roll_a))
-        first = (facing_roll >= low) & (facing_roll <= high) & (distance <= found + 1e-12)
+        first = (facing_roll >= low) & (facing_roll <= high) & (distance <= found + 1e-12) & ~never
         own[first], met[first], found[first] = tip.roll_a, facing_roll[first], distance[first]
-    roll_1[there], roll_2[there], gap[there] = rolls_1, rolls_2, found
-    bend = forms[0].bend(roll_1) + forms[1].bend(roll_2)
-    involute = np.where(np.isfinite(gap), 1 / np.where(plain.radius > 0, pair.relative_radius(roll_1, roll_2), 1.0), 1.0)
-    bend = np.where(np.isfinite(gap), bend, 0.0)
-    hollow = np.isfinite(gap) & (involute > 0) & (involute + bend < involute / FLATTER)
+        corner[first] = 1 if driver else 2
+    return Touch(rolls_1, rolls_2, found, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)), corner)
+
+
+def _radius(pair, forms, roll_1, roll_2, there):
+    """Relative radii of curvature of modified flanks ``(n,)`` [mm]; 1 where they do not meet, or are hollow as involutes."""
+    plain = np.where(there, pair.relative_radius(roll_1, roll_2), 1.0)
+    involute = np.where(there & (plain > 0), 1 / np.where(plain > 0, plain, 1.0), 0.0)
+    bend = np.where(there, forms[0].bend(roll_1) + forms[1].bend(roll_2), 0.0)
+    hollow = (involute > 0) & (involute + bend < involute / FLATTER)
     if hollow.any():
-        i, k = np.argwhere(hollow)[0]
+        i = np.flatnonzero(hollow)[0]
         raise ValueError(
-            f"the modified flanks conform at roll lengths {roll_1[i, k]:.5g} and {roll_2[i, k]:.5g} mm of pinion and wheel: no "
+            f"the modified flanks conform at roll lengths {roll_1[i]:.5g} and {roll_2[i]:.5g} mm of pinion and wheel: no "
             "line contact there; smooth the table, or lower the amounts"
         )
-    radius = np.where(involute > 0, 1 / np.where(involute > 0, involute + bend, 1.0), 1.0)
-    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius)
+    return np.where(involute > 0, 1 / np.where(involute > 0, involute + bend, 1.0), 1.0)
 
 
 def _inside(pair, forms, nominal, order, start):
     """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
     one = pair.gear_1
-    amounts = [form.removed(np.linspace(form.low, form.high, 65)) for form in forms]
-    range_ = sum(float(np.ptp(values)) for values in amounts)
+    amounts = [form.removed(np.linspace(form.low, form.high, 65)[None, :]) for form in forms]
+    range_ = sum(np.ptp(values, axis=-1) for values in amounts)
     shift = forms[0].shift(order) + forms[1].shift(order)
     low, high = (arc_at(one, roll) for roll in pair.path)
     ends = np.linspace(*pair.path, 9)
@@ -98,14 +156,16 @@ def _inside(pair, forms, nominal, order, start):
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
     roll_0 = np.clip(nominal, *pair.path)
     pose = start + forms[0].removed(roll_0) + forms[1].removed(pair.mate_roll(roll_0)) + shift
+    turns = pair.turn(nominal)
     arcs = first[:, None] + (last - first)[:, None] * np.linspace(0, 1, SCAN)
-    values = _residual(pair, forms, arcs, nominal[:, None], order[:, None], pose[:, None])
+    own = [turn[:, None] for turn in turns]
+    values = _residual(pair, forms, arcs, own, order[:, None], pose[:, None])
     best = np.argmin(values, axis=1)
     rows = np.arange(nominal.size)
     bounds = arcs[rows, np.maximum(best - 1, 0)], arcs[rows, np.minimum(best + 1, SCAN - 1)]
     roll, found = roll_0, pose
     for steps in (8, 16):
-        arc = _least(lambda s, at=found: _residual(pair, forms, s, nominal, order, at), *bounds, steps)
+        arc = _least(lambda s, at=found: _residual(pair, forms, s, turns, order, at), *bounds, steps)
         roll = roll_at_arc(one, arc)
         found, met = approach(pair, roll, nominal, start=found, flanks=forms, order=order)
         found = np.where(np.isfinite(found), found, pose)
@@ -117,12 +177,11 @@ def _inside(pair, forms, nominal, order, start):
     return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, found, np.inf)
 
 
-def _residual(pair, forms, arc, nominal, order, pose):
+def _residual(pair, forms, arc, turns, order, pose):
     """How far a further approach closes each place of the pinion's flank, with the gears at `pose` [mm]; inf off the flanks."""
     roll = roll_at_arc(pair.gear_1, arc)
-    nominal, pose = np.broadcast_to(nominal, arc.shape), np.broadcast_to(pose, arc.shape)
     back = forms[0].removed(roll) + forms[0].shift(order)
-    distance, met, _ = facing(pair, roll, nominal, True)(pose / 2 - back)
+    distance, met, _ = facing(pair, roll, None, True, turns)(pose / 2 - back)
     low, high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
     slack = 1e-6 * pair.gear_1.m_n
     on = (met >= low - slack) & (met <= high + slack)

@@ -1,7 +1,7 @@
 """`Flank`: what the loaded flanks of a gear have less (or more) than the involute, and how far each tooth is from its place."""
 
 import math
-from collections.abc import Mapping
+from copy import copy
 from dataclasses import dataclass
 from numbers import Real
 from typing import Any
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
 from .gear import Gear
+from .lead import LeadForm, checked_topography, two_ends
 
 LARGEST = 0.1  # m_n: the tooth's flexibility is that of the unmodified tooth
 STARTS = ("diameter", "roll", "angle")  # how the start of a relief can be given
@@ -20,12 +21,14 @@ STARTS = ("diameter", "roll", "angle")  # how the start of a relief can be given
 class Flank:
     """Modifications and deviations of a gear's loaded flanks, from tip to root and from tooth to tooth.
 
-    Amounts are in mm, normal to the involute in the transverse section (along the line of action); **positive: material is
-    removed**. With L the roll length `roll_f` at the form point and `roll_a` at the tip, and t the part of the way from the start
-    of a relief to the end of the flank, a place of the flank has less by::
+    Amounts are in mm, normal to the involute in the transverse section (along the line of action), as ISO 1328-1 and ISO 21771
+    measure them; **positive: material is removed**. With L the roll length, `roll_f` at the form point and `roll_a` at the tip,
+    and t the part of the way from the start of a relief to the end of the flank, a place of the flank has less by::
 
         tip_relief t**tip_exponent  (t > 0)  +  root_relief t**root_exponent  (t > 0)
-        + crowning (2 (L - middle) / (roll_a - roll_f))**2  +  slope (L - roll_f) / (roll_a - roll_f)  +  table(L)
+        + crowning p**2  +  slope (1 + p) / 2  +  table(L)            p = 2 (L - middle) / (roll_a - roll_f)
+        + lead_crowning q**2  +  lead_slope (1 + q) / 2  +  twist p q   q = 2 z / b - 1, at height z of the width b
+        + end_relief (part of the way to its end face)**end_exponent  +  topography(L, z)
 
     Parameters
     ----------
@@ -45,6 +48,18 @@ class Flank:
     table : (sequence, sequence), optional
         Measured deviation: rising roll lengths [mm] that cover the flank, and the material removed there [mm]; cubic between them
         without overshoot. Noise bends the flank: smooth it over less than a contact's width.
+    lead_crowning : float
+        Flank line (helix) crowning C_beta: a parabola along the width, zero in the middle, so much at both end faces [mm].
+    lead_slope : float
+        Removed at z = b if the rest is removed in proportion up from z = 0 [mm]: a helix slope deviation f_Hbeta. Heights z
+        are counted as those of a `Pit`.
+    twist : float
+        Removed at (tip, z = b) and (form point, z = 0), added at the other two corners of the flank, bilinear between them [mm].
+    end_relief, end_length, end_exponent : float or (float, float)
+        Amount at the end faces [mm], over what length of the width [mm], and with what exponent; two numbers: at z = 0, at z = b.
+    topography : (sequence, sequence, sequence of sequences), optional
+        Measured flank: rising roll lengths [mm] and heights z [mm] that cover it, and the material removed, a row for each roll
+        length [mm]; bicubic between them. `gearfe.read_topography` reads one from a file.
     pitch : sequence of float
         For each of the z teeth, how far its loaded flank lies behind its place (as if material were removed), along the reference
         circle [mm]: cumulative pitch deviations. Teeth are counted as those of a `Crack`: tooth k is in pair k.
@@ -76,13 +91,20 @@ class Flank:
     crowning: float = 0.0
     slope: float = 0.0
     table: Any = None
+    lead_crowning: float = 0.0
+    lead_slope: float = 0.0
+    twist: float = 0.0
+    end_relief: Any = 0.0
+    end_length: Any = None
+    end_exponent: Any = 2.0
+    topography: Any = None
     pitch: Any = ()
 
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in self.__slots__:
             value = getattr(self, name)
-            if name in ("table", "pitch") or (value is None and "_start_" in name):
+            if name in ("table", "topography", "pitch") or (value is None and "_start_" in name) or name.startswith("end_"):
                 continue
             if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
                 raise ValueError(f"{name} = {value!r}, but a flank needs a finite number here")
@@ -101,6 +123,15 @@ class Flank:
         object.__setattr__(self, "pitch", tuple(_numbers("pitch", self.pitch)))
         if self.table is not None:
             object.__setattr__(self, "table", _table(self.table))
+        for name, value in zip(("end_relief", "end_length", "end_exponent"), two_ends(self), strict=True):
+            object.__setattr__(self, name, value)
+        if self.topography is not None:
+            object.__setattr__(self, "topography", checked_topography(self.topography))
+
+    @property
+    def wide(self) -> bool:
+        """Whether anything changes along the width, so that no transverse section is the whole truth."""
+        return bool(self.lead_crowning or self.lead_slope or self.twist or any(self.end_relief) or self.topography is not None)
 
     def on(self, gear: Gear) -> "FlankForm":
         """The modification of the flanks of `gear`."""
@@ -108,7 +139,7 @@ class Flank:
 
 
 class FlankForm:
-    """A `Flank` on its gear: material removed by roll length.
+    """A `Flank` on its gear: material removed by roll length; by height, too, in the form that `at` gives.
 
     `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
     roll length: there, contact has no radius of curvature.
@@ -138,7 +169,26 @@ class FlankForm:
         if len(flank.pitch) not in (0, gear.z):
             raise ValueError(f"pitch has {len(flank.pitch)} values, but z = {gear.z}: give one for each tooth")
         self._shifts = np.array(flank.pitch) * gear.r_b / gear.r
+        self.tilt, self._lead = 0.0, LeadForm(flank, gear, self.low, self.high) if flank.wide else None
+        self._z: NDArray[np.float64] | None = None
         self._check_size()
+
+    @property
+    def wide(self) -> bool:
+        """Whether the flank changes along the width, or lies askew: `tilt`, how much further back it lies by height [mm/mm]."""
+        return self._lead is not None or bool(self.tilt)
+
+    def at(self, z: ArrayLike | None) -> "FlankForm":
+        """The same flank at heights `z` [mm], which go with the leading axes of roll lengths; None: what changes is left out."""
+        out = copy(self)
+        out._z = None if z is None or not self.wide else np.asarray(z, dtype=float)
+        return out
+
+    def tilted(self, tilt: float) -> "FlankForm":
+        """The same flank, so much further back by height [mm/mm], none in the middle of the width."""
+        out = copy(self)
+        out.tilt = tilt
+        return out
 
     def _start(self, end: str) -> float:
         """Roll length [mm] at which a relief starts."""
@@ -159,7 +209,8 @@ class FlankForm:
     def _check_size(self) -> None:
         roll = np.linspace(self.low, self.high, 65)
         most = LARGEST * self.gear.m_n
-        for what, values in (("removed from the flank", self.removed(roll)), ("of pitch deviation", self._shifts)):
+        here = self.at(np.linspace(0, self.gear.b, 17))
+        for what, values in (("removed from the flank", here.removed(roll[None, :])), ("of pitch deviation", self._shifts)):
             worst = float(np.abs(values).max(initial=0.0))
             if worst > most:
                 raise ValueError(
@@ -184,12 +235,26 @@ class FlankForm:
             out += self.flank.slope * ((roll - self.low) / span, 1 / span, 0.0)[n]
         if self._spline is not None:
             out += self._spline(np.clip(roll, self._spline.x[0], self._spline.x[-1]), n)
+        if self._lead is not None and self._z is not None:
+            out = out + self._lead.removed(roll, _along(self._z, roll), n)
         return out
+
+    def bounds(self) -> tuple[float, float]:
+        """Least and most that any place of any tooth lies behind the involute [mm]."""
+        heights = np.linspace(0, self.gear.b, 33)
+        form = self.at(heights)
+        values = form.removed(np.linspace(self.low, self.high, 65)[None, :]) + form.shift(np.zeros((heights.size, 1), dtype=int))
+        values = values - self._shifts[:1].sum()
+        shifts = self._shifts if self._shifts.size else np.zeros(1)
+        return float(values.min() + shifts.min()), float(values.max() + shifts.max())
 
     def shift(self, tooth: ArrayLike) -> NDArray[np.float64]:
         """How far the flanks of teeth lie behind their places, along the line of action [mm]."""
         tooth = np.asarray(tooth, dtype=int)
-        return self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
+        behind = self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
+        if self.tilt and self._z is not None:
+            behind = behind + self.tilt * (_along(self._z, tooth) - self.gear.b / 2)
+        return behind
 
     def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
         """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out)."""
@@ -197,33 +262,9 @@ class FlankForm:
         return (self.gear.r_b / at) ** 2 * (self.removed(at, 2) - self.removed(at, 1) / at)
 
 
-def flank_forms(pair: Any, flanks: Mapping[str, Flank] | None) -> tuple[FlankForm, FlankForm] | None:
-    """Flanks of pinion and wheel on their gears; None if nothing differs from the involute.
-
-    Parameters
-    ----------
-    pair : GearPair
-    flanks : dict, optional
-        ``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them.
-
-    Raises
-    ------
-    ValueError
-        If it is something else, or a flank does not fit its gear.
-    """
-    if flanks is None:
-        return None
-    if not isinstance(flanks, Mapping):
-        raise ValueError(f"flanks = {flanks!r}, but give them by gear: {{'pinion': Flank(...), 'wheel': Flank(...)}}")
-    unknown = set(flanks) - {"pinion", "wheel"}
-    if unknown:
-        raise ValueError(f"flanks of {unknown.pop()!r}, but they are given for 'pinion' and 'wheel'")
-    for name, one in flanks.items():
-        if not (one is None or isinstance(one, Flank)):
-            raise ValueError(f"flanks of the {name}: {one!r} is no Flank")
-    given = [flanks.get(name) or Flank() for name in ("pinion", "wheel")]
-    first, second = (one.on(gear) for one, gear in zip(given, (pair.gear_1, pair.gear_2), strict=True))
-    return None if all(one == Flank() for one in given) else (first, second)
+def _along(z: NDArray, places: NDArray) -> NDArray:
+    """Heights with the trailing axes that places have more."""
+    return z.reshape(z.shape + (1,) * max(places.ndim - z.ndim, 0))
 
 
 def _numbers(name: str, values: Any) -> list[float]:

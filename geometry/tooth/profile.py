@@ -211,10 +211,3 @@ def tangent_point(gear, inclination=math.pi / 6):
         if slope[0] > inclination > slope[-1]
         else float(middle[np.argmin(abs(slope - inclination))])
     )
-
-
-def form_mismatch(gear):
-    """Distance [mm] between fillet and involute at the form point: zero up to rounding (a check for tests)."""
-    phi, roll = form_point(gear)
-    radius, angle = fillet(gear, phi)
-    return float(radius * (angle - flank(gear, roll)[1]))

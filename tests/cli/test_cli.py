@@ -133,13 +133,15 @@ def test_errors_go_to_stderr(arguments, message, capsys):
         (["dynamics", "planetary_pitting"], "--kurtogram", "r.png"),
         (["signal", "none.csv"], "--plot", "r.png"),
         (["signal", "none.csv"], "--kurtogram", "r.png"),
+        (["signal", "none.csv"], "--cepstrum", "r.png"),
+        (["signal", "none.csv"], "--spectrogram", "r.png"),
     ],
 )
 def test_outputs_are_checked_before_any_work(verb, option, good, tmp_path, monkeypatch, capsys):
     def work(*_, **__):
         raise AssertionError("work began")
 
-    for name in ("gearfe.scene.load.load_scene", "gearfe.signal.signal_file.read_signal"):
+    for name in ("gearfe.scene.load.load_scene", "gearfe.signal.signal_file.read_signals"):
         monkeypatch.setattr(name, work)
     (tmp_path / "folder.png").mkdir()
     suffix = good.rpartition(".")[2]

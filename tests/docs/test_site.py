@@ -69,3 +69,13 @@ def broken(site):
             if not target.exists() or (place and target.suffix == ".html" and place not in places[target]):
                 out.append((str(path.relative_to(site)), link))
     return out
+
+
+def test_tests_that_the_page_of_clear_answers_names_exist():
+    text = (SITE / "clear_answers.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(tests/[\w/]+\.py)::(\w+)`((?:, `::\w+`)*)", text)
+    assert len(named) >= 18
+    for file, first, more in named:
+        code = (ROOT / file).read_text(encoding="utf-8")
+        for name in (first, *re.findall(r"::(\w+)", more)):
+            assert f"def {name}(" in code, f"{file}::{name}"

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from skfem import MeshTri, MeshTri2
 
 import gearfe as gf
-from gearfe.elements.elasticity import Body, edge_nodes, edge_shapes, von_mises
+from gearfe.elements.elasticity import Body, edge_nodes, edge_shapes
 
 
 def ring(inner, outer, n):
@@ -80,12 +80,6 @@ def test_stress_of_the_ring():
     radial = x**2 * stress[0] + y**2 * stress[1] + 2 * x * y * stress[2]
     outer = np.isclose(radius, 2.0)
     assert_allclose(radial[outer], -1.0, rtol=0.02)
-
-
-def test_von_mises_of_known_states():
-    assert_allclose(von_mises(np.array([[100.0], [0], [0]]), 0.3, "plane stress"), 100)
-    assert_allclose(von_mises(np.array([[0.0], [0], [10]]), 0.3, "plane stress"), 10 * 3**0.5)
-    assert_allclose(von_mises(np.array([[100.0], [100], [0]]), 0.5, "plane strain"), 0, atol=1e-9)
 
 
 def test_unknown_boundary_is_named():

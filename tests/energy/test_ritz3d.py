@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements import fe3d
-from gearfe.energy.ritz import elimination, panel3d
+from gearfe.energy.ritz import depth, elimination, panel3d, short_edges
 from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.axial import axial
@@ -132,6 +132,40 @@ def test_mirrored_helix_has_mirrored_flexibility():
     for one, two in ((left.near[0], right.near[0]), (left.far[0, 1], right.far[0, 1])):
         assert_allclose(two, sign[:, None] * one * sign, atol=1e-9 * np.abs(one).max())
         assert np.abs(two - one).max() > 1e-3 * np.abs(one).max()
+
+
+def test_less_along_the_width_and_fewer_cubics_are_stiffer_by_almost_nothing(monkeypatch):
+    """What is left out makes a space within the other: no load moves less in that, and none much more."""
+    made = sector(GEAR, sizes=ritz3d.SIZES)
+    knots = flexibility3d.hats(GEAR)[:, ::2]
+
+    def loads():
+        found = panel3d.panel3d(GEAR, made, STEEL, knots, 12.0, order=3, degree=7)
+        return found, join(GEAR, {0: found}, found)[0][0, 0]
+
+    few, less = loads()
+    monkeypatch.setattr(depth, "LEAST", 99)
+    monkeypatch.setattr(short_edges, "SHORT", 0.0)
+    many, more = loads()
+    assert few.unknowns < many.unknowns
+    assert np.linalg.eigvalsh(more - less)[0] > -1e-9 * np.abs(more).max()
+    assert 0 < np.trace(more - less) < 2e-3 * np.trace(more)
+
+
+def test_both_sides_have_the_same_degrees_and_the_flank_the_highest():
+    seen = []
+    for cracks in ((), (gf.Crack(level=0.4),)):
+        made = sector(GEAR, cracks, sizes=ritz3d.SIZES)
+        numbers, count, chain = panel3d.numbering(made, 3)
+        sides = np.concatenate([chain(side)[1:] for side in (made.left, made.right)])
+        every, _ = elimination.all_nodes(numbers, count, 3)
+        found = depth.degrees(GEAR, made, every, sides, 40.0, 18, 3)
+        first, second = found[sides].reshape(2, -1)
+        assert_allclose(first, second)
+        assert (found[chain(made.flank)] == 18).all()
+        assert found.min() < 12
+        seen.append(first)
+    assert_allclose(*seen, err_msg="sectors with and without a crack are joined side to side")
 
 
 @pytest.mark.slow

@@ -116,4 +116,5 @@ def tally(found):
     """Counts by class, and what went wrong in words, of ``{input: (class, text)}``."""
     counts = Counter(kind for kind, _ in found.values())
     wrong = [f"{name}: {kind}: {text[:200]}" for name, (kind, text) in found.items() if kind != CLEAR]
+    print(f"{len(found)} inputs: " + ", ".join(f"{counts[kind]} {kind}" for kind in (CLEAR, TRACEBACK, HANG, NONSENSE)))
     return counts, "\n".join(wrong)

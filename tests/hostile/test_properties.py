@@ -124,7 +124,7 @@ def test_the_energy_model_keeps_its_invariants(profile):
         level=st.floats(0.1, 0.4), gap=st.floats(0.05, 0.3))  # fmt: skip
 
 
-@pytest.mark.parametrize("profile", profiles(1, 240))
+@pytest.mark.parametrize("profile", profiles(1, 60))
 def test_estimates_cover_the_difference_of_methods(profile):
     """Finite elements and the energy model are no further apart than both estimates together."""
 

@@ -5,11 +5,12 @@ from importlib import resources
 
 import numpy as np
 import pytest
+from checks import pit_loss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.machine.contact_cycle import ellipse_loss, pit_loss
+from gearfe.machine.contact_cycle import ellipse_loss
 from gearfe.machine.impact import pits_loss
 from gearfe.motion.simulate import simulate
 

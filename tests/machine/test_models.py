@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.machine.compound_planetary import KINDS, compound_planetary, scene_pairs
 from gearfe.machine.layout import around, through
+from gearfe.machine.modes import natural_frequencies
 from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.machine.planetary import stage_phases
-from gearfe.machine.tables import natural_frequencies
 from validation.shared.reference import lin_parker
 
 PAIRS = scene_pairs(gf.load_scene("compound_planetary"))

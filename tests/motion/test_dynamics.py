@@ -10,8 +10,9 @@ from machines import RUNS, WAVE, two_masses, worst
 from numpy.testing import assert_allclose
 
 from gearfe.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
+from gearfe.machine.modes import natural_frequencies
 from gearfe.machine.single_mesh import single_mesh
-from gearfe.machine.tables import Load, Machine, Spring, natural_frequencies, pulses
+from gearfe.machine.tables import Load, Machine, Spring, pulses
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import steady_state
 

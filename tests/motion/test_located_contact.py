@@ -41,6 +41,13 @@ def test_bounces_follow_the_closed_form(method):
     assert errors[1] < errors[0] / 30
 
 
+def test_outputs_farther_apart_than_bounces():
+    machine = gf.single_mesh(MASS, STIFF, 1.0, force=FORCE, backlash=1e-3)
+    got = simulate(machine, 0.006, dt=2e-3, method="DOP853", rtol=1e-8, initial=(np.zeros(1), np.array([-SPEED])))
+    assert got.stats["losses"] == 8
+    np.testing.assert_allclose(got["compression mesh"], bouncing(got.time), atol=1e-3 * FORCE / STIFF)
+
+
 def test_motion_that_no_run_can_follow_says_so(monkeypatch):
     """Rattling between both flanks; with the disturbance that a healthy run forgives as large as one that it does not."""
     machine = gf.single_mesh(

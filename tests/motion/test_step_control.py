@@ -13,7 +13,7 @@ from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.motion import simulate as dynamics
 from gearfe.motion.propagator import _phi
 from gearfe.motion.simulate import simulate
-from gearfe.motion.step_control import default_step, difference, stretch
+from gearfe.motion.step_control import acceleration_difference, default_step, difference, stretch
 
 
 def spur(stage, damaged):
@@ -109,3 +109,30 @@ def test_phi_functions_against_an_augmented_exponential():
             full = expm(big)
             for j, one in enumerate(found):
                 assert_allclose(one[i], full[:2, 2 * j : 2 * j + 2], atol=1e-11)
+
+
+def test_without_damping_the_whole_run_is_estimated_when_asked():
+    """100 cycles; accelerations, too. The stretch of 3.5 cycles says less, and says that it does."""
+    machine = two_masses(c=0.0, zeta=0.0, error=((20e-6, 500.0, 0.3),))
+    fine = {"rate": 1e4, "step": 1e-6, "error": False}
+    want = simulate(machine, 0.2, **fine)
+    asked, plain = simulate(machine, 0.2, rate=1e4, error=True), simulate(machine, 0.2, rate=1e4)
+    assert plain.stats["error_seconds"] < 0.01
+    assert asked.stats["error_seconds"] == 0.2
+    for one, share in ((asked, 1.0), (plain, 100 / 3.5)):
+        assert max(difference(one, want)) < share * one.stats["error"]
+        assert acceleration_difference(one, want) < share * one.stats["error_acceleration"]
+    assert max(difference(asked, want)) < 1e-3
+    assert max(difference(plain, want)) > plain.stats["error"]  # what the stretch does not tell
+
+
+def test_the_step_sees_a_load_far_above_the_meshes():
+    """At 100 kHz, and only for the last hundredth of the run, where no stretch looks."""
+    load = lambda t: 1000.0 + 500.0 * np.sin(2e5 * np.pi * t) * (np.asarray(t) > 0.0198)  # noqa: E731
+    machine = two_masses(load=load)
+    got = simulate(machine, 0.02, rate=5e4)
+    assert got.stats["dt"] < 1.5e-6
+    want = simulate(machine, 0.02, rate=5e4, step=1e-7, error=False)
+    assert max(difference(got, want)) < 1e-3
+    with pytest.warns(UserWarning, match="too long for this machine"):
+        assert simulate(machine, 0.02, rate=5e4, step=1e-5).stats["error"] > 0.1

@@ -60,6 +60,44 @@ def test_units_are_those_of_the_keys(tmp_path):
     assert_allclose(curve.te, found.te[0])
 
 
+WIDE = """
+[flank.wide]
+gear = "pinion"
+lead_crowning_um = 5
+lead_slope_um = -3
+twist_um = 2
+end_relief_um = [4, 8]
+end_length_mm = [2, 3]
+"""
+
+
+def test_keys_along_the_width_and_misalignment(tmp_path):
+    askew = "F_beta_um = 12\nf_sigma_beta_um = 6\nbearing_span_mm = 90\n"
+    scene, _ = loaded(tmp_path, askew + WIDE)
+    case = scene.pair().case()
+    assert case["misalignment"] == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
+    made = case["flanks"]["pinion"]
+    assert made == gf.Flank(lead_crowning=0.005, lead_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0))
+    assert scene.pair().wide
+    assert not loaded(tmp_path, RELIEF)[0].pair().wide
+    for text, message in (
+        ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
+        ("F_beta_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),
+        (WIDE.replace("[2, 3]", "[2, 30]"), r"\[flank.wide\]: end_length = 30 mm"),
+        (WIDE.replace("[4, 8]", "4"), r"expected two numbers in um"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            loaded(tmp_path, text)
+
+
+@pytest.mark.slow
+def test_a_misaligned_pair_is_compared_in_three_dimensions(tmp_path):
+    _, path = loaded(tmp_path, "F_beta_um = 12\n")
+    found = gf.compare(path, phases=4)
+    assert list(found.curves) == ["ritz3d", "textbook", "published"]
+    assert all(curve.unloaded is not None for curve in found.curves.values())
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

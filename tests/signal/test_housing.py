@@ -18,7 +18,8 @@ def response(forces, notes=None):
     meshes = tuple(SimpleNamespace(name=name.removeprefix("force ")) for name in channels)
 
     class Made:
-        machine = SimpleNamespace(meshes=meshes, notes={"carrier frequency [Hz]": F_C} if notes is None else notes)
+        stated = {"carrier frequency [Hz]": F_C} if notes is None else notes
+        machine = SimpleNamespace(turned=lambda t: t, meshes=meshes, notes=stated)
 
         def __getitem__(self, name):
             return channels[name]
@@ -69,3 +70,17 @@ def test_what_cannot_be_heard_is_refused():
         gf.housing_signal(made, kind="sun_planet", carrier=1.0)
     with pytest.raises(ValueError, match="3 planets"):
         gf.housing_signal(made, carrier=1.0, places=[0.0])
+
+
+def test_modes_of_the_housing_amplify_as_an_oscillator_does():
+    """A steady force line comes out as its receptance times the squared frequency, in closed form."""
+    frequency, mode = 50.0, (80.0, 0.05, 12.0)
+    forces = [lambda t: 8 * np.cos(2 * np.pi * frequency * t)] * 3
+    heard = gf.housing_signal(response(forces), window=np.ones_like, modes=[mode])
+    assert heard.unit == "m/s^2"
+    settled = gf.Signal(heard.values[round(RATE) :], RATE, "m/s^2")
+    r = frequency / mode[0]
+    want = 24 / mode[2] * r**2 / abs(1 - r**2 + 2j * mode[1] * r)
+    assert_allclose(amplitudes(settled, [frequency])[0], want, rtol=2e-3)  # forces are straight between samples
+    with pytest.raises(ValueError, match="half the rate"):
+        gf.housing_signal(response(forces), modes=[(3000.0, 0.05, 1.0)])

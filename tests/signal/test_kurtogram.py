@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -137,3 +139,24 @@ def test_spectral_kurtosis_of_noise_sine_and_impulses():
     assert abs(found.frequency[np.argmax(found.values)] - 1600.0) <= 3 * found.resolution
     with pytest.raises(ValueError, match="size = 300 samples, but signal has 1000: give 8 to 250"):
         gf.spectral_kurtosis(gf.Signal(noise(1000), RATE, "N"), 300)
+
+
+def test_antonis_filters_give_what_an_independent_package_gives():
+    """Ringing, a sine and a chirp; no random numbers, so that anyone can repeat it."""
+    k = np.arange(2**13)
+    x = np.exp(-0.06 * (k % 320)) * np.sin(2 * np.pi * 0.166 * (k % 320)) + 0.3 * np.sin(2 * np.pi * 0.0329 * k)
+    signal = gf.Signal(x + 0.2 * np.sin(0.01 * k * np.sqrt(k)) + 0.05, RATE, "g")
+    found = gf.fast_kurtogram(signal, 5, filters="antoni")
+    level, band, kurtosis = np.loadtxt(Path(__file__).with_name("antoni_kurtogram.csv"), delimiter=",").T
+    assert_allclose(found.level, level, atol=1e-6)
+    assert_allclose(found.centre, (band + 0.5) * found.bandwidth)
+    assert_allclose(np.clip(found.kurtosis, 0, None), kurtosis, rtol=1e-7, atol=1e-9)
+
+
+def test_the_banks_find_the_same_ringing_and_others_are_refused():
+    x = impulses(2**14, every=320, ringing=850.0, decay=300.0) + 0.05 * noise(2**14)
+    for filters in ("sharp", "antoni"):
+        low, high = gf.fast_kurtogram(gf.Signal(x, RATE, "N"), filters=filters).band
+        assert low < 850.0 < high
+    with pytest.raises(ValueError, match="filters = 'short', but it must be one of sharp, antoni"):
+        gf.fast_kurtogram(gf.Signal(x, RATE, "N"), filters="short")

@@ -1,6 +1,7 @@
 """Every format that others write, made by its own library; every file that gearfe writes, read by another library."""
 
 import json
+import sys
 import wave
 
 import h5py
@@ -315,3 +316,14 @@ def test_what_gearfe_writes_other_libraries_read(tmp_path):
     found = loadmat(tmp_path / "r.mat", simplify_cells=True)
     assert_array_equal(found["values"][:, list(found["names"]).index("force mesh")], response["force mesh"])
     assert json.loads(found["units_json"])
+
+
+@pytest.mark.parametrize(
+    ("suffix", "module", "name"),
+    [(".h5", "h5py", "h5py"), (".uff", "pyuff", "pyuff"), (".tdms", "nptdms", "npTDMS"), (".parquet", "pyarrow", "pyarrow")],
+)
+def test_a_missing_library_is_named_with_its_extra(tmp_path, monkeypatch, suffix, module, name):
+    WRITERS[suffix](tmp_path / f"x{suffix}")
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(RuntimeError, match=rf"pip install {name}, or pip install 'gearfe\[signals\]'"):
+        gf.read_signal(tmp_path / f"x{suffix}")

@@ -8,7 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth.modified import flank_forms
+from gearfe.contact.full_contact import full_contact
+from geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -114,12 +115,30 @@ def test_the_estimate_is_given_for_modified_flanks():
     assert ((found.error > 0) & (found.error < 0.01 * found.k)).all()
 
 
-def test_methods_that_know_involutes_only_refuse():
-    with pytest.raises(ValueError, match=r"modified flanks with method = 'ritz3d', .* use ritz, fe, coupled"):
-        solved(relieved(0.01, 4.0), method="ritz3d")
-    pit = gf.Pit(radius=37.0, axes=(0.5, 0.5), depth=0.2, z=10.0)
-    with pytest.raises(ValueError, match="modified flanks with pits"):
-        solved(relieved(0.01, 4.0), method="textbook", damage={"pinion": [pit]})
+def test_a_revolution_is_its_cycles_one_after_the_other():
+    flanks = {"pinion": gf.Flank(pitch=gf.random_pitch(PAIR.gear_1, 6, seed=1))}
+    found = solved(flanks, span="revolution", phases=4)
+    some = solved(flanks, phases=found.phase[20:28])
+    assert found.phase.size == 24 * 4
+    assert_allclose(found.te[20:28], some.te, rtol=1e-9)
+    own = np.flatnonzero(np.isin(found.order, some.order))
+    assert_allclose(found.force[20:28][:, own], some.force, atol=1e-6)
+    assert_allclose(found.force.sum(axis=1), LOAD)
+    assert np.ptp(found.unloaded) > 5e-6
+    with pytest.raises(ValueError, match="give their number in each mesh cycle"):
+        solved(flanks, span="revolution", phases=[0.1, 0.2])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", [(0.010, 4.7, 1.0, 0.3), (0.030, 4.0, 2.0, 0.55), (0.010, 4.7, 1.0, 0.1)])
+def test_full_contact_on_modified_flanks(case):
+    """All pressures as unknowns, no Hertz, no kink rows: the independent check."""
+    *shape, phase = case
+    flanks = relieved(*shape)
+    found = solved(flanks, phases=[phase])
+    full = full_contact(PAIR, LOAD / 20, phase, (STEEL, STEEL), flanks=_forms(flanks))
+    assert_allclose(found.te[0], full.approach * 1e-3, rtol=2e-3)
+    assert_allclose(found.share[0], full.force[: found.order.size] / full.force.sum(), atol=2e-3)
 
 
 def test_a_saved_curve_keeps_its_unloaded_error(tmp_path):

@@ -11,6 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.cli import main
 from gearfe.elements import solver
 from gearfe.files import read
 from gearfe.stiffness import limits
@@ -124,3 +125,22 @@ def test_versions(capsys):
         main(["--version"])
     assert capsys.readouterr().out == f"gearfe {gf.__version__}\n"
     assert gf.__version__[0].isdigit()
+
+
+@pytest.mark.parametrize("damage", [None, {"pinion": [gf.Pit(radius=21.0, z=10.0, axes=(0.8, 2.0), depth=0.2)]}])
+def test_three_dimensions_from_the_lightest_to_the_heaviest_load(pair, steel, damage):
+    """0.06 N/mm: sound, and softer than under load; 5e6 N: refused with what was given and what to do."""
+    run = {"method": "ritz3d", "phases": [0.3, 0.8], "damage": damage, "refine": 0.3}
+    light, load = (gf.mesh_stiffness(pair, force, steel, **run) for force in (0.06 * 20, 2000.0))
+    np.testing.assert_allclose(light.force.sum(axis=1), 0.06 * 20, rtol=1e-9)
+    assert (0.5 * load.k < light.k).all()
+    assert (light.k < load.k).all()
+    with pytest.raises(ValueError, match=r"force = 5e\+06 N on 20 mm: .* give a smaller force"):
+        gf.mesh_stiffness(pair, 5e6, steel, **run)
+
+
+def test_the_command_line_refuses_the_heaviest_load_in_three_dimensions(capsys):
+    assert main(["stiffness", "planetary_pitting", "--method", "ritz3d", "--force", "5e6"]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("gearfe: force = 5e+06 N on 20 mm")
+    assert len(said.splitlines()) == 1

@@ -4,14 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from checks import pit_loss
 from machines import SHAPE, STEEL, herringbone, lines, tooth
 from numpy.testing import assert_allclose
 from scipy.signal import hilbert
 
 import gearfe as gf
-from gearfe.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle, pit_loss, sliced
+from gearfe.machine.contact_cycle import contact_line, ellipse_loss, impact_cycle, line_cycle
 from gearfe.machine.contact_law import hertz_coefficient
-from gearfe.machine.gear_mesh import Samples, cycle_table
 from gearfe.machine.helical_pair import pitted_helical
 from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.machine.tables import pulses
@@ -166,18 +166,3 @@ def test_impact_law_of_the_spur_stage_runs(spur_stage):
     assert force.max() > 1.2 * force[0]
     want = simulate(machine, 0.01, dt=1e-4, method="RK45", rtol=1e-6)
     assert_allclose(got.q, want.q, atol=2e-3 * np.ptp(want.q))
-
-
-def test_slices_are_integrated_exactly():
-    """A helical mean over a whole cycle is constant; over part of one it is the integral of the section's table."""
-    table = cycle_table(6e8 * SHAPE)
-    whole = sliced(Samples(np.arange(64) / 64, 6e8 * SHAPE), 1.0)
-    assert_allclose(whole.k, table.mean, rtol=1e-12)
-    part = sliced(Samples(np.arange(64) / 64, 6e8 * SHAPE), 0.3)
-    fine = (np.arange(20000) + 0.5) / 20000 * 0.3
-    want = [table((p - fine) % 1.0).mean() for p in part.phase]
-    assert_allclose(part.k, want, rtol=1e-7)
-    hurt = tooth(6e8 * SHAPE, 0.3, 1.5)
-    got = sliced(hurt, 0.3, healthy=Samples(np.arange(64) / 64, 6e8 * SHAPE))
-    lost = cycle_table(part.k)(got.phase % 1.0) - got.k
-    assert_allclose(np.trapezoid(lost, got.phase), np.trapezoid(table(hurt.phase % 1.0) - hurt.k, hurt.phase), rtol=2e-3)

@@ -5,11 +5,12 @@ import warnings
 
 import numpy as np
 import pytest
+from checks import form_mismatch
 from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact.full_contact import full_contact
-from geometry.tooth.profile import cartesian, fillet, flank, form_mismatch, form_point
+from geometry.tooth.profile import cartesian, fillet, flank, form_point
 from validation.shared import reference
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}

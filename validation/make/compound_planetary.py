@@ -182,20 +182,21 @@ def draw(folder):
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
     curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}
     curves |= {level: gf.mesh_stiffness(**chosen.case(case), **run) for level, case in LEVELS.items()}
-    plot_curves(curves, folder / "compound_planetary_k.png")
+    plot_curves(curves, folder / "compound_planetary_k.png", f"{NAME}, sun_planet, cracks of the sun")
     (one, two), (slow, quick) = frequencies()
     lines = {"f_m1": one, "f_m2": two, "f_m1 - f_1": one - slow, "f_m2 + f_2": two + quick, "2 f_m1": 2 * one, "2 f_m2": 2 * two}
     cases = {"healthy": None, "sun 1, 80 %": "sun 1", "sun 2, 30 %": "crack30", "sun 2, 80 %": "crack80"}
     spectra = {name: spectrum(_whole(case)) for name, case in cases.items()}
-    plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70)
+    plot_spectra(spectra, lines, folder / "compound_planetary_spectra.png", 450.0, dpi=70, title=NAME)
     broken = {"sun 1, 80 %": "sun 1", "sun 2, 80 %": "crack80"}
-    plot_waves(
-        {"healthy": _noisy(None)} | {name: _noisy(case) for name, case in broken.items()}, folder / "compound_planetary_waves.png"
-    )
+    waves = {"healthy": _noisy(None)} | {name: _noisy(case) for name, case in broken.items()}
+    plot_waves(waves, folder / "compound_planetary_waves.png", title=f"{NAME}, with noise")
     envelopes = {name: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for name, case in broken.items()}
     faults = {"f_1": slow, "2 f_1": 2 * slow, "f_2": quick, "2 f_2": 2 * quick}
-    plot_spectra(envelopes, faults, folder / "compound_planetary_envelopes.png", 60.0, dpi=70)
-    gf.plot_kurtogram(gf.fast_kurtogram(_noisy("crack80"), levels=7), folder / "compound_planetary_kurtogram.png")
+    plot_spectra(envelopes, faults, folder / "compound_planetary_envelopes.png", 60.0, dpi=70, title=f"{NAME}, squared envelopes")
+    gf.plot_kurtogram(
+        gf.fast_kurtogram(_noisy("crack80"), levels=7), folder / "compound_planetary_kurtogram.png", f"{NAME}, sun 2, 80 %"
+    )
 
 
 SIMULATED = {

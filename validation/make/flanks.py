@@ -17,6 +17,7 @@ from gearfe.files import written
 
 from ..shared import machine
 from ..shared.places import PAGES, TABLES
+from . import flanks_wide
 
 PAGE, CSV, PICTURE = PAGES / "flanks.md", TABLES / "flanks_calculix.csv", PAGES / "flanks_map.png"
 LINE_LOAD = 150.0  # N/mm
@@ -131,6 +132,8 @@ def text():
         "and contact bends round the kinks.",
         "",
         "![transmission error over phase and load](flanks_map.png)",
+        "",
+        *flanks_wide.text(),
     ]
     return "\n".join(lines) + "\n"
 
@@ -144,6 +147,7 @@ def run():
         rows[case] = calculix(case)
         _write(rows)
         print(f"  CalculiX, {case}: {rows[case][1]:.4f} N/mm", flush=True)
+    flanks_wide.run()
     with written(PAGE) as name:
         Path(name).write_text(text(), encoding="utf-8")
     print(f"wrote {PAGE.name} on {machine.describe()}")

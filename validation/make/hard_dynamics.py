@@ -14,8 +14,8 @@ from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
 from gearfe.machine.gear_pair import gear_pair
 from gearfe.machine.layout import Body
 from gearfe.machine.member import disc
+from gearfe.machine.modes import natural_frequencies
 from gearfe.machine.single_mesh import single_mesh
-from gearfe.machine.tables import natural_frequencies
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import steady_state
 from gearfe.motion.step_control import chosen_step, difference

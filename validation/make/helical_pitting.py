@@ -224,7 +224,9 @@ def draw(folder):
 
     lines = gf.expected_lines(frequencies()["f_m"], frequencies()["f_r"], count=2)
     spectra = {case: _found(case) for case in ("healthy", *CASES)}
-    plot_spectra(spectra, lines, folder / "helical_pitting_spectra.png", 900.0, dpi=70)
+    plot_spectra(
+        spectra, lines, folder / "helical_pitting_spectra.png", 900.0, dpi=70, title="helical_pitting, mesh force, impact law"
+    )
 
 
 QUICK = {

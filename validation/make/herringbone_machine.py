@@ -274,12 +274,12 @@ def draw(folder):
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {name: spectrum(signal(_record(case), TURNING)) for name, case in STATES.items()}
-    plot_spectra(spectra, lines, folder / "herringbone_machine_spectra.png", 1300.0, dpi=60)
+    plot_spectra(spectra, lines, folder / "herringbone_machine_spectra.png", 1300.0, dpi=60, title=f"herringbone, {TURNING}")
     portraits = {}
     for name, case in STATES.items():
         x, v = signal(_record(case), "sunL.theta"), signal(_record(case), "sunL.theta velocity")
         portraits[name] = gf.phase_portrait(x, v), gf.poincare_section(x, speeds()[2], v)
-    plot_phases(portraits, "rad", folder / "herringbone_machine_phase.png")
+    plot_phases(portraits, "rad", folder / "herringbone_machine_phase.png", title="herringbone, sunL.theta")
 
 
 SIMULATED = {

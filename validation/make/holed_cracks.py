@@ -93,8 +93,8 @@ def table():
         if case and rows[0]:
             finer = known.get((pair, case, "circular", FINE))
             cells = [_percent(row and row[name]) for row in rows for name in ("mean change", "largest change")]
-            k = float(rows[0]["k mean [N/m]"]) / 1e9
-            lines.append(f"| {pair} | {case} | {k:.4f} | " + " | ".join([*cells, _percent(finer and finer["mean change"])]) + " |")
+            cells = [pair, case, f"{float(rows[0]['k mean [N/m]']) / 1e9:.4f}", *cells, _percent(finer and finer["mean change"])]
+            lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 
 
@@ -121,8 +121,8 @@ def page():
     lines = [
         "# Pits cut out of cracked teeth",
         "",
-        f"Made by `python -m validation holed_cracks` from `tables/holed_cracks.csv`; {len(known)} solves took {seconds:.0f} s of",
-        f"the processor on {machine.describe()}.",
+        f"Made by `python -m validation holed_cracks` from `tables/holed_cracks.csv`; {len(known)} solves took {seconds:.0f} s",
+        f"of the processor on {machine.describe()}.",
         *TEXT.format(phases=phases).rstrip().splitlines(),
         "",
         table(),

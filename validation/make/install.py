@@ -137,8 +137,8 @@ def text(steps, sizes, files):
     lines += [
         "## Where libraries cannot be loaded",
         "",
-        f"Drawing stress without a screen needs one of {', '.join(HIDDEN)}, gmsh needs {', '.join(MESHER)}. They are hidden by empty",
-        "files of their names that are found first.",
+        f"Drawing stress without a screen needs one of {', '.join(HIDDEN)}, gmsh needs {', '.join(MESHER)}. They are hidden by",
+        "empty files of their names that are found first.",
         "",
         "| tried | as it should | last line printed |",
         "|---|---|---|",

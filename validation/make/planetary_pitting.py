@@ -190,17 +190,23 @@ def draw(folder):
     from gearfe.pictures.vibration_plots import plot_spectra
 
     phase, ours, printed = lengths()
-    plot_lengths(phase, ours, printed, folder / "planetary_pitting_lines.png")
+    plot_lengths(
+        phase, ours, printed, folder / "planetary_pitting_lines.png", title=f"{NAME}, sun_planet", told="S0's half chord"
+    )
     names = ["phase", *(f"L {name} [mm]" for name in ours), *(f"L {name} by S0's chord [mm]" for name in printed)]
     columns = np.transpose([phase, *ours.values(), *printed.values()])[::4]
     np.savetxt(folder / "tables" / "planetary_pitting_lines.csv", columns, "%.6g", ",", header=",".join(names), comments="")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
-    plot_spectra(spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=60)
+    plot_spectra(
+        spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=60, title=f"{NAME}, force of a sun mesh, impact law"
+    )
     carrier, turn = speeds()[1] / 60, speeds()[3] / scene(NAME).machine["n_planets"]
     lines = {"f_m": speeds()[2], "f_m + f_1 + f_c": speeds()[2] + turn + carrier, "f_m + f_1 - f_c": speeds()[2] + turn - carrier}
     heard = {case: _housing(case) for case in ("healthy", *CASES)}
-    plot_spectra(heard, lines, folder / "planetary_pitting_housing.png", 400.0, dpi=70)
+    plot_spectra(
+        heard, lines, folder / "planetary_pitting_housing.png", 400.0, dpi=70, title=f"{NAME}, ring's forces at the housing"
+    )
 
 
 SIMULATED = {

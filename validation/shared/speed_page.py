@@ -74,13 +74,15 @@ def _percent(text):
 def _plot():
     from matplotlib.figure import Figure
 
+    from gearfe.pictures.look import MARKS, look
+
     parts = [part for part in PARTS if load(part)]
     figure = Figure(figsize=(5.2 * len(parts), 3.8), layout="constrained")
     for axes, part in zip(figure.subplots(1, len(parts), squeeze=False)[0], parts, strict=True):
         rows = [row for row in load(part) if float(row["max error"]) > 0]
-        for family in dict.fromkeys(row["family"] for row in rows):
+        for number, family in enumerate(dict.fromkeys(row["family"] for row in rows)):
             line = [(float(row["seconds"]), 100 * float(row["max error"])) for row in rows if row["family"] == family]
-            axes.loglog(*zip(*line, strict=True), "o-", ms=4, label=family)
+            axes.loglog(*zip(*line, strict=True), marker=MARKS[number % len(MARKS)], ms=4, label=family, **look(number))
         for row in rows:
             if row["default"] == "1":
                 axes.loglog(float(row["seconds"]), 100 * float(row["max error"]), "o", ms=11, mfc="none", mec="k")

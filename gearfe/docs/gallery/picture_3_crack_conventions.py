@@ -32,5 +32,6 @@ for name, options in conventions.items():
 axes.set_xlabel("level [%]")
 axes.set_ylabel("largest loss of stiffness [%]")
 axes.legend()
+axes.set_title("18/27 teeth, 2500 N on 20 mm, crack of the pinion")
 figure.savefig("conventions.png")
 plt.close(figure)

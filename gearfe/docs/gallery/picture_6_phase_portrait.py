@@ -16,4 +16,4 @@ response = gf.simulate(machine, 0.1)
 late = response.time > 0.08
 channel = response.names[0]
 signal = gf.Signal(response[channel][late], rate=1 / response.time[1], unit="m", name=channel)
-gf.plot_phase(gf.phase_portrait(signal), gf.poincare_section(signal, 3500.0), "m", "phase.png")
+gf.plot_phase(gf.phase_portrait(signal), gf.poincare_section(signal, 3500.0), "m", "phase.png", "single mesh, near resonance")

@@ -31,8 +31,9 @@ for level in (0.1, 0.3, 0.6):
     axes.plot(cracked.phase, cracked.k / 1e6, label=f"crack {100 * level:.0f} %")
     print(f"crack of {100 * level:2.0f} %: largest loss of stiffness {100 * (1 - cracked.k / healthy.k).max():4.1f} %")
 axes.set_xlabel("phase of the damaged tooth [mesh cycles]")
-axes.set_ylabel("k [N/um]")
+axes.set_ylabel("k [N/µm]")
 axes.legend()
+axes.set_title("18/27 teeth, 1250 N on 10 mm, cracks of the pinion")
 figure.savefig("cracks.png")
 plt.close(figure)
 

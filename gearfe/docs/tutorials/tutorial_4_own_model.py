@@ -51,8 +51,9 @@ figure, axes = plt.subplots(layout="constrained")
 for name, curve in result.curves.items():
     axes.plot(curve.phase, curve.k / 1e6, label=name, linewidth=3 if name == "fe" else 1)
 axes.set_xlabel("phase")
-axes.set_ylabel("k [N/um]")
+axes.set_ylabel("k [N/µm]")
 axes.legend()
+axes.set_title("planetary_pitting, sun_planet, healthy, 2000 N")
 figure.savefig("compared.png")
 plt.close(figure)
 

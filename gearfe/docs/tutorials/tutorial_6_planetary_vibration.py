@@ -44,7 +44,7 @@ for case, response in responses.items():
 spectra = {case: gf.spectrum(signal) for case, signal in signals.items()}
 stage = machine.stages[-1]
 lines = gf.expected_lines(stage.mesh, stage.fault, count=3)
-gf.plot_spectra(spectra, lines, "spectra.png")
+gf.plot_spectra(spectra, lines, "spectra.png", title="compound_planetary, sun2.theta acceleration")
 
 # %%
 for name in ("f_m", "f_m - f_fault", "f_m + f_fault", "f_fault"):

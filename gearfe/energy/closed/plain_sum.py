@@ -64,7 +64,7 @@ def plain_sum(
         or the slices in it with all they carry (slices that know nothing of each other). The material it takes
         weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
     flanks : (FlankForm, FlankForm), optional
-        Modifications of spur gears without pits: a pair whose gap is not closed carries nothing.
+        Modifications: a slice whose gap is not closed carries nothing.
     **variants
         Passed on to ``formulas.components``.
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from geometry.pair.lines import covered, halves
+from geometry.pair.modified import first_touch
 
 RULES = {False: leggauss(1), True: leggauss(24)}
 SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
@@ -63,7 +64,7 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
         What a pit takes from a pair: part of its contact stiffness (the touching part of the line), or the slices it covers
         with all their stiffness.
     flanks : (FlankForm, FlankForm), optional
-        Modifications, of spur gears without pits.
+        Modifications: each slice touches where its section first does.
     edges : callable, optional
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
 
@@ -83,26 +84,21 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
         whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
         gap = None if flanks is None else found.gap[i, j]
         return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
-    if flanks is not None:
-        raise ValueError(
-            "modified flanks with pits or helical teeth: a plain sum has them for healthy spur gears and cracks only"
-        )
     rows, taken = [], _taken(pair, phase, order, pits, bands)
     for i, p in enumerate(phase):
         for j, number in enumerate(order):
             for k, band in enumerate(bands):
                 found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()))
                 rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
-    table = np.concatenate(rows) if rows else np.zeros((0, 5))
-    return Stations(
-        order,
-        table[:, 0].astype(int),
-        table[:, 1].astype(int),
-        table[:, 2],
-        pair.mate_roll(table[:, 2]),
-        table[:, 3],
-        table[:, 4],
-    )
+    table = np.concatenate(rows) if rows else np.zeros((0, 6))
+    (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
+    roll_2, gap = pair.mate_roll(roll), None
+    if flanks is not None:
+        backwards = len(bands) == 1 and lag > 0 and pair.gear_1.beta > 0  # there, the end z = b touches first
+        z = bands[0][1] - table[:, 5] if backwards else table[:, 5]
+        met = first_touch(pair, flanks, roll, order[j], np.zeros(roll.size), z)
+        roll, roll_2, gap = met.roll_1, met.roll_2, met.gap
+    return Stations(order, i, j, roll, roll_2, weight, touching, gap)
 
 
 def _taken(pair, phase, order, pits, bands):
@@ -120,7 +116,7 @@ def _taken(pair, phase, order, pits, bands):
 
 
 def _line(pair, place, taken, band, lost, edges):
-    """Stations (pinion roll, weight, touching) of one pair whose slice at the first end is at phase `place`."""
+    """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
     first, last, lag = band
     slack = 1e-9
     low, high = 0.0, 1.0
@@ -148,5 +144,6 @@ def _line(pair, place, taken, band, lost, edges):
         points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
         t = s + (e - s) * (1 + points) / 2
         at = roll[0] + (roll[1] - roll[0]) * t
-        out.append(np.column_stack([at, share * (e - s) / 2 * weights, np.full(t.size, left if lost == "hertz" else 1.0)]))
+        kept, z = np.full(t.size, left if lost == "hertz" else 1.0), first + (last - first) * t
+        out.append(np.column_stack([at, share * (e - s) / 2 * weights, kept, z]))
     return out

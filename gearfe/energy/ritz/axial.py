@@ -14,6 +14,7 @@ from numpy.polynomial import legendre
 
 from ...flexibility.halfspace import modes
 
+PUSHING = 8  # degree, at most, of forces between faces of a crack over the whole width: they touch at one point more
 OPEN = 6, 1.6  # degree of the opening along a part of the width: at least, and per normal module
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
@@ -26,8 +27,8 @@ class Axial:
 
     `mass`, `mixed`, `slope` (n, n): integrals of f f', f df' and df df'. `sets` are index arrays: the first the modes over
     the whole width, then for each crack those of its opening, those of forces that push its faces apart, and those of the nodes
-    near it. `points` of each crack are heights [mm] where its faces may touch, and `at` the values (points, functions of the
-    force) there.
+    near it, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its faces may touch, and `at`
+    the values (points, functions of the force) there.
     """
 
     mass: np.ndarray
@@ -87,11 +88,12 @@ def axial(width, degree, parts=(), m_n=1.0):
     for own in parts:
         own = own or ()
         sets.append(np.concatenate([part for band in own for part in (opening[band], *inside.get(band, ()))]) if own else every)
-        sets.append(np.concatenate([pushing[band] for band in own]) if own else every)
+        sets.append(np.concatenate([pushing[band] for band in own]) if own else every[: PUSHING + 1])
         sets.append(np.concatenate([every, *(part for band in own for part in short.get(band, ()))]))
-        place, matrix = _points(own or ((0.0, width),), [degrees[bands.index(band)] for band in own] or [degree])
+        place, matrix = _points(own or ((0.0, width),), [degrees[bands.index(band)] for band in own] or [min(degree, PUSHING)])
         points.append(place)
         at.append(matrix)
+    sets += [every[: k + 1] for k in range(degree + 1)]
     mass = value.T @ (weight * value)
     mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
     return Axial(mass, value.T @ (weight * rise), rise.T @ (weight * rise), tuple(sets), tuple(points), tuple(at))

@@ -21,8 +21,10 @@ from geometry.mesh.triangle import BULGE, jacobians, lagrange, table
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .axial import axial
+from .depth import degrees
 from .elimination import all_nodes, body_of, dissect, front, places
 from .panel import Panel, numbering
+from .short_edges import ORDER, bind, quadratic_edges
 
 CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
 NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
@@ -70,20 +72,26 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
     load = np.concatenate([load, apart], axis=2)
     every, nodes = all_nodes(numbers, count, order)
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
+    kinds[:nodes] = 1 + 3 * len(parts) + degrees(gear, sector, every, sides, width, degree, order)
+    side_kinds = kinds[sides]
     for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):
         kinds[_near(gear, sector, every, sector.faces[i])] = 3 + 3 * i
         kinds[right] = 1 + 3 * i
-    kinds[sides] = 0
+    kinds[sides] = side_kinds
     kinds[nodes + knots.shape[1] :] = [2 + 3 * i for i in owner]
     section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
-    body = body_of(every, load, section, along, sides=sides, held=chain(sector.held), seams=seams, kinds=kinds)
+    held = chain(sector.held)
+    if order == ORDER:
+        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
+    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds)
     ids, matrix = front(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
-    border = 3 * sides.size * (degree + 1)
+    sizes = body.size[sides] // 3
+    border = int(body.size[sides].sum())
     angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sides.size // 2)
-    edge = _polar(angle, _polar(angle, matrix[:border, :border]).T)
-    push = _polar(angle, matrix[:border, border:])
+    edge = _polar(angle, sizes, _polar(angle, sizes, matrix[:border, :border]).T)
+    push = _polar(angle, sizes, matrix[:border, border:])
     own = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
     n = knots.shape[1] * (degree + 1)
     points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
@@ -94,7 +102,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         open_push=push[:, n:] @ points.T,
         open_own=points @ own[n:, :n],
         open_open=points @ own[n:, n:] @ points.T,
-        unknowns=3 * count * (degree + 1),
+        unknowns=int(body.size[: body.first_load].sum()),
     )
 
 
@@ -128,11 +136,14 @@ def _near(gear, sector, numbers, face):
     return np.unique(numbers[:, close])
 
 
-def _polar(angle, matrix):
-    """Rows of side nodes at `angle`, from Cartesian to radial, tangential and axial components."""
-    sin, cos = np.sin(angle)[:, None], np.cos(angle)[:, None]
-    x, y, z = matrix.reshape(angle.size, 3, -1).transpose(1, 0, 2)
-    return np.stack([sin * x + cos * y, cos * x - sin * y, z], axis=1).reshape(matrix.shape)
+def _polar(angle, sizes, matrix):
+    """Rows of side nodes at `angle`, `sizes` for each component, from Cartesian to radial, tangential and axial ones."""
+    x = np.repeat(3 * np.cumsum(sizes) - 3 * sizes, sizes) + np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    y = x + np.repeat(sizes, sizes)
+    sin, cos = np.repeat(np.sin(angle), sizes)[:, None], np.repeat(np.cos(angle), sizes)[:, None]
+    out = matrix.copy()
+    out[x], out[y] = sin * matrix[x] + cos * matrix[y], cos * matrix[x] - sin * matrix[y]
+    return out
 
 
 def _section(sector, order, material, twist):

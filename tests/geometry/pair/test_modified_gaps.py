@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.tooth.modified import flank_forms
+from geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))

@@ -1,0 +1,103 @@
+"""All conditions of a data set, and on which side of the split each lies. A condition is one simulation of one machine.
+
+Windows of one condition resemble each other more than those of two machines of the same kind: were some of them trained on and
+others tested on, a classifier would be praised for recognising the machine. So a condition lies on one side as a whole, with all
+its windows, sensors and levels of noise.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..sweeps.samples import quantiles
+from .faults import HEALTHY
+from .plan import SIDES, Plan, combinations, operations
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """One simulation: its number, its class, its operation as drawn, what scatters by key, and its side of the split.
+
+    `nominal` is the number of its combination of speed and torque, `fault` the number of its fault in the plan (None: healthy),
+    `start` a number from 0 to 1 that says when the record begins.
+    """
+
+    number: int
+    label: str
+    fault: int | None
+    severity: float
+    nominal: int
+    speed: float
+    torque: float
+    scatter: dict[str, Any]
+    start: float
+    side: str
+
+    @property
+    def name(self) -> str:
+        """Of its file."""
+        return f"condition-{self.number:06d}"
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """What it sets in the scene, by key."""
+        return self.scatter | {"machine.speed_rpm": self.speed, "machine.torque_Nm": self.torque}
+
+
+def conditions(plan: Plan) -> list[Condition]:
+    """All conditions, always the same ones for the same plan.
+
+    Raises
+    ------
+    ValueError
+        If there are too few for the sides of the split.
+    """
+    made, points = [], operations(plan)
+    rows = [
+        (fault, severity, nominal)
+        for fault, severity, repeats in combinations(plan)
+        for nominal in range(len(points))
+        for _ in range(repeats)
+    ]
+    sides = _sides(plan, rows)
+    for number, (fault, severity, nominal) in enumerate(rows):
+        drawn = np.random.default_rng([plan.seed, number]).random(3 + len(plan.scatter))
+        factors = 1 + plan.operation["spread"] * (2 * drawn[:2] - 1)
+        speed, torque = (np.array(points[nominal]) * factors).tolist()
+        values = {key: quantiles(spec, drawn[3 + j : 4 + j])[0] for j, (key, spec) in enumerate(plan.scatter.items())}
+        label = HEALTHY if fault is None else fault["kind"]
+        at = None if fault is None else plan.fault.index(fault)
+        made.append(Condition(number, label, at, severity, nominal, speed, torque, values, float(drawn[2]), sides[number]))
+    return made
+
+
+def _sides(plan, rows):
+    """Side of each condition: of each class by shares, or of each operation."""
+    shares = np.array([plan.split[side] for side in SIDES])
+    rng = np.random.default_rng([plan.seed, 7])
+    if plan.split["by"] == "operation":
+        count = len(operations(plan))
+        of = _dealt(count, shares, rng, f"{count} combinations of speed and torque")
+        return [SIDES[of[nominal]] for *_, nominal in rows]
+    out = np.zeros(len(rows), dtype=int)
+    keys = [(None if fault is None else plan.fault.index(fault), severity) for fault, severity, _ in rows]
+    for key in dict.fromkeys(keys):
+        own = [i for i, one in enumerate(keys) if one == key]
+        told = HEALTHY if key[0] is None else f"{plan.fault[key[0]]['kind']} {key[1]:g}"
+        out[own] = _dealt(len(own), shares, rng, f"{len(own)} conditions of {told}")
+    return [SIDES[i] for i in out]
+
+
+def _dealt(count: int, shares: NDArray[np.float64], rng: np.random.Generator, told: str) -> NDArray[np.int64]:
+    """Number of the side of each of `count`, in random order: the shares rounded, one at least for each side that has a share."""
+    wanted = shares > 0
+    if count < wanted.sum():
+        raise ValueError(f"[split] {told} for {wanted.sum()} sides: give more repeats or operations, or fewer sides")
+    sizes = np.where(wanted, np.maximum(np.floor(shares * count), 1), 0).astype(int)
+    while sizes.sum() > count:
+        sizes[np.argmax(sizes)] -= 1
+    for i in np.argsort(sizes - shares * count)[: count - sizes.sum()]:
+        sizes[i] += 1
+    return rng.permutation(np.repeat(np.arange(shares.size), sizes))

@@ -1,0 +1,65 @@
+"""Natural frequencies and modes of a machine, in a frame that stands or turns."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigh
+
+from .tables import Machine
+from .turning_frame import frame_terms
+
+RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-body mode
+
+
+def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Natural frequencies and modes without damping, meshes at their mean stiffness.
+
+    Parameters
+    ----------
+    machine : Machine
+    x : ndarray, shape (m,), optional
+        Mesh compressions [m] about which laws that are not linear are taken; default: those at rest.
+
+    Returns
+    -------
+    frequencies : ndarray, shape (n,)
+        [Hz], rising; 0 for rigid-body modes.
+    modes : ndarray, shape (n, n)
+        In columns, ``modes.T @ diag(mass) @ modes = 1``. Of a machine with a `spin` they are complex, of modal mass 1.
+    """
+    if x is None and (machine.law["power"] != 1).any():
+        x = machine.G @ machine.rest()
+    K = machine.linear(x)[0] - machine.frame
+    if machine.spin:
+        return _whirling(machine, K)
+    squared, modes = modal(K, machine.mass)
+    return np.sqrt(squared) / (2 * math.pi), modes
+
+
+def _whirling(machine, K):
+    """Natural frequencies and complex modes of an undamped machine in a frame that turns."""
+    n, mass = len(machine.mass), machine.mass
+    gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin)
+    inner = np.block([[np.zeros((n, n)), np.eye(n)], [-(K + centripetal) / mass[:, None], -gyroscopic / mass[:, None]]])
+    values, vectors = np.linalg.eig(inner)
+    order = np.argsort(values.imag)[n:]  # of each pair the one that turns forward
+    modes = vectors[:n, order]
+    modes = modes / np.sqrt((mass[:, None] * np.abs(modes) ** 2).sum(axis=0))
+    top = values.imag.max()
+    return np.where(values.imag[order] < math.sqrt(RIGID) * top, 0.0, values.imag[order]) / (2 * math.pi), modes
+
+
+def modal(K: NDArray[np.float64], mass: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Squared angular frequencies, exactly 0 for rigid-body modes, and modes of unit modal mass.
+
+    Raises
+    ------
+    ValueError
+        If the stiffness is not positive semi-definite.
+    """
+    scale = 1 / np.sqrt(mass)
+    squared, modes = eigh(K * scale[:, None] * scale[None, :])
+    if squared[0] < -1e-8 * squared[-1]:
+        raise ValueError(f"the stiffness matrix has a negative eigenvalue {squared[0]:.4g}: a spring of negative stiffness?")
+    return np.where(squared < RIGID * squared[-1], 0.0, squared), scale[:, None] * modes

@@ -1,0 +1,114 @@
+"""A speed that changes: the profile of a run-up, and how far the gears have turned at any time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from .tables import Machine
+
+
+@dataclass(frozen=True, slots=True)
+class Speed:
+    """Speed of all shafts over that for which a machine states its frequencies, straight between `times`.
+
+    Before the first and after the last time it stays. What depends on the angle of the gears - phases of the meshes, damaged
+    teeth, errors, the carrier - is taken at the *turned* time, the integral of the speed: a phase is integrated and never the
+    product of a changing frequency and the time.
+
+    Parameters
+    ----------
+    times : sequence of float
+        Rising [s].
+    factors : sequence of float
+        Speed over the nominal one, 0 or more.
+
+    Attributes
+    ----------
+    knots : ndarray, shape (n, 3)
+        Time [s], factor and turned time [s]; turned time and time are 0 together.
+
+    Examples
+    --------
+    From standstill to full speed in two seconds half of the turns are made:
+
+    >>> run_up = Speed((0.0, 2.0), (0.0, 1.0))
+    >>> float(run_up.turned(2.0)), float(run_up.turned(3.0)), float(run_up(1.0))
+    (1.0, 2.0, 0.5)
+    """
+
+    times: Sequence[float]
+    factors: Sequence[float]
+    knots: NDArray[np.float64] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Integrate; refuse what is no profile."""
+        times, factors = np.asarray(self.times, dtype=float), np.asarray(self.factors, dtype=float)
+        if times.ndim != 1 or times.shape != factors.shape or not times.size:
+            raise ValueError(f"speed: give as many times as factors, got shapes {times.shape} and {factors.shape}")
+        if not (np.isfinite(times).all() and np.isfinite(factors).all() and (factors >= 0).all() and factors.any()):
+            raise ValueError("speed: times and factors must be finite, the factors 0 or more and one of them above 0")
+        if not (np.diff(times) > 0).all():
+            at = int(np.argmin(np.diff(times) > 0)) + 1
+            raise ValueError(f"speed: time {times[at]:g} s follows {times[at - 1]:g} s, but times must rise")
+        turned = np.concatenate([[0.0], np.cumsum(np.diff(times) * (factors[1:] + factors[:-1]) / 2)])
+        object.__setattr__(self, "knots", np.stack([times, factors, turned], axis=1))
+        self.knots[:, 2] -= float(self.turned(0.0))
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Factor at times `t`."""
+        return np.interp(np.asarray(t, dtype=float), self.knots[:, 0], self.knots[:, 1])
+
+    def turned(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Time in which the nominal speed turns the gears as far as they have turned at times `t` [s]."""
+        return turned(self.knots, np.asarray(t, dtype=float))
+
+    @property
+    def fastest(self) -> float:
+        """Largest factor."""
+        return float(self.knots[:, 1].max())
+
+
+def turned(knots, t):
+    """As `Speed.turned`, from its knots: the exact integral of straight pieces."""
+    place = np.clip(np.searchsorted(knots[:, 0], t, side="right") - 1, 0, len(knots) - 1)
+    start, first, angle = (knots[place, i] for i in range(3))
+    return angle + (t - start) * (first + np.interp(t, knots[:, 0], knots[:, 1])) / 2
+
+
+def with_speed(machine: "Machine", times: Sequence[float], factors: Sequence[float]) -> "Machine":
+    """The machine with a speed that changes: a run-up, a coast-down, a drive that wavers.
+
+    The phases of all meshes are integrated; damaged teeth, errors and the carrier follow them. Loads keep their own histories:
+    give the torque that goes with the profile by ``(times, values)``, what speeds the rotors up included - the machine vibrates
+    about the motion stated here and does not produce it. Stiffness curves are those of one load, and the weights of Coulomb
+    friction those of the nominal speed.
+
+    Parameters
+    ----------
+    machine : Machine
+    times : sequence of float
+        [s]
+    factors : sequence of float
+        Speed over that of the machine at these times; straight between them.
+
+    Returns
+    -------
+    Machine
+
+    Raises
+    ------
+    ValueError
+        If the times do not rise, or a factor is negative or not finite.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> machine = gf.with_speed(gf.single_mesh(1.0, 1e8, 500.0), [0.0, 1.0], [0.2, 1.2])
+    >>> float(machine.turned(1.0))  # the mean factor is 0.7
+    0.7
+    """
+    return replace(machine, speed=Speed(tuple(map(float, times)), tuple(map(float, factors))))

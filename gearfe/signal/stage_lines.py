@@ -1,0 +1,102 @@
+"""Where the lines of a planetary stage lie in what a sensor on its ring or housing receives."""
+
+import math
+
+
+def stage_lines(
+    sun: int,
+    ring: int,
+    n_planets: int,
+    carrier: float,
+    *,
+    damaged: str | None = None,
+    equal: bool = True,
+    harmonics: int = 1,
+    turns: int = 3,
+    window: int = 1,
+) -> dict[str, float]:
+    """Frequencies of a planetary stage with a fixed ring and equally spaced planets, as a sensor that stands still finds them.
+
+    Planet p is at the angle ``2 pi (f_c t + p / N)`` and is heard through a window over that angle, whose harmonics j up to
+    `window` shift its lines by j f_c. Its forces are those of planet 0 at another time: multiples n of the mesh frequency
+    ``f_m = ring f_c`` have phases ``n ring p / N``, and what repeats with the turns of the sun relative to the carrier,
+    ``f_t = f_m / sun``, comes ``p / (N f_t)`` later. Summed over the planets a line is left only where all agree::
+
+        n f_m + j f_c           if n ring + j is a multiple of N   (healthy, or a damaged ring: then with j of any size)
+        n f_m + q f_t + j f_c   if n ring - q + j is a multiple of N   (a damaged sun tooth)
+        n f_m + q f_t + j f_c   all of them   (a damaged tooth of one planet: f_t = f_m / planet)
+
+    Planets that are not equal leave all lines of the first row, too.
+
+    Parameters
+    ----------
+    sun, ring : int
+        Numbers of teeth; the planets have ``(ring - sun) / 2``, or nearly so.
+    n_planets : int
+    carrier : float
+        f_c, turns of the carrier per second [Hz].
+    damaged : {"sun", "planet", "ring"}, optional
+        Which gear has a damaged tooth.
+    equal : bool
+        Whether all planets are alike and share the load alike.
+    harmonics : int
+        n goes up to it.
+    turns : int
+        Of a damaged gear: q goes up to it, j of a damaged ring up to it times `n_planets`.
+    window : int
+        Highest harmonic of the window: 1 for that of `gearfe.housing_signal`.
+
+    Returns
+    -------
+    dict of str to float
+        ``f_m``, ``f_m + f_c``, ``f_m - 2 f_t + f_c``, ... [Hz], above 0; for `gearfe.find_lines`. Lines of the same frequency are
+        named once.
+
+    References
+    ----------
+    P. D. McFadden, J. D. Smith, Proc. Inst. Mech. Eng. C 199 (1985) 65-70; M. Inalpolat, A. Kahraman, J. Sound Vib. 323 (2009)
+    677-696, for healthy stages; X. Liang, M. J. Zuo, M. R. Hoseini, Struct. Health Monit. 14 (2015) 488-505, on damaged suns.
+
+    Examples
+    --------
+    Three planets whose meshes follow each other: of both carrier sidebands one is left, the mesh line itself is gone.
+
+    >>> stage_lines(20, 82, 3, 5.0)
+    {'f_m - f_c': 405.0}
+    """
+    _check(sun, ring, n_planets, carrier, damaged)
+    mesh, planet = ring * carrier, round((ring - sun) / 2)
+    turn = {"sun": mesh / sun, "planet": mesh / planet}.get(damaged or "", 0.0)
+    reach, spread = (turns, window) if turn else (0, turns * n_planets if damaged == "ring" else window)
+    found: dict[str, float] = {}
+    rows = [(n, q, j) for n in range(harmonics + 1) for q in range(-reach, reach + 1) for j in range(-spread, spread + 1)]
+    for n, q, j in sorted(rows, key=lambda row: (sum(map(bool, row)), sum(map(abs, row)))):
+        agree = (n * ring - (q if damaged == "sun" else 0) + j) % n_planets == 0
+        free = damaged == "planet" or (not equal and (damaged == "sun" or not q))
+        value = n * mesh + q * turn + j * carrier
+        if value > 1e-9 * mesh and (agree or free) and not any(math.isclose(value, other) for other in found.values()):
+            found[_named(n, q, j)] = value
+    return dict(sorted(found.items(), key=lambda item: item[1]))
+
+
+def _check(sun, ring, n_planets, carrier, damaged):
+    for name, value in {"sun": sun, "ring": ring, "n_planets": n_planets}.items():
+        if isinstance(value, bool) or value != int(value) or value < 1:
+            raise ValueError(f"{name} = {value!r}, but give a whole number above 0")
+    if ring <= sun:
+        raise ValueError(f"ring = {ring}, sun = {sun}: a ring has more teeth than its sun")
+    if (sun + ring) % n_planets:
+        raise ValueError(f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole")
+    if not 0 < carrier < math.inf:
+        raise ValueError(f"carrier = {carrier} Hz, but give a positive number")
+    if damaged not in (None, "sun", "planet", "ring"):
+        raise ValueError(f"damaged = {damaged!r}, but it must be 'sun', 'planet' or 'ring'")
+
+
+def _named(*counts):
+    out = ""
+    for count, name in zip(counts, ("f_m", "f_t", "f_c"), strict=True):
+        if count:
+            size = name if abs(count) == 1 else f"{abs(count)} {name}"
+            out += (f" {'+' if count > 0 else '-'} " if out else "-" * (count < 0)) + size
+    return out

@@ -1,0 +1,125 @@
+"""The flanks of a pair on their gears, and axes that are not parallel: what every contact model asks for gaps."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from ..tooth.modified import Flank, FlankForm
+
+STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
+
+
+@dataclass(frozen=True, slots=True)
+class Misalignment:
+    """Axes of a gear pair that are not parallel.
+
+    Only what is left in the plane of action matters; over the common width b the flanks of a pair then open by::
+
+        F_beta + (f_sigma_beta cos(alpha_w) + f_sigma_delta sin(alpha_w)) b / length
+
+    more at z = b than at z = 0 (heights as of a `Pit`); none in the middle of the width.
+
+    Parameters
+    ----------
+    F_beta : float
+        Equivalent misalignment in the plane of action over the common width, F_beta_x of ISO 6336-1 [mm]; positive: at z = b the
+        flanks are further apart, as if material were removed there.
+    f_sigma_beta, f_sigma_delta : float
+        Deviations of the axes from being parallel, out of the plane of the axes and in it (ISO/TR 10064-3), over `length` [mm];
+        the same sign: each positive one opens the flanks at z = b.
+    length : float, optional
+        Distance along the axis over which they are stated, the span of the bearings [mm].
+
+    Raises
+    ------
+    ValueError
+        If a number is not finite, or a deviation of the axes is given without its length.
+
+    Examples
+    --------
+    >>> Misalignment(F_beta=0.012)
+    Misalignment(F_beta=0.012, f_sigma_beta=0.0, f_sigma_delta=0.0, length=None)
+    """
+
+    F_beta: float = 0.0
+    f_sigma_beta: float = 0.0
+    f_sigma_delta: float = 0.0
+    length: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no misalignment."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if name == "length" and value is None:
+                continue
+            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+                raise ValueError(f"misalignment: {name} = {value!r}, but it needs a finite number [mm]")
+        if self.length is not None and not self.length > 0:
+            raise ValueError(f"misalignment: length = {self.length:g} mm, but the bearings are some way apart: give length > 0")
+        if (self.f_sigma_beta or self.f_sigma_delta) and self.length is None:
+            raise ValueError(
+                "misalignment: f_sigma_beta and f_sigma_delta are deviations over a length: give length, the span of the "
+                "bearings [mm]"
+            )
+
+
+def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
+    """How much the flanks of a `GearPair` open by height because its axes are askew [mm/mm].
+
+    Raises
+    ------
+    ValueError
+        If it is no `Misalignment`, or larger than any gears can run with.
+    """
+    if misalignment is None:
+        return 0.0
+    if not isinstance(misalignment, Misalignment):
+        raise ValueError(f"misalignment = {misalignment!r}, but give a Misalignment(F_beta=...) [mm]")
+    one = misalignment
+    askew = one.f_sigma_beta * math.cos(pair.alpha_w) + one.f_sigma_delta * math.sin(pair.alpha_w)
+    tilt = one.F_beta / min(pair.gear_1.b, pair.gear_2.b) + (askew / one.length if one.length else 0.0)
+    if abs(tilt) > STEEPEST:
+        raise ValueError(
+            f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes bear no more than "
+            f"{1e3 * STEEPEST:g}: amounts are in mm (20 um are 0.02)"
+        )
+    return tilt
+
+
+def flank_forms(
+    pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
+) -> tuple[FlankForm, FlankForm] | None:
+    """Flanks of pinion and wheel on their gears; None if nothing differs from the involute.
+
+    Parameters
+    ----------
+    pair : GearPair
+    flanks : dict, optional
+        ``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them.
+    misalignment : Misalignment, optional
+        Of the axes; both gears take half of it.
+
+    Raises
+    ------
+    ValueError
+        If it is something else, or a flank does not fit its gear.
+    """
+    tilt = tilt_of(pair, misalignment)
+    if flanks is None and not tilt:
+        return None
+    flanks = {} if flanks is None else flanks
+    if not isinstance(flanks, Mapping):
+        raise ValueError(f"flanks = {flanks!r}, but give them by gear: {{'pinion': Flank(...), 'wheel': Flank(...)}}")
+    unknown = set(flanks) - {"pinion", "wheel"}
+    if unknown:
+        raise ValueError(f"flanks of {unknown.pop()!r}, but they are given for 'pinion' and 'wheel'")
+    for name, one in flanks.items():
+        if not (one is None or isinstance(one, Flank)):
+            raise ValueError(f"flanks of the {name}: {one!r} is no Flank")
+    given = [flanks.get(name) or Flank() for name in ("pinion", "wheel")]
+    first, second = (one.on(gear) for one, gear in zip(given, (pair.gear_1, pair.gear_2), strict=True))
+    if not tilt and all(one == Flank() for one in given):
+        return None
+    return first.tilted(tilt / 2), second.tilted(tilt / 2)

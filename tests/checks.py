@@ -1,0 +1,31 @@
+"""Independent checks that several tests share."""
+
+import math
+
+import numpy as np
+
+from geometry.tooth.profile import fillet, flank, form_point
+
+
+def form_mismatch(gear):
+    """Distance [mm] between fillet and involute at the form point: zero up to rounding."""
+    phi, roll = form_point(gear)
+    radius, angle = fillet(gear, phi)
+    return float(radius * (angle - flank(gear, roll)[1]))
+
+
+def pit_loss(pair, *, count, diameter, radius=None):
+    """Part of the contact line of a spur tooth lost to a row of circular pits, as a function of its phase, as S0 has it.
+
+    Pits of `diameter` [mm] lie side by side across the width at `radius` of the pinion (default: its pitch point); each takes the
+    chord at which the line of contact crosses it.
+    """
+    gear, width = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
+    centre = math.sqrt((radius or pair.pitch_radius_1) ** 2 - gear.r_b**2)
+
+    def lost(phase):
+        roll = pair.path[0] + np.asarray(phase) * pair.p_bt
+        along = (roll**2 - centre**2) / (2 * gear.r_b)  # arc of an involute
+        return count * 2 * np.sqrt(np.maximum(diameter**2 / 4 - along**2, 0.0)) / width
+
+    return lost

@@ -1,0 +1,61 @@
+"""``gearfe signal`` on files of others: channels listed and chosen, turns by a tachometer, pictures."""
+
+import re
+
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from gearfe.cli import main
+
+RATE, Z = 4000.0, 20
+TIME = np.arange(int(3 * RATE)) / RATE
+
+
+@pytest.fixture
+def runs(tmp_path):
+    """A gear of 20 teeth that speeds up, with a tachometer; in the second record a tooth knocks."""
+    turns = 10 * TIME + TIME**2
+    for name, knock in (("new", 0.0), ("worn", 4.0)):
+        noise = 0.2 * np.random.default_rng(len(name)).standard_normal(TIME.size)
+        x = np.cos(2 * np.pi * Z * turns) + knock * np.exp(-((((turns % 1) - 0.5) / 0.004) ** 2)) + noise
+        savemat(tmp_path / f"{name}.mat", {"run": {"acc": x, "tacho": 5.0 * (turns % 1 < 0.3), "fs": RATE}})
+    return tmp_path
+
+
+def test_a_gear_with_a_tachometer(runs, capsys):
+    line = ["signal", str(runs / "new.mat"), str(runs / "worn.mat"), "--unit", "m/s^2", "--column", "acc", "--tacho", "tacho"]
+    pictures = ["--cepstrum", str(runs / "c.png"), "--spectrogram", str(runs / "s.png")]
+    assert main([*line, "--teeth", str(Z), *pictures]) == 0
+    out = capsys.readouterr().out
+    rows = {m[1]: (float(m[2]), float(m[3])) for m in re.finditer(r"^\| (\S+) \| ([\d.]+) \| ([\d.]+) \|$", out, re.MULTILINE)}
+    assert rows["FM4"][1] > 2 * rows["FM4"][0]
+    assert rows["NA4"][1] > 2 * rows["NA4"][0]
+    assert (runs / "c.png").stat().st_size > 5000
+    assert (runs / "s.png").stat().st_size > 5000
+
+
+def test_channels_are_listed(runs, capsys):
+    assert main(["signal", str(runs / "new.mat"), "--list"]) == 0
+    assert "run.tacho [no unit]: 12000 samples" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--unit", "g"], "2 channels, 'run.acc', 'run.tacho': choose one by --column"),
+        (["--unit", "g", "--column", "acc", "--teeth", "20"], "--teeth needs the turns of that gear's shaft"),
+        (["--unit", "g", "--column", "acc", "--tacho", "speed"], "no column 'speed'; it has 'run.acc', 'run.tacho'"),
+        (["--unit", "g", "--column", "acc", "--header", "a"], "only text tables can lack names"),
+        (["--column", "acc", "--scale", "0"], "scale = 0.0, but give a finite factor"),
+    ],
+)
+def test_what_cannot_be_is_said(runs, options, message, capsys):
+    assert main(["signal", str(runs / "new.mat"), *options]) == 1
+    assert message in capsys.readouterr().err
+
+
+def test_a_table_without_names(runs, capsys):
+    np.savetxt(runs / "bare.txt", np.transpose([TIME[:2000], np.cos(900 * TIME[:2000])]), delimiter="\t", fmt="%.6f")
+    assert main(["signal", str(runs / "bare.txt"), "--header", "time [s], a [V]", "--scale", "100", "--unit", "m/s^2"]) == 0
+    assert "| peak (from the mean) | 100" in capsys.readouterr().out

@@ -1,0 +1,169 @@
+"""Decks of whole pairs in three dimensions: that the bodies touch, that the deck is whole, and CalculiX's verdict."""
+
+import math
+import shutil
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.elements.hexahedron import gauss, shapes
+from gearfe.elements.solid_deck import FACES, TWENTY, sides_of
+from geometry.tooth.profile import flank
+from validation.make import outsider_three
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+APPROACH = 0.015  # mm
+PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2, tooth=1)
+
+
+def pair_of(degrees, *, ring=False):
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
+    beta = math.radians(degrees)
+    first = gf.Gear(z=13, x=0.3, r_bore=8.0, beta=beta, **rack)
+    if ring:
+        return gf.GearPair(first, gf.Gear(z=30, r_rim=39.0, tip_radius=0.2, addendum=0.8, beta=beta, **rack))
+    return gf.GearPair(first, gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-beta, **rack))
+
+
+def written(tmp_path, pair, **options):
+    face = "helical" if pair.gear_1.beta else "spur"
+    return gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, APPROACH, 300.0, (STEEL, STEEL), face=face, **options)
+
+
+def depth(pair, part, order):
+    """Gap [mm], as a turn of the wheel times r_b2, from the nodes of the wheel's flank of a pair to the pinion's, at equal z.
+
+    A point of the wheel is on the pinion's flank of that pair if its angle about the pinion is that flank's.
+    """
+    gear = pair.gear_1
+    x, y, z = part.points[:, np.unique(part.faces[f"flank {-order % pair.gear_2.z}"])]
+    radius = np.hypot(x, y)
+    there = (radius > gear.r_form) & (radius < gear.r_a)
+    ahead = 0.45 * pair.p_bt + math.tan(gear.beta_b) * (z - (pair.gear_1.b if gear.beta > 0 else 0.0))
+    turn = (pair.path[0] + ahead) / gear.r_b - math.tan(pair.alpha_w)
+    # at the pitch point, n = r_b tan(alpha_w), the flank's point is straight above the centre
+    pitch = flank(gear, np.array(gear.r_b * math.tan(pair.alpha_w)))[1]
+    own = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1] - pitch + turn + 2 * math.pi * order / gear.z
+    return ((np.arctan2(x, y) - own) * gear.r_b)[there]
+
+
+@pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
+@pytest.mark.parametrize(
+    ("degrees", "ring"), [(15.0, False), (15.0, True), *(pytest.param(d, False, marks=pytest.mark.slow) for d in (-15.0, 0.0))]
+)
+def test_flanks_touch_along_their_lines_and_nowhere_overlap(tmp_path, degrees, ring):
+    pair = pair_of(degrees, ring=ring)
+    deck = written(tmp_path, pair)
+    for order in deck.slaves:
+        gap = depth(pair, deck.parts[1], order)
+        assert gap.min() > -2e-3 * 0.5  # nodes only; conjugate flanks share their contact line and nothing else
+        assert gap.min() < 5e-3
+    assert sorted(deck.slaves) == ([0, 1] if degrees else [0])
+
+
+def test_hexahedra_of_a_mirrored_ring_are_right_handed(tmp_path):
+    slopes = shapes(gauss(2)[0])[1]
+    for part in written(tmp_path, pair_of(15.0, ring=True)).parts:
+        nodes = part.points[:, part.cells[np.argsort(TWENTY)]]
+        assert np.linalg.det(np.einsum("dkm,kcq->mqdc", nodes, slopes)).min() > 0
+
+
+@pytest.fixture(scope="module")
+def damaged(tmp_path_factory):
+    """Path and deck of a pair with a pit on the pinion's tooth 1 and a crack of half the width in the wheel."""
+    folder = tmp_path_factory.mktemp("deck")
+    damage = {"pinion": [PIT], "wheel": [gf.Crack(level=0.4, width=(0.0, 3.0))]}
+    return folder / "p.inp", written(folder, pair_of(15.0), damage=damage)
+
+
+def test_deck_is_whole(damaged):
+    path, deck = damaged
+    text = path.read_text()
+    tets, bricks = (part.cells.shape[1] for part in deck.parts)
+    assert (len(deck.parts[0].cells), len(deck.parts[1].cells)) == (10, 20)
+    assert text.count("*CONTACT PAIR") == len(deck.slaves) == 2
+    rows = text.split("*ELEMENT, TYPE=C3D20R")[1].split("*MATERIAL")[0].splitlines()[1::2]
+    assert [int(row.split(",")[0]) for row in rows] == list(range(tets + 1, tets + bricks + 1))
+    for part in deck.parts:  # every face of a flank is a side of one element
+        for name, faces in part.faces.items():
+            if name.startswith("flank"):
+                element, side = sides_of(part.cells, faces)
+                assert element.size == faces.shape[1]
+                corners = np.array(FACES[len(part.cells)])[side].T
+                assert (np.sort(part.cells[corners, element], axis=0).sum() == faces.sum()).all()
+    assert deck.parts[1].faces["crack 0 body"].shape == deck.parts[1].faces["crack 0 tooth"].shape
+    assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
+
+
+def test_nodes_of_tets_lie_on_the_involute(damaged):
+    part, gear = damaged[1].parts[0], pair_of(15.0).gear_1
+    element, side = sides_of(part.cells, part.faces["flank 1"])
+    middle = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
+    nodes = []
+    for e, corners in zip(element.tolist(), np.array(FACES[10])[side].tolist(), strict=True):
+        edges = zip(corners, corners[1:] + corners[:1], strict=True)
+        nodes += [part.cells[middle[min(a, b), max(a, b)], e] for a, b in edges]
+    x, y, z = part.points[:, np.unique(nodes)]
+    radius = np.hypot(x, y)
+    angle = np.arctan2(x, y) - gear.twist_rate * z - flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
+    assert np.ptp(angle) * gear.r_b < 1e-9  # all of them turned alike
+    assert "pits" in part.faces
+    assert part.faces["pits"].shape[1] > 10
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"face": "spur"}, "as they are"),
+        ({"face": "herringbone"}, "as they are"),
+        ({"pose": "left"}, "must be one of"),
+        ({"damage": {"ring": []}}, "pinion and wheel"),
+        ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
+        ({"flanks": {"pinion": gf.Flank(slope=0.002)}}, "only the section's mesh"),
+        ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
+    ],
+)
+def test_impossible_decks_are_refused(tmp_path, options, message):
+    run = {"face": "helical"} | options
+    with pytest.raises(ValueError, match=message):
+        gf.write_contact_inp(tmp_path / "p.inp", pair_of(15.0), 0.45, APPROACH, 300.0, (STEEL, STEEL), **run)
+
+
+def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
+    gear = pair_of(15.0).gear_1
+    deck = gf.write_line_inp(tmp_path / "g.inp", gear, 14.0, 100.0, STEEL, half_width=0.4, refine=0.4)
+    assert abs(np.linalg.norm(deck.load.sum(axis=0)) / 600.0 - 1) < 2e-3
+    axial = deck.load.sum(axis=0)[2] / np.linalg.norm(deck.load.sum(axis=0))
+    assert abs(axial - math.sin(gear.beta_b)) < 2e-3
+    with pytest.raises(ValueError, match="leaves the flank"):
+        gf.write_line_inp(tmp_path / "g.inp", gear, gear.r_a, 100.0, STEEL)
+    with pytest.raises(RuntimeError, match="is not there"):
+        deck.deflection(tmp_path / "none.dat")
+
+
+def test_page_is_made_from_its_table():
+    assert outsider_three.PAGE.read_text(encoding="utf-8") == outsider_three.page()
+
+
+needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")
+
+
+@needs_ccx
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(outsider_three.lines()))
+def test_calculix_under_a_line_load(name):
+    row = outsider_three.line_row(name, {"refine": 0.6})
+    print(f"{name}: {100 * outsider_three.apart(row):+.2f} %")
+    assert abs(outsider_three.apart(row)) < outsider_three.ASKED
+    on_file = outsider_three.stored().get((name, row["mesh"]))
+    assert on_file is None or math.isclose(float(row["theirs"]), float(on_file["theirs"]), rel_tol=1e-4)
+
+
+@needs_ccx
+@pytest.mark.slow
+def test_calculix_in_contact():
+    name = "helical, healthy"
+    row = outsider_three.contact_row(name, {"per_width": 1.0})
+    print(f"{name}: {100 * outsider_three.apart(row):+.2f} %")
+    assert abs(outsider_three.apart(row)) < outsider_three.ASKED

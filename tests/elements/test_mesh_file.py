@@ -1,0 +1,92 @@
+"""Meshes for other programs: read back, volumes and faces as they should be, what cannot be meshed refused."""
+
+import math
+
+import meshio
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.cli import main
+from geometry.mesh.holes import holed_sector
+
+GEAR = gf.Gear(z=13, x=0.3, r_bore=8.0, b=6.0, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(15))
+PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2)
+
+
+def volume(points, cells):
+    """Of straight tets [mm**3]."""
+    a, b, c, d = points[cells[:, :4]].transpose(1, 0, 2)
+    return np.einsum("im,im->i", np.cross(b - a, c - a), d - a) / 6
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".inp"])
+def test_a_cracked_gear_is_read_back(tmp_path, suffix):
+    crack = gf.Crack(level=0.5, width=(0.0, 3.0))
+    path = tmp_path / f"gear{suffix}"
+    made = gf.export_mesh(path, GEAR, [crack], refine=0.4)
+    found = meshio.read(path)
+    assert [block.type for block in found.cells] == ["hexahedron20"]
+    np.testing.assert_array_equal(found.cells[0].data, made.cells.T)
+    np.testing.assert_allclose(found.points, made.points.T, atol=1e-12)
+    sets = found.point_sets if suffix == ".inp" else {name: np.flatnonzero(v) for name, v in found.point_data.items()}
+    body, tooth = (np.sort(sets[f"crack_0_{side}"]) for side in ("body", "tooth"))
+    front = np.intersect1d(body, tooth)
+    assert 0 < front.size < body.size  # the faces share their front and nothing else
+    assert found.points[tooth, 2].max() <= 3.0 + 1e-9
+    np.testing.assert_allclose(np.hypot(*found.points[sets["held"], :2].T), 8.0, rtol=1e-12)
+
+
+def test_a_pit_is_missing_from_the_tooth(tmp_path):
+    part = gf.export_mesh(tmp_path / "t.vtu", GEAR, [PIT], teeth=1)
+    plugged = holed_sector(GEAR, (PIT,), teeth=1)
+    sizes = volume(part.points.T, part.cells.T)
+    assert sizes.min() > 0
+    lost = volume(plugged.points.T, plugged.cells.T).sum() - sizes.sum()  # straight edges, but for the flank's middles
+    assert abs(lost / (math.pi * 0.4**2 * 0.2) - 1) < 0.15  # its rim is a polygon
+    assert "pits" in meshio.read(tmp_path / "t.vtu").point_data
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"damage": [PIT], "cells": "hexahedra"}, "1 pits in hexahedra"),
+        ({"damage": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}, "at most one crack"),
+        ({"cells": "hexahedra", "teeth": 3}, "teeth = 3"),
+        ({"cells": "wedges"}, "one of tetrahedra, hexahedra"),
+        ({"teeth": 2}, "odd number"),
+    ],
+)
+def test_what_cannot_be_meshed_is_refused(tmp_path, options, message):
+    with pytest.raises(ValueError, match=message):
+        gf.export_mesh(tmp_path / "t.msh", GEAR, **options)
+    with pytest.raises(ValueError, match="no format"):
+        gf.export_mesh(tmp_path / "t.stl", GEAR)
+
+
+def test_the_verb_writes_the_cracked_gear(tmp_path, capsys):
+    assert main(["mesh", "compound_planetary", "--case", "crack50", "--refine", "0.4", "-o", str(tmp_path / "g.msh")]) == 0
+    assert "nodes" in capsys.readouterr().out
+    assert (tmp_path / "g.msh").exists()
+
+
+def test_a_close_up_needs_its_damage(tmp_path):
+    part = gf.export_mesh(tmp_path / "t.vtu", GEAR, teeth=1)
+    with pytest.raises(ValueError, match="have none"):
+        gf.render_mesh(part, tmp_path / "t.png", close_up="pits")
+    with pytest.raises(ValueError, match="'crack' or 'pits'"):
+        gf.render_mesh(part, tmp_path / "t.png", close_up="tip")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("close_up", [None, "crack", "pits"])
+def test_pictures_show_the_damage(tmp_path, close_up):
+    from matplotlib.image import imread
+
+    part = gf.export_mesh(tmp_path / "t.vtu", GEAR, [PIT, gf.Crack(level=0.5)], teeth=3)
+    gf.render_mesh(part, tmp_path / "t.png", close_up=close_up, size=(400, 300))
+    picture = imread(tmp_path / "t.png")[..., :3]
+    orange = (picture[..., 0] > picture[..., 2] + 0.4).mean()
+    print(f"{close_up}: {100 * orange:.2f} % orange")
+    assert orange > (0.002 if close_up else 0)
+    assert (picture.min(axis=2) < 0.9).mean() > 0.05

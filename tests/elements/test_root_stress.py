@@ -1,0 +1,75 @@
+"""Root stress along the width: limits of thin and wide spur gears, mirrored hands, bad input."""
+
+import math
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
+RADIUS, LOAD, HALF = 14.0, 100.0, 0.3  # mm, N/mm, mm
+
+
+def gear_of(b, degrees=0.0):
+    return gf.Gear(z=13, x=0.3, r_bore=8.0, b=b, beta=math.radians(degrees), **RACK)
+
+
+def solved(b, degrees=0.0, refine=0.7):
+    return gf.root_stress_along_width(gear_of(b, degrees), RADIUS, LOAD, STEEL, half_width=HALF, refine=refine)
+
+
+def mean(found, b):
+    """Over the width, end values carried to the faces."""
+    z, stress = np.concatenate([[0.0], found.z, [b]]), found.stress[[0, *range(found.z.size), -1]]
+    return np.trapezoid(stress, z) / b
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"line_load": -1.0}, "line_load"),
+        ({"radius": 9.0}, "not on the involute"),
+        ({"half_width": 5.0}, "half_width"),
+        ({"refine": 0.0}, "refine"),
+    ],
+)
+def test_bad_input_is_refused(change, message):
+    run = {"radius": RADIUS, "line_load": LOAD} | change
+    with pytest.raises(ValueError, match=message):
+        gf.root_stress_along_width(gear_of(2.0), material=STEEL, **run)
+
+
+@pytest.mark.slow
+def test_a_thin_gear_is_in_plane_stress():
+    plane = gf.root_stress(gear_of(0.4), RADIUS, LOAD, STEEL, half_width=HALF, state="plane stress")
+    found = solved(0.4)
+    print(f"b/m 0.2: largest {100 * (found.largest / plane - 1):+.2f} % of plane stress")
+    assert abs(found.largest / plane - 1) < 0.01
+    assert abs(found.height / 0.4 - 0.5) < 0.2
+
+
+@pytest.mark.slow
+def test_the_middle_of_a_wide_gear_is_in_plane_strain():
+    plane = gf.root_stress(gear_of(60.0), RADIUS, LOAD, STEEL, half_width=HALF)
+    away = [
+        abs(np.interp(b / 2, found.z, found.stress) / plane - 1)
+        for b, found in ((b, solved(b, refine=0.5)) for b in (10.0, 60.0))
+    ]
+    print(f"middle against plane strain: b/m 5 {100 * away[0]:.2f} %, b/m 30 {100 * away[1]:.2f} %")
+    assert away[1] < 0.01
+
+
+@pytest.mark.slow
+def test_opposite_hands_are_mirror_images():
+    one, other = (solved(6.0, degrees, refine=0.5) for degrees in (15.0, -15.0))
+    np.testing.assert_allclose(np.interp(6.0 - other.z, one.z, one.stress), other.stress, rtol=0.01)
+    print(f"helical 15 degrees, b/m 3: largest {one.largest:.1f} MPa at z = {one.height:.2f} mm of 6")
+
+
+@pytest.mark.slow
+def test_refining_changes_little():
+    values = [solved(6.0, 15.0, refine).largest for refine in (0.5, 0.7, 1.0)]
+    print("largest at refine 0.5, 0.7, 1:", *(f"{v:.2f}" for v in values))
+    assert abs(values[2] / values[1] - 1) < 0.005

@@ -1,0 +1,47 @@
+"""Pictures say what they show, and their lines can be told apart without colours."""
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.pictures.look import COLOURS, DASHES, MARKS, look
+from gearfe.pictures.stiffness_plots import plot_lengths
+from gearfe.pictures.vibration_plots import plot_phases, plot_spectra
+
+
+def test_lines_differ_by_colour_and_by_dashes():
+    assert len(set(COLOURS)) == len(set(map(str, DASHES))) == len(set(MARKS)) == 7
+    assert look(8) == look(1) != look(0)
+
+
+def test_names_of_near_lines_do_not_cover_each_other():
+    found = gf.spectrum(gf.Signal(np.random.default_rng(1).normal(size=4000), 1000.0, "m"))
+    lines = {"a": 200.0, "b": 200.5, "c": 201.0, "d": 260.0, "beyond": 499.0}
+    figure = plot_spectra({"healthy": found}, lines, top=300.0, title="scene, channel")
+    places = sorted(text.xy[0] for text in figure.axes[0].texts)
+    assert len(places) == 4, "a line outside of the picture has no name in it"
+    assert np.diff(places).min() > 0.9 * 0.014 * 300
+    assert np.mean(places[:3]) == pytest.approx(200.5)
+    assert figure.get_suptitle() == "scene, channel"
+
+
+def test_lengths_are_not_squashed_by_an_axis_from_zero():
+    phase = np.linspace(0, 1, 50)
+    whole = {"healthy": np.full(50, 40.0), "mild": np.full(50, 38.0)}
+    axes = plot_lengths(phase, whole, {"mild": np.full(50, 37.0)}, title="scene, pair", told="by a formula").axes[0]
+    assert axes.get_ylim()[0] > 30
+    assert len({line.get_linestyle() for line in axes.lines[:2]}) == 2
+    assert [text.get_text() for text in axes.get_legend().get_texts()][-1] == "mild, by a formula"
+
+
+def test_portraits_say_what_they_show():
+    circle = np.cos(np.linspace(0, 6, 40)), np.sin(np.linspace(0, 6, 40))
+    figure = plot_phases({name: (circle, np.zeros((1, 2))) for name in "abcd"}, "rad", title="scene, sun")
+    assert figure.get_suptitle() == "scene, sun"
+    assert [axes.get_visible() for axes in figure.axes] == [True] * 4 + [False] * 2
+
+
+def test_transmission_errors_say_whose_they_are(pair, steel):
+    found = gf.transmission_error(pair, [1000.0], steel, phases=8, method="textbook")
+    assert found.plot().axes[0].get_title() == "z = 21 / 31, 20 mm wide"
+    assert "µm" in found.plot(title="own").axes[0].get_ylabel()

@@ -1,0 +1,32 @@
+"""The page of measured gearboxes: its cheap rows computed again, and what it says of them."""
+
+import re
+
+import pytest
+from numpy.testing import assert_allclose
+
+from validation.make import measured
+
+TEXT = measured.PAGE.read_text(encoding="utf-8")
+
+
+def test_the_lines_of_the_phm_train_and_the_error_of_its_tachometer():
+    assert "\n".join(measured._phm_text()[2].splitlines()) in TEXT
+    for f, mesh, _, second, output in measured.phm_rows():
+        assert_allclose([mesh / f, second / f, f / output], [32, 16, 5])
+    assert max(measured.phm_angle()) < measured.PHM_HZ[-1] / measured.PHM_RATE, "less than a sample"
+
+
+def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
+    left, right = measured.perfect()
+    printed = re.search(r"perfect set gives left (\S+) and right (\S+):", TEXT)
+    assert_allclose([left, right], [float(printed[1]), float(printed[2])], rtol=0.02)
+    assert right > 5 > 1 > left
+
+
+@pytest.mark.slow
+def test_the_whole_page_is_up_to_date():
+    numbers = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
+    new = measured.page()
+    assert numbers.sub("#", new) == numbers.sub("#", TEXT), "remake: python -m validation measured"
+    assert_allclose([float(n) for n in numbers.findall(new)], [float(n) for n in numbers.findall(TEXT)], rtol=0.05)

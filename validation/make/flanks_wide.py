@@ -1,0 +1,123 @@
+"""Part of the page `flanks.md`: flanks modified along the width and axes askew, the energy model against finite elements.
+
+Finite elements of whole gears take minutes; rows on file are kept, so that a run can be stopped and continued.
+"""
+
+import csv
+import math
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.files import written
+
+from ..shared.places import TABLES
+
+CSV = TABLES / "flanks_fe3d.csv"
+HEADER = ("seed", "z_1", "z_2", "beta_deg", "b_mm", "force_N", "deflection_um", "difference_percent")
+SEEDS, PHASES, REFINE = range(6), (0.1, 0.43, 0.76), 0.6
+STEEL = gf.Material(E=207e3, nu=0.3)
+
+
+def seeded_pair(seed):
+    """Narrow pair, spur or helical, with flanks modified in both directions and axes askew: pair, flanks, misalignment, force."""
+    rng = np.random.default_rng(seed)
+    beta = math.radians(float(rng.choice([0, 10, 18])))
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": float(rng.uniform(8, 14))}
+    one, two = rng.integers(20, 34, 2).tolist()
+    pair = gf.GearPair(gf.Gear(z=one, r_bore=0.5 * one, beta=-beta, **rack), gf.Gear(z=two, r_bore=0.5 * two, beta=beta, **rack))
+    flanks = {
+        name: gf.Flank(
+            lead_crowning=rng.uniform(0, 0.008), lead_slope=rng.uniform(-0.004, 0.004), twist=rng.uniform(-0.002, 0.002),
+            end_relief=rng.uniform(0, 0.006), end_length=2.0, tip_relief=rng.uniform(0.002, 0.015), tip_exponent=2.0,
+            tip_start_roll=gear.roll_a - 0.35 * (gear.roll_a - gear.roll_f),
+        )
+        for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
+    }  # fmt: skip
+    return pair, flanks, gf.Misalignment(F_beta=rng.uniform(-0.01, 0.01)), rack["b"] * rng.uniform(60, 250)
+
+
+def against_fe3d(seed):
+    """Mean deflection by `fe3d` [m], and the largest difference of `ritz3d` in the transmission error over it."""
+    pair, flanks, askew, force = seeded_pair(seed)
+    options = {"phases": list(PHASES), "flanks": flanks, "misalignment": askew}
+    found = gf.mesh_stiffness(pair, force, STEEL, method="ritz3d", **options)
+    truth = gf.mesh_stiffness(pair, force, STEEL, method="fe3d", refine=REFINE, **options)
+    return float(truth.lte.mean()), float(np.abs(found.te - truth.te).max() / truth.lte.mean())
+
+
+def read():
+    """Committed rows by seed."""
+    if not CSV.is_file():
+        return {}
+    with CSV.open(encoding="utf-8", newline="") as file:
+        return {int(row["seed"]): row for row in csv.DictReader(file)}
+
+
+def run():
+    """Compute the rows that are not on file."""
+    rows = read()
+    for seed in SEEDS:
+        if seed in rows:
+            continue
+        pair, _, _, force = seeded_pair(seed)
+        lte, away = against_fe3d(seed)
+        one = pair.gear_1
+        values = seed, one.z, pair.gear_2.z, math.degrees(abs(one.beta)), one.b, force, 1e6 * lte, 100 * away
+        rows[seed] = dict(zip(HEADER, (f"{value:.6g}" for value in values), strict=True))
+        with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
+            out = csv.DictWriter(file, HEADER, lineterminator="\n")
+            out.writeheader()
+            out.writerows(rows[key] for key in sorted(rows))
+        print(f"  fe3d, seed {seed}: {100 * away:.2f} %", flush=True)
+
+
+def text():
+    """Lines of the page."""
+    rows = read()
+    lines = [
+        "## Along the width",
+        "",
+        "Random narrow pairs of m 2 with tip relief, lead crowning, helix slope, twist and end relief on both gears and",
+        f"misaligned axes, `ritz3d` against hexahedra of whole gears (`fe3d`, refine {REFINE:g}) at three phases; both are asked",
+        "the same gaps, so this judges the bodies, not the gaps",
+        "([tables/flanks_fe3d.csv](tables/flanks_fe3d.csv)).",
+        "",
+        "| seed | teeth | helix | width | force | deflection [um] | largest difference of the error |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for row in rows.values():
+        lines.append(
+            f"| {row['seed']} | {row['z_1']}/{row['z_2']} | {float(row['beta_deg']):.0f} deg | {float(row['b_mm']):.1f} mm | "
+            f"{float(row['force_N']):.0f} N | {float(row['deflection_um']):.2f} | {float(row['difference_percent']):.2f} % |"
+        )
+    return [*lines, *_section()]
+
+
+def _section():
+    """Spur gears with the same profile along the width: three dimensions beside the section."""
+    rack = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 30.0}
+    pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=36, r_bore=20.0, **rack))
+    lines = [
+        "",
+        "Spur gears 24/36 of m 3, 30 mm wide, 150 N/mm, the same profile along the width, three dimensions beside the section",
+        "(plane strain is the stiffer one, see [three.md](three.md)): peak-to-peak over 16 phases, and the mean error.",
+        "",
+        "| relief on both gears | `ritz` [um] | `ritz3d` [um] | mean, `ritz3d` over `ritz` |",
+        "|---|---|---|---|",
+    ]
+    shapes = {"none": None, "linear, 10 um over 4.7 mm": (0.01, 4.7, 1.0), "parabolic, 30 um over 4 mm": (0.03, 4.0, 2.0)}
+    for name, shape in shapes.items():
+        flanks = None
+        if shape:
+            amount, length, exponent = shape
+            flanks = {
+                key: gf.Flank(tip_relief=amount, tip_start_roll=gear.roll_a - length, tip_exponent=exponent)
+                for key, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
+            }
+        plane, solid = (
+            gf.mesh_stiffness(pair, 4500.0, STEEL, method=method, phases=16, flanks=flanks).te for method in ("ritz", "ritz3d")
+        )
+        spans = [1e6 * float(np.ptp(te)) for te in (plane, solid)]
+        lines.append(f"| {name} | {spans[0]:.2f} | {spans[1]:.2f} | {100 * (solid.mean() / plane.mean() - 1):+.2f} % |")
+    return lines
