@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..files import check_output, missing, written
-from ..pictures.stiffness_plots import COLOURS
+from ..pictures.look import COLOURS
 from ..sweeps.effects import curve_bands, main_effects
 from ..sweeps.runs import Runs, open_runs
 from .figures import DASH, LOOK
