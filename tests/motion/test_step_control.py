@@ -8,6 +8,7 @@ from machines import RUNS, SHAPE, WAVE, herringbone, tooth, two_masses
 from numpy.testing import assert_allclose
 from scipy.linalg import expm
 
+import gearfe as gf
 from gearfe.machine.gear_mesh import ToothDamage
 from gearfe.machine.pitted_planetary import pitted_planetary
 from gearfe.motion import simulate as dynamics
@@ -136,3 +137,23 @@ def test_the_step_sees_a_load_far_above_the_meshes():
     assert max(difference(got, want)) < 1e-3
     with pytest.warns(UserWarning, match="too long for this machine"):
         assert simulate(machine, 0.02, rate=5e4, step=1e-5).stats["error"] > 0.1
+
+
+def ramped():
+    """A mass under the impact law whose coefficient doubles and halves within a sixty-fourth of a cycle, as pairs come and go."""
+    steep = 5e9 * np.where(np.arange(256) < 128, 2.0, 1.0)
+    law = {"power": 1.5, "push": True, "depth": 1e-4, "damping": 2e3, "backlash": 1e-3}
+    return gf.single_mesh(0.5, steep, 300.0, force=1500.0, **law)
+
+
+def test_steep_ramps_are_followed_by_shorter_steps():
+    machine = ramped()
+    runs = [simulate(machine, 0.02, rate=2e4, numba=numba) for numba in RUNS]
+    want = simulate(machine, 0.02, rate=2e4, step=5e-7, error=False)
+    for got in runs:
+        assert max(difference(got, want)) < got.stats["error"] < 1e-3
+        assert got.stats["rejected"] > 0
+        assert got.stats["steps"] > round(0.02 / got.stats["dt"])  # some are parts
+        assert max(difference(got, runs[0])) < 1e-9
+    fixed = simulate(machine, 0.02, rate=2e4, step=runs[0].stats["dt"], error=False)
+    assert max(difference(fixed, want)) > max(difference(runs[0], want))
