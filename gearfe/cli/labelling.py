@@ -13,14 +13,8 @@ def dataset(arguments):
             found = size_of(arguments.plan)
         print(found.text(arguments.workers))
         return
-    with working("data set") as tell:
-        made = run(
-            arguments.plan,
-            arguments.output,
-            also=arguments.also,
-            workers=arguments.workers,
-            progress=lambda done, total: tell.step(f"{done} of {total} conditions", done, total),
-        )
+    with working("data set"):
+        made = run(arguments.plan, arguments.output, also=arguments.also, workers=arguments.workers)
     labels = made.labels()
     print(f"{made.about['title']}: {len(labels)} windows of {labels['condition'].nunique()} conditions")
     for (fault, severity), part in labels.groupby(["fault", "severity"]):

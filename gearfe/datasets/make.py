@@ -9,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from ..steps import reached
 from ..stiffness.cache import made_by
 from ..store.folder import begin, durable, locked
 from ..store.shards import arrow, check_shards, encoded, shard_names, write_shard
@@ -81,7 +82,7 @@ def dataset(
         for name in (WINDOWS, FAILED):
             (place / name).mkdir(exist_ok=True)
         with locked(place / WINDOWS):
-            _fill(place, checked, every, workers or os.cpu_count() or 1, progress or (lambda done, total: None))
+            _fill(place, checked, every, workers or os.cpu_count() or 1, progress)
         made = open_dataset(folder)
         with durable(place / "card.md") as file:
             file.write(card(made, checked, every).encode())
@@ -133,7 +134,7 @@ def _fill(place, plan, every, workers, progress):
         raise ValueError(f"{place / WINDOWS} holds {min(unknown)}, which is none of this data set's: take it out")
     todo = [one for one in every if one.name not in there]
     done = len(every) - len(todo)
-    progress(done, len(every))
+    _say(done, len(every), progress)
     for name, content, error in _made(plan, todo, min(workers, max(1, len(todo)))):
         if error:
             with durable(place / FAILED / f"{name}.txt") as file:
@@ -141,7 +142,14 @@ def _fill(place, plan, every, workers, progress):
         else:
             write_shard(place / WINDOWS, name, content)
         done += 1
-        progress(done, len(every))
+        _say(done, len(every), progress)
+
+
+def _say(done, total, progress):
+    """Say how far it is to whoever listens."""
+    reached(f"{done} of {total} conditions", done / total)
+    if progress is not None:
+        progress(done, total)
 
 
 def _made(plan, todo, workers) -> Iterator[tuple[str, bytes, str]]:
