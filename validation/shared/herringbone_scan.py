@@ -8,12 +8,11 @@ a time); `check` computes readings directly. The closed forms are evaluated for 
 import csv
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
-from scipy.stats import qmc
 
 import gearfe as gf
 from gearfe.energy.closed import published, textbook
@@ -25,29 +24,10 @@ from gearfe.studies.case_table import printed_cases
 from . import herringbone_scan_nodes as nodes
 from . import machine
 from .herringbone_scan_nodes import BORES, FLAT, GROUPS, LENGTHS, PAIRS, PHASES, SCENE
+from .herringbone_scan_readings import RANGES, SCENE_READING, SIZE, Reading, readings  # noqa: F401
 from .places import TABLES
 
 NAME = "herringbone_scan"
-SIZE, SEED = 1024, 20
-RANGES = {  # of the Sobol sample
-    "group": (0.0, float(len(GROUPS))),
-    "length": (
-        0.5,
-        1.5,
-    ),  # of a crack of level 1, in chords; 0.71 the way to the centre-line, 1.41 that of `gearfe.Crack`, at 45 degrees
-    "sun": (0.30, 0.85),  # bores, parts of the root radius
-    "planet": (0.30, 0.85),
-    "load": (-2.0, 2.0),  # binary logarithm of the part of 400 N m
-    "tip": (0.20, 0.38),  # rack tip radius [m_n]
-    "rim": (80.0, 95.0),  # outer radius of the ring, held [mm]
-    "radius": (0.5, 1.0),  # of a pit [mm]
-    "depth": (0.2, 0.5),  # of a pit [mm]
-    "shift": (-0.6, 0.6),  # of the pits from the pitch circle [mm]
-    "own": (
-        0.0,
-        2.0,
-    ),  # 0: the formulas' crack as long as that of `ritz3d`; 1: the same part of their beam's foot
-}
 READINGS = ("printed", "external")  # foundation of the ring in `published`
 STEPS = (
     0.0,
@@ -70,34 +50,6 @@ STEPS = (
 LEVELS = {"1": (0.1, "3 pits"), "2": (0.3, "7 pits"), "3": (0.6, "7 pits, deep crack"), "4": (0.3, "14 pits")}
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """One reading of what S4 does not print; see `RANGES`, `group` numbers `GROUPS`."""
-
-    group: int
-    length: float
-    sun: float
-    planet: float
-    load: float
-    tip: float
-    rim: float
-    radius: float
-    depth: float
-    shift: float
-    own: int
-
-    def bores(self, pair):
-        """Bores of the external gears of a pair [parts of the root radius]."""
-        return (self.sun, self.planet) if pair == "sun_planet" else (self.planet,)
-
-
-def readings(size=SIZE):
-    """Readings of a scrambled Sobol sequence; every beginning of it fills the space."""
-    points = qmc.Sobol(len(RANGES), seed=SEED).random_base2(math.ceil(math.log2(size)))[:size]
-    scaled = qmc.scale(points, *np.array(list(RANGES.values())).T).round(4)
-    return [Reading(min(int(row[0]), len(GROUPS) - 1), *row[1:-1], min(int(row[-1]), 1)) for row in scaled.tolist()]
-
-
 def sensitivity():
     """Stiffness of the committed variations by (variation, pair, case, column) [N/m]."""
     with (TABLES / f"{SCENE}_sensitivity.csv").open(encoding="utf-8", newline="") as file:
@@ -116,9 +68,6 @@ def known_groups(known):
         if name[0].isdigit():
             named.setdefault(int(name.split()[0]), []).append(name in known)
     return [group for group, found in named.items() if all(found)]
-
-
-SCENE_READING = Reading(0, math.sqrt(2), 0.5, 0.5, 0.0, 0.38, 87.0, 0.5, 0.2, 0.0, 1)  # the scene's; bores to 0.4 %
 
 
 class Ritz3D:
