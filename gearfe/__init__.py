@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`; `flexibility`, `signal`, `scene`, `pictures`; `elements`, `energy`; `contact`; `stiffness`; `machine`;
-`motion`, `stress`; `studies`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
+`stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -29,10 +29,12 @@ _HOME = {
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",
+    "Surrogate": "gearfe.surrogates.surrogate",
     "ToothDamage": "gearfe.machine.gear_mesh",
     "batch": "gearfe.studies.batches",
     "cepstrum": "gearfe.signal.time_frequency",
     "compare": "gearfe.studies.by_zone",
+    "curve_bands": "gearfe.sweeps.effects",
     "demodulate": "gearfe.signal.demodulation",
     "decimate": "gearfe.signal.series",
     "envelope": "gearfe.signal.series",
@@ -52,12 +54,14 @@ _HOME = {
     "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",
     "expected_lines": "gearfe.signal.spectral_lines",
+    "fit_surrogate": "gearfe.surrogates.fit",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
     "load_scene": "gearfe.scene.load",
+    "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",
     "new_scene": "gearfe.scene.new",
     "order_spectrum": "gearfe.signal.orders",
@@ -77,6 +81,9 @@ _HOME = {
     "read_signal": "gearfe.signal.signal_file",
     "read_signals": "gearfe.signal.signal_file",
     "render_stress": "gearfe.stress.render",
+    "Runs": "gearfe.sweeps.runs",
+    "open_runs": "gearfe.sweeps.runs",
+    "plan_sweep": "gearfe.sweeps.plan",
     "report": "gearfe.reports.page",
     "residual_signal": "gearfe.signal.orders",
     "root_stress": "gearfe.elements.loaded_tooth",
@@ -84,13 +91,17 @@ _HOME = {
     "spectral_kurtosis": "gearfe.signal.kurtogram",
     "TransmissionError": "gearfe.stiffness.transmission_error",
     "transmission_error": "gearfe.stiffness.transmission_error",
+    "sobol_indices": "gearfe.sweeps.effects",
     "spectrum": "gearfe.signal.spectra",
+    "told_apart": "gearfe.sweeps.effects",
     "squared_envelope_spectrum": "gearfe.signal.spectra",
     "stress_intensity": "gearfe.elements.fracture",
+    "sweep": "gearfe.sweeps.run",
     "synchronous_average": "gearfe.signal.orders",
     "tooth_flexibility": "gearfe.elements.loaded_tooth",
-    "write_contact_inp": "gearfe.elements.contact_deck",
+    "write_contact_inp": "gearfe.elements.contact_inp",
     "write_inp": "gearfe.elements.deck",
+    "write_line_inp": "gearfe.elements.line_deck",
 }
 __all__ = sorted(_HOME)
 

@@ -7,9 +7,10 @@ from geometry.pair.planetary import PlanetarySet as PlanetarySet
 from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
 
-from .elements.contact_deck import write_contact_inp as write_contact_inp
+from .elements.contact_inp import write_contact_inp as write_contact_inp
 from .elements.deck import write_inp as write_inp
 from .elements.fracture import stress_intensity as stress_intensity
+from .elements.line_deck import write_line_inp as write_line_inp
 from .elements.loaded_tooth import root_stress as root_stress
 from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .machine.compound_planetary import compound_planetary as compound_planetary
@@ -84,6 +85,16 @@ from .studies.by_zone import compare as compare
 from .studies.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
+from .surrogates.fit import fit_surrogate as fit_surrogate
+from .surrogates.surrogate import Surrogate as Surrogate
+from .sweeps.effects import curve_bands as curve_bands
+from .sweeps.effects import main_effects as main_effects
+from .sweeps.effects import sobol_indices as sobol_indices
+from .sweeps.effects import told_apart as told_apart
+from .sweeps.plan import plan_sweep as plan_sweep
+from .sweeps.run import sweep as sweep
+from .sweeps.runs import Runs as Runs
+from .sweeps.runs import open_runs as open_runs
 
 __all__: list[str]
 

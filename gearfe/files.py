@@ -262,7 +262,7 @@ class Format(NamedTuple):
 FORMATS = {
     ".csv": Format(("curve", "response"), ("curve", "signal"), write_csv, read_text),
     ".txt": Format((), ("signal",), None, read_text),
-    ".npz": Format(("curve", "response"), ("signal",), write_npz, read_npz),
+    ".npz": Format(("curve", "response", "surrogate"), ("signal", "surrogate"), write_npz, read_npz),
     ".mat": Format(("curve", "response"), ("signal",), write_mat, read_mat),
     **{suffix: Format((), ("signal",)) for suffix in (".h5", ".hdf5", ".wav", ".uff", ".unv", ".uf", ".tdms", ".parquet")},
     ".json": Format(("curve",), (), write_json, None),

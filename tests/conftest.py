@@ -29,6 +29,9 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "signal": ("signal/test_signals.py", "signal/test_spectral_lines.py", "signal/test_demodulation.py"),
     "scene": ("scene/test_scene.py", "scene/test_references.py", "test_golden.py::test_verdicts_follow_from_the_numbers"),
     "studies": ("studies/test_case_table.py",),
+    "surrogates": ("surrogates/test_space.py",),
+    "store": ("store/test_store.py",),
+    "sweeps": ("sweeps/test_study.py",),
     "cli": ("cli/test_cli.py::test_stiffness_writes_curve_and_plot",),
     "literature": (
         "test_literature.py::test_verdict_on_a_printed_number[planetary_pitting-hertz_coefficient",

@@ -4,7 +4,7 @@ import argparse
 import os
 
 from ..stiffness.methods import NAMES, described, having
-from . import shell, signals, tools
+from . import shell, signals, sweeping, tools
 from . import verbs as run
 
 SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.files
@@ -25,6 +25,10 @@ def main(argv=None):
     verb.add_argument("--method", default="auto", help=f"{methods} (see below; default: ritz or ritz3d)")
     verb.add_argument("--force", type=float, metavar="N", help="force along the line of action [N]; default: the scene's")
     verb.add_argument("--no-extended", action="store_true", help="no tip-corner contact outside the path of contact")
+    verb.add_argument(
+        "--pose", choices=("mean", "pinion", "wheel"), default="mean",
+        help="who turns under load: both gears alike, or one against the held other (default: mean)",
+    )  # fmt: skip
     verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument(
         "--forces", type=float, nargs="+", metavar="N",
@@ -107,6 +111,15 @@ def main(argv=None):
     verb.add_argument("--case", metavar="NAME", help="case of damage shown beside healthy (default: the scene's first)")
     verb.add_argument("--duration", type=float, default=0.2, metavar="S", help="of the machine's vibration [s] (default: 0.2)")
     verb.add_argument("-o", "--output", metavar="FILE", required=True, help="the page: .html")
+    verb = _verb(verbs, "sweep", sweeping.sweep, "compute all cases of a study into a folder; stopped, it goes on where it was")
+    verb.add_argument("study", metavar="STUDY", help="a .toml file: a scene, and what varies in it")
+    verb.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder of the results: new, or of this study")
+    verb.add_argument("--workers", type=int, metavar="N", help="processes of this machine (default: one per core)")
+    verb.add_argument("--scheduler", metavar="ADDRESS", help="compute on the workers of this Dask scheduler, tcp://host:8786")
+    verb.add_argument(
+        "--dry-run", action="store_true", help="say how many cases, how long, how much memory and disk; write nothing"
+    )
+    verb.add_argument("--mixed", action="store_true", help="go on although another version of gearfe began it")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
     verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")

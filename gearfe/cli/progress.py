@@ -3,43 +3,35 @@
 import contextlib
 import sys
 
-
-class Notes:
-    """Prints notes to standard error; steps are shown on a terminal only."""
-
-    def __call__(self, line):
-        """Print a line."""
-        print(f"gearfe: {line}", file=sys.stderr, flush=True)
-
-    def step(self, text, done, total):
-        """Say that `done` of `total` steps are done and `text` is next."""
+from ..steps import listening
 
 
-class Bar(Notes):
-    """The same above a bar of `rich`."""
-
-    def __init__(self, progress, task):
-        self.progress, self.task = progress, task
-
-    def __call__(self, line):
-        """Print a line above the bar."""
-        self.progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
-
-    def step(self, text, done, total):
-        """Move the bar; the time left is reckoned from the steps done."""
-        self.progress.update(self.task, description=text, completed=done, total=total)
+def note(line):
+    """Print a line to standard error."""
+    print(f"gearfe: {line}", file=sys.stderr, flush=True)
 
 
 @contextlib.contextmanager
 def working(text):
-    """A bar with the seconds gone and, once steps are counted, left, on a terminal only; gives a `Notes`."""
+    """A bar with the seconds gone and, once a step is done, left, on a terminal only; gives a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
-        yield Notes()
+        yield note
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    left = TimeRemainingColumn(elapsed_when_finished=False)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("gone, left"), left)
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
-        yield Bar(progress, progress.add_task(text, total=None))
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        TextColumn("gone, left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True, speed_estimate_period=600) as progress:
+        task = progress.add_task(text, total=None)
+
+        def step(what, done):
+            progress.update(task, completed=done, total=1.0, **({"description": what} if what else {}))
+
+        with listening(step):
+            yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)

@@ -5,7 +5,9 @@ from dataclasses import replace
 
 def signal(arguments):
     """``gearfe signal``."""
+    from ..steps import part
     from ..studies.vibration import analyse
+    from .progress import working
     from .verbs import _check_outputs, _print_analysis
 
     _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture")
@@ -14,9 +16,13 @@ def signal(arguments):
         return
     if arguments.teeth is not None and arguments.shaft is None and arguments.tacho is None:
         raise ValueError("--teeth needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
-    signals = _read(arguments)
-    first = next(iter(signals))
-    _print_analysis(analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=first), arguments)
+    with working("reading and spectra"):
+        with part("", 0.0, 0.5):
+            signals = _read(arguments)
+        first = next(iter(signals))
+        with part("spectra and indicators", 0.5, 1.0):
+            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=first)
+    _print_analysis(found, arguments)
     if arguments.teeth is not None:
         from ..signal.gear_indicators import gear_indicator_table, gear_table_text
 
@@ -42,9 +48,10 @@ def _print_channels(arguments):
 def _read(arguments):
     """The chosen channel of every file by name, with the angle of the shaft or its frequency if they are known."""
     from ..signal.signal_file import read_signals
+    from ..steps import steps
 
     out = {}
-    for file in arguments.file:
+    for file in steps(arguments.file, lambda file: f"reading {file}"):
         found = read_signals(
             file, None if arguments.column is None else [arguments.column], units=arguments.unit, rate=arguments.rate,
             header=arguments.header, scale=arguments.scale, tachometer=arguments.tacho, pulses=arguments.pulses,

@@ -9,8 +9,8 @@ def report(arguments):
     from ..reports.page import report as run
 
     check_output(arguments.output, "page")
-    with working("report") as tell:
-        made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration, tell=tell)
+    with working("report"):
+        made = run(arguments.scene, arguments.output, arguments.case, duration=arguments.duration)
     print(f"written: {made} ({made.stat().st_size / 1e6:.1f} MB)")
 
 

@@ -36,6 +36,7 @@ def stiffness(arguments):
     from ..scene.load import load_scene
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
+    from ..units import in_newton_per_um
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
@@ -52,13 +53,14 @@ def stiffness(arguments):
         run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
         curve = mesh_stiffness(
             **run, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, tell=tell,
+            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, pose=arguments.pose, tell=tell,
         )  # fmt: skip
     meta = curve.meta
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
     doubt = curve.zone_errors()
     for zone, value in curve.zones().items():
-        print(f"  {zone:7s} {value:.4e} N/m" + (f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""))
+        about = f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""
+        print(f"  {zone:7s} {in_newton_per_um(value, 5)} N/um{about}")
     if arguments.output:
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -127,8 +129,8 @@ def _compare_cases(scene, arguments, cases):
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
-    with working("every case by every method") as tell:
-        result = case_table(scene, cases, compute=arguments.reference, progress=tell)
+    with working("every case by every method"):
+        result = case_table(scene, cases, compute=arguments.reference)
     print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
     print(result.table())
@@ -142,6 +144,7 @@ def render(arguments):
     """``gearfe render``."""
     from ..scene.load import load_scene
     from ..stress.render import render_contact, render_stress
+    from ..units import in_newton_per_um
 
     _check_outputs(arguments, output="picture" if arguments.what == "contact" else "stress")
     scene = load_scene(arguments.scene)
@@ -149,7 +152,7 @@ def render(arguments):
     if arguments.what == "contact":
         with working("contact lines"):
             told = render_contact(pair, arguments.output, title=_title(scene, arguments), **options)
-        print(f"phase {told['phase']:.3g}: k {told['k']:.4e} N/m, largest pressure {told['pressure']:.0f} MPa")
+        print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
             told = render_stress(pair, arguments.output, refine=arguments.refine, title=_title(scene, arguments), **options)
@@ -171,8 +174,8 @@ def dynamics(arguments):
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     _print_scene(scene)
-    with working("stiffness curves and response"):
-        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method)
+    with working("stiffness curves and response") as tell:
+        found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method, progress=tell)
     made = next(iter(found.values())).machine
     for name, value in made.notes.items():
         print(f"  {name}: {_rounded(value)}")

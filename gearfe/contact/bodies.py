@@ -11,6 +11,8 @@ from scipy.linalg import block_diag
 
 from geometry.damage.crack import check_single, crack_in_band
 
+from ..steps import steps
+
 
 def seen_gears(pair, face, groove):
     """Pinion and wheel, or a half of each, and where contact begins on them: ``[(Gear, offset [mm]), ...]``."""
@@ -58,8 +60,11 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
         for band in bands:
             check_single(body, seen_cracks(gear, own, body, band))
     return [
-        [(flexible(body, material, seen_cracks(gear, own, body, band)), offset) for gear, (body, offset), material, own in gears]
-        for band in bands
+        [
+            (flexible(body, material, seen_cracks(gear, own, body, band)), offset)
+            for gear, (body, offset), material, own in steps(gears)
+        ]
+        for band in steps(bands)
     ]
 
 

@@ -58,6 +58,7 @@ def full_contact(pair, line_load, phase, materials, *, state="plane strain", per
     line_load : float
         Along the line of action, all pairs together [N/mm].
     phase : float
+        Of the mean pose; `gearfe.stiffness.pose` says at which phase of the mean pose the gears of another pose stand.
     materials : tuple of Material
         Of pinion and wheel.
     per_width : int

@@ -52,7 +52,7 @@ class PhaseContact:
 
     @property
     def neighbours(self):
-        """Largest difference of the orders of pairs in contact at the same phase."""
+        """Largest difference of the orders of pairs in contact at the same phase, by the first guess of the approach."""
         ratio = self.pair.eps_beta_of(self.width / len(self.bands)) if self.beta_b else 0.0
         return max(1, math.floor(self.pair.eps_alpha + ratio + sum(self._further(self.reach)) / self.pair.p_bt))
 
@@ -65,8 +65,9 @@ class PhaseContact:
         Parameters
         ----------
         phase : float
-        bodies : list of ((Flexibility3D, float), (Flexibility3D, float))
-            Of both gears by half, with where their contact begins on them [mm].
+        bodies : callable
+            ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears by half, with where
+            their contact begins on them [mm]; at least n teeth after each loaded one are coupled to it.
         reach : float, optional
             Gap [mm] to look at first.
 
@@ -79,7 +80,7 @@ class PhaseContact:
         while True:
             cells = self._cells(phase, reach, closing)
             if cells is not None:
-                cells, approach, closed = self._carried(cells, bodies)
+                cells, approach, closed = self._carried(cells, bodies(int(np.ptp(cells.order))))
                 normal = approach * math.cos(self.beta_b)
                 if any(closing < depth < normal for depth in self.floors):
                     closing = normal  # shallow pits: solved again with their floors, which can only make it stiffer

@@ -7,7 +7,7 @@ the line; each cell on itself is a strip of Hertz's pressure, as in the plane.
 
 import math
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from geometry.damage.pit import check_pits
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
+from ..steps import part, steps
 from .bodies import bodies_of
 from .cells import Cells
 from .phase_contact import REACH, PhaseContact
@@ -135,8 +136,18 @@ def pair_stiffness3d(
         return flexible
 
     def solve(model):
-        flexible = partial(model, neighbours=contact.neighbours)
-        return _solved(contact, phase, bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible))
+        @lru_cache(maxsize=8)
+        def bodies(neighbours):
+            flexible = partial(model, neighbours=neighbours)
+            return bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible)
+
+        def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
+            return bodies(max(orders, contact.neighbours))
+
+        with part("", 0.0, 0.5):
+            within(0)
+        with part("", 0.5, 1.0):
+            return _solved(contact, phase, within)
 
     solved = solve(model or energy(order, 0))
     if error:
@@ -146,7 +157,7 @@ def pair_stiffness3d(
 
 def _solved(contact, phase, bodies):
     cells, approach, reach, closed = [], np.zeros(phase.size), None, []
-    for i, at in enumerate(phase.tolist()):
+    for i, at in enumerate(steps(phase.tolist())):
         own, approach[i], shut = contact.solve(at, bodies, reach)
         closed += [i] if shut else []
         cells.append(own)
@@ -155,5 +166,5 @@ def _solved(contact, phase, bodies):
     load = np.zeros((phase.size, orders.size))
     for i, own in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
-    dofs = tuple(body.unknowns for body, _ in bodies[0])
+    dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
     return Contact3D(phase, 1e3 * contact.force / approach, approach, orders, load, tuple(cells), dofs, tuple(closed))

@@ -37,8 +37,7 @@ class ContactDeck:
 
     def forces(self, path: str | os.PathLike[str]) -> tuple[float, float]:
         """``T1 / r_b1`` and ``T2 / r_b2`` per width [N/mm] from the reactions CalculiX printed to the ``.dat`` file `path`."""
-        rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines()]
-        reaction = {int(r[0]): (float(r[1]), float(r[2])) for r in rows if len(r) == 4 and r[0].isdigit()}
+        reaction = read_rows(path)
         pushed = [np.array([reaction[n] for n in held.tolist()]).T for held in self.held]
         moment = [float((f[0] * p[1] - f[1] * p[0]).sum()) for f, p in zip(pushed, self.place, strict=True)]
         return moment[0] / self.r_b[0], abs(moment[1]) / self.r_b[1]
@@ -48,7 +47,26 @@ class ContactDeck:
         return sum(self.forces(path)) / 2
 
 
-def write_contact_inp(
+def read_rows(path: str | os.PathLike[str]) -> dict[int, tuple[float, float, float]]:
+    """Three values of every node from the ``.dat`` file that CalculiX printed.
+
+    Raises
+    ------
+    RuntimeError
+        If the file is not there or has none: CalculiX did not get that far.
+    """
+    try:
+        lines = Path(path).read_text(encoding="ascii").splitlines()
+    except FileNotFoundError as error:
+        raise RuntimeError(f"{path} is not there: run 'ccx -i NAME' first; if it ran, its own output says why it stopped") from error
+    rows = [line.split() for line in lines]
+    found = {int(r[0]): (float(r[1]), float(r[2]), float(r[3])) for r in rows if len(r) == 4 and r[0].isdigit()}
+    if not found:
+        raise RuntimeError(f"{path} holds no values: CalculiX found no equilibrium; its .sta and .cvg files say how far it came")
+    return found
+
+
+def write_contact_section(
     path: str | os.PathLike[str],
     pair: GearPair,
     phase: float,
@@ -58,49 +76,11 @@ def write_contact_inp(
     *,
     pose: str = "mean",
     flanks: Mapping[str, Flank] | None = None,
-    per_width: int = 8,
+    per_width: float = 8.0,
     penalty: float = 500.0,
     refine: float = 1.0,
 ) -> ContactDeck:
-    """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
-
-    Frictionless surface-to-surface contact of all flanks that may touch, with a linear pressure-overclosure of `penalty` times
-    E (50 is 0.8 % too soft, 500 is not distinguishable from more); large displacements, so that the flanks touch where the
-    turned gears have them. The gear whose tip corner touches is the slave side of its pair, with edges of `TIP` there: other
-    choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from which `ContactDeck.force` gives the load.
-
-    Parameters
-    ----------
-    path : path
-    pair : GearPair
-    phase : float
-    approach : float
-        Turn of the pinion forward and of the wheel backward, together, as a length on the line of action [mm].
-    line_load : float
-        Expected load [N/mm]; decides where the flanks are refined.
-    materials : (Material, Material)
-    pose : {"mean", "pinion", "wheel"}
-        Whether both gears turn by half the approach, or one of them against the held other.
-    flanks : dict, optional
-        Modifications, as of `mesh_stiffness`: the mesh carries them (`geometry.mesh.relieved`); `approach` is the transmission
-        error under load, its unloaded part included.
-    per_width : int
-        Edges per Hertz half width in the contact zones.
-    penalty : float
-    refine : float
-        Divides the other edge lengths.
-
-    Returns
-    -------
-    ContactDeck
-
-    Raises
-    ------
-    ValueError
-        If `pose` is unknown.
-    """
-    if pose not in PINION:
-        raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(PINION)}")
+    """The deck of `gearfe.elements.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
     gears, forms = (pair.gear_1, pair.gear_2), flank_forms(pair, flanks)
     found = pair.contacts([phase], flanks=forms)
     near = np.flatnonzero(found.gap[0] < 1.5 * approach)

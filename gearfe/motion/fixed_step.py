@@ -9,7 +9,7 @@ from . import excitation, propagator
 from .response import Response
 
 
-def fixed_steps(machine, duration, steps, state, *, every=1, numba=None, start=0.0):
+def fixed_steps(machine, duration, steps, state, *, every=1, numba=None, start=0.0, adapt=False):
     """Response of a machine over `steps` equal steps.
 
     Parameters
@@ -26,6 +26,8 @@ def fixed_steps(machine, duration, steps, state, *, every=1, numba=None, start=0
         Use the compiled loop; default: if numba is installed.
     start : float
         [s]
+    adapt : bool
+        Under a law of contact that is not linear, halve steps also where `gearfe.motion.propagator.Plan.allowed` asks for it.
 
     Returns
     -------
@@ -48,7 +50,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, numba=None, start=0
         from .numpy_loop import run
     started, h = time.perf_counter(), duration / steps
     x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    plan = propagator.plan(machine, h, x)
+    plan = propagator.plan(machine, h, x, adapt)
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 4 * steps + 1))
     breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
     with np.errstate(over="ignore", invalid="ignore"):

@@ -10,6 +10,7 @@ import numpy as np
 from ..machine.contact_law import LAW, branches, contact_force
 from .exponential import UNSTABLE
 from .numba_lookup import lookup, njit, stage
+from .numpy_loop import GROW
 
 CHUNK = 64  # steps whose stiffnesses are looked up at once
 _force = njit(cache=True, error_model="numpy")(contact_force)
@@ -50,10 +51,16 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     linear = np.stack([plan.k, plan.c])
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
-    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts)
+    local = plan.allowed, plan.scale
+    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, local)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
+
+
+def is_ready():
+    """Whether the loop is compiled and loaded in this process."""
+    return bool(getattr(_run, "signatures", ()))
 
 
 def _matrices(plan, kept, still):
@@ -125,6 +132,18 @@ def _losses(side, x, now, row, laws):
 
 
 @njit(cache=True, error_model="numpy")
+def _away(x, end, linear):
+    """How far the last stage and the end of a step are apart, as the largest mesh force of the linear part."""
+    m, most = linear.shape[1], 0.0
+    for i in range(m):
+        force = linear[0, i] * (end[i] - x[i])
+        if x.size > m:
+            force += linear[1, i] * (end[m + i] - x[m + i])
+        most = max(most, abs(force))
+    return most
+
+
+@njit(cache=True, error_model="numpy")
 def _propagate(new, E, level, z):
     """``new[:n] += E[level] z`` of blocks along a diagonal."""
     if E.shape[2] == 2:
@@ -139,7 +158,7 @@ def _propagate(new, E, level, z):
 
 
 @njit(cache=True, error_model="numpy")
-def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts):
+def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, P = matrices
     m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
@@ -147,7 +166,9 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
     now = np.zeros((own + 3, 3 * m + f - m))
     g = np.zeros(4 * f)  # forces of the stages 1, 3, 4, 2
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
-    total, side, edge = np.zeros(m), np.zeros(m), 0
+    total, side, edge, level = np.zeros(m), np.zeros(m), 0, 0
+    allowed, scale = local
+    held = allowed < np.inf
     lookup(flat, now, 0, 1, start, h, 0.0, 0.0)
     _losses(side, x0, now, 0, laws)
     states[0] = z
@@ -157,7 +178,9 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
             if not np.isfinite(np.sum(z)):
                 return step
             lookup(flat, now, 0, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
-        at, level, known = 0, 0, -1  # `known`: the part whose end stands in the last row
+        at, known = 0, -1  # `known`: the part whose end stands in the last row
+        if not held:
+            level = 0
         while at < whole:
             while at & ((whole >> level) - 1):
                 level += 1
@@ -195,7 +218,12 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
             stage(new, push, (n + p) * level, PF, level, g, 0)
             for i in range(p):  # the loads in y are those of x4, in new those of the end
                 end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
-            if level < last and (change or _changed(side, end, now, row + 2, laws)):
+            away = 0.0
+            if held:
+                for i in range(m):
+                    scale = max(scale, abs(total[i]))
+                away = _away(x, end, linear) / scale if scale > 0 else 0.0
+            if level < last and (change or away > allowed or _changed(side, end, now, row + 2, laws)):
                 level += 1
                 counts[1] += 1
                 continue
@@ -208,7 +236,8 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 x0[i] = end[i]
             at += part
             counts[0] += 1
-            level = max(0, level - 1) if at == whole else max(1, level - 1)
+            if not held or away <= GROW * allowed:
+                level = max(0, level - 1)
         if (step + 1) % every == 0:
             for i in range(n):
                 states[(step + 1) // every, i] = z[i]

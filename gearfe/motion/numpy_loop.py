@@ -1,6 +1,8 @@
 """The fast path on arrays: one exponential step after the other, halved about changes of contact and bends of the loads.
 
-A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe.motion.propagator.LEVELS` times about it.
+A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe.motion.propagator.LEVELS` times about it; under a
+law of contact that is not linear so is one whose last stage and end differ by more than `gearfe.motion.propagator.Plan.allowed`:
+flanks that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
 """
 
 import numpy as np
@@ -10,6 +12,7 @@ from ..machine.contact_law import LAW, branches, contact_force
 from . import excitation
 from .exponential import UNSTABLE, Step
 
+GROW = 0.08  # of what is allowed: below it the next step is twice as long (the difference grows as its third power)
 CHUNK = 1024  # steps whose stiffnesses are looked up at once
 
 
@@ -27,24 +30,18 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     states = np.empty((1 + steps // every, z.size))
     states[0] = z
     stats = {"steps": 0, "rejected": 0, "losses": 0}
-    sides = None if whole else _Sides(plan, machine, flat)
-    side = None if whole else sides(z, start)
+    parts = None if whole else _Parts(plan, machine, flat, step, breaks, stats)
+    side = None if whole else parts.sides(z, start)
     for first in range(0, steps, CHUNK):
         count = min(CHUNK, steps - first)
         grid = start + plan.h * (first + np.arange(2 * count + 1) / 2)
         forces.at(grid)
         for i in range(count):
-            new = step(z, 0, fill, 2 * i)
             if whole:
+                z = step(z, 0, fill, 2 * i)
                 stats["steps"] += 1
             else:
-                low, high = grid[2 * i], grid[2 * i + 2]
-                if sides.changed(side, step, new, *forces.e[2 * i + 1 : 2 * i + 3]) or _broken(breaks, low, high):
-                    new, side = _halve(step, plan, forces, sides, z, side, low, breaks, stats)
-                    forces.at(grid)
-                else:
-                    stats["steps"] += 1
-            z = new
+                z, side = parts(z, side, forces, 2 * i, grid[2 * i])
             if (first + i + 1) % every == 0:
                 states[(first + i + 1) // every] = z
         if not np.isfinite(z).all():
@@ -60,28 +57,53 @@ def _broken(breaks, low, high):
     return bool(len(breaks)) and np.searchsorted(breaks, low + edge) < np.searchsorted(breaks, high - edge)
 
 
-def _halve(step, plan, forces, sides, z, side, start, breaks, stats):
-    """One full step in halves, quarters... about the changes."""
-    last = len(plan.levels) - 1
-    whole, at, level = 1 << last, 0, 1
-    stats["rejected"] += 1
-    while at < whole:
-        while at % (whole >> level):
-            level += 1
-        low = start + plan.h * at / whole
-        high = low + plan.h / 2**level
-        forces.at(np.array([low, (low + high) / 2, high]))
-        new = step(z, level, forces.fill, 0)
-        if level < last and (sides.changed(side, step, new, *forces.e[1:]) or _broken(breaks, low, high)):
-            level += 1
-            stats["rejected"] += 1
-            continue
-        z, at = new, at + (whole >> level)
-        after = sides(z, high)
-        stats["losses"] += int(((after == 0) & (side != 0) & sides.opens).sum())
-        stats["steps"] += 1
-        side, level = after, max(1, level - 1)
-    return z, side
+class _Parts:
+    """Steps taken whole or in halves, quarters...: about changes of contact and bends of loads, and as `Plan.allowed` asks."""
+
+    def __init__(self, plan, machine, flat, step, breaks, stats):
+        self.plan, self.step, self.breaks, self.stats = plan, step, breaks, stats
+        self.sides, self.inner = _Sides(plan, machine, flat), _Forces(plan, machine, flat)
+        self.level, self.scale, self.local = 0, plan.scale, plan.allowed < np.inf
+
+    def __call__(self, z, side, forces, j, start):
+        """State one step after `z`, and the flanks in touch; `forces` know the times of the step from number `j` on."""
+        plan, last, at = self.plan, len(self.plan.levels) - 1, 0
+        whole, level = 1 << last, self.level if self.local else 0
+        while at < whole:
+            while at % (whole >> level):
+                level += 1
+            low = start + plan.h * at / whole
+            high = low + plan.h / 2**level
+            broken = level < last and _broken(self.breaks, low, high)
+            if not broken:
+                acting, i = (self.inner, 0) if level else (forces, j)
+                if level:
+                    acting.at(np.array([low, (low + high) / 2, high]))
+                new = self.step(z, level, acting.fill, i)
+                away = self._away(new, acting)
+            e = () if broken else acting.e[i + 1 : i + 3]
+            if broken or (level < last and (away > plan.allowed or self.sides.changed(side, self.step, new, *e))):
+                level += 1
+                self.stats["rejected"] += 1
+                continue
+            z, at, before = new, at + (whole >> level), side
+            side = self.sides(z, high)
+            self.stats["losses"] += int(((side == 0) & (before != 0) & self.sides.opens).sum())
+            self.stats["steps"] += 1
+            if not self.local or away <= GROW * plan.allowed:
+                level = max(0, level - 1)
+        self.level = level
+        return z, side
+
+    def _away(self, new, forces):
+        """How far the last stage and the end of the step just taken are apart, part of the largest mesh force so far."""
+        if not self.local:
+            return 0.0
+        plan, m = self.plan, len(self.plan.k)
+        self.scale = max(self.scale, np.abs(forces.total).max())
+        away = plan.P @ new - self.step.stages[2]
+        force = plan.k * away[:m] + (plan.c * away[m:] if len(away) > m else 0.0)
+        return np.abs(force).max() / self.scale if self.scale > 0 else 0.0
 
 
 class _Forces:
@@ -103,7 +125,7 @@ class _Forces:
         """Forces `out` at x, at the time of number i; for `gearfe.motion.exponential.Step`."""
         m, plan, rub = self.m, self.plan, self.rub
         v = x[m:] if self.rates else 0.0
-        total = contact_force(x[:m] - self.e[i], v - self.rate[i], self.k[i], *self.values)
+        self.total = total = contact_force(x[:m] - self.e[i], v - self.rate[i], self.k[i], *self.values)
         out[:m] = total - plan.k * x[:m] - (plan.c * v if self.rates else 0.0)
         if rub:
             out[m : m + rub] = self.weight[i] * total[self.flat.rub_mesh]

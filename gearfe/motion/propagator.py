@@ -6,9 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig
 
-from ..machine.tables import modal
+from ..machine.tables import modal, natural_frequencies
 
 LEVELS = 6  # a step is halved at most so often
+LOCAL = 1e-3  # of the largest mesh force, at the default step: what `Plan.allowed` is there
+STEPS = 80  # per mesh cycle, at first
+SHARE = 0.35  # of the period of the stiffest mesh, at first
 CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
 
 
@@ -32,6 +35,10 @@ class Plan:
     levels : list of tuple
         Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
         for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
+    allowed : float
+        How far the last stage and the end of a step may be apart, part of the largest mesh force so far; inf: they are not asked.
+    scale : float
+        That force at first, at rest [N].
     """
 
     basis: np.ndarray
@@ -42,6 +49,8 @@ class Plan:
     c: np.ndarray
     h: float
     levels: list
+    allowed: float
+    scale: float
 
 
 def is_affine(machine):
@@ -52,8 +61,8 @@ def is_affine(machine):
     return bool(plain.all()) and smooth
 
 
-def plan(machine, h, x=None):
-    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]."""
+def plan(machine, h, x=None, adapt=False):
+    """`Plan` of a machine for steps of `h` seconds, its laws taken at compressions `x` [m]; `adapt`: with what is `allowed`."""
     K, C, k, c = machine.linear(x)
     squared, modes = modal(K, machine.mass)
     n = len(squared)
@@ -71,12 +80,34 @@ def plan(machine, h, x=None):
     rub = [row for m in machine.meshes for row, _ in m.friction]
     rows = np.concatenate([-machine.G, -np.array(rub).reshape(-1, n), np.array([p.row for p in machine.loads]).reshape(-1, n)])
     B = back[:, n:] @ modes.T @ rows.T
-    x, v, law = machine.G @ basis[:n], machine.G @ basis[n:], machine.law
+    pressed, law = x, machine.law
+    x, v = machine.G @ basis[:n], machine.G @ basis[n:]
     affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
     rates = (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | film | (len(rub) > 0)
     P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     count = 1 + (LEVELS if (law["backlash"] > 0).any() or any(one.breaks.size > 1 for one in machine.loads) else 0)
-    return Plan(basis, inverse, P, affine, k, c, h, [_matrices(A, B, P, h / 2**level) for level in range(count)])
+    levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
+    local = adapt and is_bent(machine) and count > 1
+    allowed = LOCAL * (h / default_step(machine)) ** 3 if local else math.inf
+    scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
+    return Plan(basis, inverse, P, affine, k, c, h, levels, allowed, scale)
+
+
+def is_bent(machine):
+    """Whether a mesh force is no straight line of compression and rate: an exponent, or damping that grows with the depth."""
+    return bool((machine.law["power"] != 1).any() or (machine.law["per_depth"] > 0).any())
+
+
+def default_step(machine):
+    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
+
+    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
+    """
+    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
+    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
+    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
+    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
+    return 1 / max(STEPS * highest, top / SHARE)
 
 
 def _blocks(A, squared, D):

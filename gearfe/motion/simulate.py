@@ -3,7 +3,9 @@
 import math
 import time
 import warnings
+from collections.abc import Callable
 from dataclasses import replace
+from importlib.util import find_spec
 from numbers import Real
 
 import numpy as np
@@ -20,6 +22,8 @@ FINER = 3  # times the step of a whole run is halved where contact is lost
 DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
+SLOW = 5.0  # s: above it the seconds expected are told
+LONGEST = 300.0  # s: a run without numba that would take longer is refused
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
@@ -37,6 +41,7 @@ def simulate(
     rtol: float = 1e-8,
     error: bool | None = None,
     numba: bool | None = None,
+    progress: Callable[[str], object] | None = None,
 ) -> Response:
     """Response of a machine.
 
@@ -50,12 +55,14 @@ def simulate(
     duration : float
         [s]
     method : str
-        ``"fast"``: `gearfe.motion.exponential`, fixed steps that are halved about changes of contact. Or a method of
+        ``"fast"``: `gearfe.motion.exponential`, fixed steps that are halved about changes of contact, and under a law of contact
+        that is not linear also where flanks come into contact. Or a method of
         `scipy.integrate.solve_ivp`, the reference (``"DOP853"`` with ``rtol=1e-10``), between located changes of contact.
     rate : float, optional
         Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
     step : float, optional
-        Longest step of the fast path [s]; rounded down to divide the interval of the output. Its error is estimated. Default: a
+        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output. Its
+        error is estimated. Default: a
         step whose error on a short stretch is at most 7e-4 of the range (`gearfe.motion.step_control.chosen_step`); where
         contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
         disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
@@ -74,7 +81,10 @@ def simulate(
         Fast path: True integrates once more with half the step, ``stats["error"]`` is then of the whole run; False leaves a
         given step unestimated.
     numba : bool, optional
-        Fast path: use the compiled loop; default: if numba is installed.
+        Fast path: use the compiled loop; default: if numba is installed. The first run compiles it, which takes about 10 s;
+        numba keeps the result on the disk.
+    progress : callable, optional
+        Gets a line before the loop is compiled, and one with the seconds expected where a run takes long.
 
     Returns
     -------
@@ -86,7 +96,8 @@ def simulate(
     Raises
     ------
     ValueError
-        If an input is impossible.
+        If an input is impossible, or numba is not installed and the run would take longer than `LONGEST` (``numba=False`` runs
+        it nevertheless).
     RuntimeError
         If the response grows beyond all bounds, or the reference gives up.
 
@@ -113,7 +124,7 @@ def simulate(
     if method != "fast":
         return reference(machine, duration, count, state, method, rtol, start)
     own = state if initial is not None and not start else None
-    run = _Runs(machine, duration, count, state, own, start, numba)
+    run = _Runs(machine, duration, count, state, own, start, numba, progress)
     if step is None and dt is None:
         return run.controlled(error)
     return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
@@ -143,14 +154,35 @@ def _check_memory(machine, duration, count):
 class _Runs:
     """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
 
-    def __init__(self, machine, duration, count, state, own, start, numba):
+    def __init__(self, machine, duration, count, state, own, start, numba, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
         self.own, self.start, self.numba = own, start, numba
+        self.compiled = find_spec("numba") is not None if numba is None else numba
+        self.tell = progress or (lambda line: None)
+        if self.compiled and progress:
+            self._announce()
 
-    def __call__(self, every, state=None):
+    def _announce(self):
+        from .numba_loop import is_ready
+
+        if not is_ready():
+            self.tell("loading the integrator; the first time it is compiled by numba, which takes about 10 s")
+
+    def _watch(self, cost):
+        """Refuse a run that takes too long without numba, from the seconds that one simulated second takes."""
+        seconds = cost * self.duration
+        if seconds > LONGEST and not self.compiled and self.numba is None:
+            raise ValueError(
+                f"duration = {self.duration:g} s: without numba this run would take about {seconds / 60:.2g} minutes, and up to "
+                "100 times less with it: pip install gearfe[fast]; or give a shorter duration, or numba=False to run it so"
+            )
+        if seconds > SLOW:
+            self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
+
+    def __call__(self, every, state=None, adapt=False):
         """Run of `every` steps for each output."""
         state = self.state if state is None else state
-        options = {"every": every, "numba": self.numba, "start": self.start}
+        options = {"every": every, "numba": self.numba, "start": self.start, "adapt": adapt}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
@@ -163,7 +195,7 @@ class _Runs:
             doubt, length = max(difference(out, self(2 * every))), float(self.duration)
         else:
             try:
-                doubt, _, length = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
+                doubt, _, length, _ = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
             except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
                 doubt, length = math.inf, float(self.duration)
         if not doubt <= COARSE:
@@ -182,15 +214,15 @@ class _Runs:
         def told(one, **more):
             return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
 
-        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba)
+        dt, doubt, length = chosen_step(self.machine, self.duration, self.own, self.numba, adapt=True, watch=self._watch)
         every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
-        out = self(every)
+        out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
             return told(out, error=doubt, error_seconds=length)
         length = float(self.duration)
         for _ in range(FINER):
             every *= 2
-            finer = self(every)
+            finer = self(every, adapt=True)
             doubt = max(difference(out, finer))
             out = finer
             if doubt <= ALLOWED or not out.stats["losses"]:
@@ -198,7 +230,7 @@ class _Runs:
         h = out.stats["dt"]
         why = f"contact is lost and two runs of the fast path, with steps of {2 * h:.3g} s and half of it, differ by {doubt:.2g}"
         rest = np.concatenate([self.machine.rest(self.start), np.zeros(len(self.machine.dofs))])
-        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest)), out))
+        grown = max(difference(self(every, self.state + NUDGE * (self.state + rest), adapt=True), out))
         if grown > GROWN:
             why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
             why += " for so long; trust its averages and spectra, or shorten the run"

@@ -9,27 +9,14 @@ import math
 
 import numpy as np
 
-from ..machine.tables import natural_frequencies
 from .fixed_step import fixed_steps
+from .propagator import default_step, is_bent
 
-STEPS = 80  # per mesh cycle, at first
-SHARE = 0.35  # of the period of the stiffest mesh, at first
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to half the step: of order four, and where local halving rules
 TURNS = ("theta", "tilt_x", "tilt_y")
-
-
-def default_step(machine):
-    """Step that resolves mesh cycles (`STEPS` per cycle) and what the meshes excite (`SHARE` of a period) [s].
-
-    A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
-    """
-    highest = max((abs(m.frequency) for m in machine.meshes), default=0.0)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
-    top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
-    return 1 / max(STEPS * highest, top / SHARE)
 
 
 def difference(one, two):
@@ -70,7 +57,7 @@ def stretch(machine, duration):
     return max(0.0, min(start, duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None):
+def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -83,24 +70,31 @@ def chosen_step(machine, duration, initial=None, numba=None):
     initial : ndarray, shape (2n,), optional
         State from which the stretch starts; default: at rest.
     numba : bool, optional
+    adapt : bool
+        Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
+    watch : callable, optional
+        Gets the seconds that a simulated second takes at each step tried; may raise.
 
     Returns
     -------
     dt : float
         [s]
     error : float
-        Difference of displacements and mesh forces at half the step, the larger of `difference`, times 1.2.
+        Difference of displacements and mesh forces at half the step, the larger of `difference`, times `SMOOTH` or `ROUGH`.
     length : float
         Of the stretch [s].
     """
 
     def error(h):
         try:
-            return estimate(machine, duration, h, initial, numba)[:2]
+            doubt, lost, _, cost = estimate(machine, duration, h, initial, numba, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
             return math.inf, False
+        if watch is not None:
+            watch(cost)
+        return doubt, lost
 
     length = stretch(machine, duration)[1]
     h = min(default_step(machine), length)
@@ -112,8 +106,8 @@ def chosen_step(machine, duration, initial=None, numba=None):
     return h, doubt, length
 
 
-def estimate(machine, duration, h, initial=None, numba=None):
-    """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times 1.2.
+def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
+    """Error of the step `h` on a `stretch`: the larger `difference` to a run at half the step, times `SMOOTH` or `ROUGH`.
 
     Returns
     -------
@@ -122,10 +116,14 @@ def estimate(machine, duration, h, initial=None, numba=None):
         Whether contact is lost there.
     length : float
         Of the stretch [s].
+    cost : float
+        Seconds for a simulated second at this step, from what the run at half of it took longer.
     """
     start, length = stretch(machine, duration)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
-    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, numba=numba, start=start) for c in (1, 2))
-    return 1.2 * max(difference(one, two)), two.stats["losses"] > 0, length
+    options = {"numba": numba, "start": start, "adapt": adapt}
+    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
+    cost = max(two.stats["seconds"] - one.stats["seconds"], 0.0) / length
+    return (ROUGH if adapt and is_bent(machine) else SMOOTH) * max(difference(one, two)), two.stats["losses"] > 0, length, cost

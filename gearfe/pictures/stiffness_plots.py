@@ -12,6 +12,7 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.profile import roll_at_arc
 
 from ..files import save_figure
+from ..units import NEWTON_PER_UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from ..contact.solid import Contact3D
 
 
-NEWTON_PER_UM = 1e6  # one N/um in N/m: the unit of k in every picture
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")  # apart for the colour-blind
 DASHES = ("-", (0, (6, 2)), (0, (1.5, 1.5)), (0, (6, 2, 1.5, 2)), (0, (3, 1)), (0, (8, 2, 1.5, 2, 1.5, 2)), (0, (1, 3)))
 SQUASHED = 0.3  # lowest over largest stiffness from which on an axis from zero would waste the picture

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ..pictures.stiffness_plots import COLOURS, NEWTON_PER_UM, closed
+from ..pictures.stiffness_plots import COLOURS, closed
+from ..units import NEWTON_PER_UM
 from .tooth import shown_tooth, towards_flank
 
 DASH = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")

@@ -5,6 +5,7 @@ import warnings
 from dataclasses import dataclass, field
 
 from ..scene.load import load_scene
+from ..steps import part, steps
 from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
 from ..studies.vibration import analysis, responses
@@ -46,7 +47,7 @@ class Findings:
         return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))
 
 
-def find(scene, case=None, *, duration=0.2, phases=64, step=lambda text, done, total: None):
+def find(scene, case=None, *, duration=0.2, phases=64):
     """Compute all that a report shows.
 
     Parameters
@@ -58,8 +59,6 @@ def find(scene, case=None, *, duration=0.2, phases=64, step=lambda text, done, t
         Of the vibration of the scene's machine [s]; 0 leaves it out.
     phases : int
         Of the stiffness curves.
-    step : callable
-        Gets a text, the steps done and their number before each step.
 
     Returns
     -------
@@ -72,17 +71,16 @@ def find(scene, case=None, *, duration=0.2, phases=64, step=lambda text, done, t
     found = Findings(scene, case or (cases[0] if cases else None))
     wanted = [(name, None) for name in scene.pairs]
     wanted += [(name, found.case) for name, pair in scene.pairs.items() if found.case in pair.damage]
-    total = len(wanted) + 1 + bool(scene.machine and duration)
-    for number, (name, which) in enumerate(wanted):
-        step(f"{name}, {which or 'healthy'}", number, total)
-        with _counted(found, f"stiffness of {name}, {which or 'healthy'}"):
-            found.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
-    step("loaded tooth", len(wanted), total)
-    with _counted(found, "tooth in three dimensions"):
+    moves = bool(scene.machine and duration)
+    done = 0.8 if moves else 1.0  # vibration takes the rest
+    with part("", 0.0, 0.7 * done):
+        for name, which in steps(wanted, lambda key: f"{key[0]}, {key[1] or 'healthy'}"):
+            with _counted(found, f"stiffness of {name}, {which or 'healthy'}"):
+                found.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
+    with part("loaded tooth", 0.7 * done, done), _counted(found, "tooth in three dimensions"):
         found.tooth = _tooth(found)
-    if scene.machine and duration:
-        step("vibration", len(wanted) + 1, total)
-        with _counted(found, "vibration of the machine"):
+    if moves:
+        with part("vibration", done, 1.0), _counted(found, "vibration of the machine"):
             made = responses(scene, found.case, duration=duration)
             try:
                 found.vibration, found.responses = analysis(made), made

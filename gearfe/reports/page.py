@@ -5,12 +5,12 @@ import contextlib
 import os
 import tempfile
 import time
-from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
 
 from ..files import check_output, missing, written
 from ..scene.load import Scene
+from ..steps import part
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
@@ -28,7 +28,6 @@ def report(
     *,
     duration: float = 0.2,
     phases: int = 64,
-    tell: Callable[[str], object] | None = None,
 ) -> Path:
     """Write one self-contained page of a scene: assumptions, errors, curves, shares, stress, vibration, and how all was made.
 
@@ -44,8 +43,6 @@ def report(
         Of the vibration of the scene's machine that is kept [s]; 0 leaves the machine out.
     phases : int
         Of the stiffness curves, per mesh cycle.
-    tell : callable, optional
-        Its ``step(text, done, total)`` is called before each step of the work.
 
     Returns
     -------
@@ -66,8 +63,9 @@ def report(
     except ImportError as error:
         raise missing(f"{error.name}", "report", error) from error
     started = time.perf_counter()
-    found = find(scene, case, duration=duration, phases=phases, step=getattr(tell, "step", lambda *_: None))
-    with _part(found, "stress pictures"):
+    with part("", 0.0, 0.85):
+        found = find(scene, case, duration=duration, phases=phases)
+    with part("stress pictures", 0.85, 1.0), _part(found, "stress pictures"):
         pictures = _pictures(found)
     texts = resources.files("gearfe.reports")
     maker = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)

@@ -162,6 +162,11 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
     ValueError
         Naming file, table and key if anything is unknown, missing, or of the wrong type, or if a gear or pair cannot be.
     """
+    return scene_of(*read_tables(name_or_path))
+
+
+def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, Any]]:
+    """Name and unchecked tables of a scene's file, as `scene_of` takes them."""
     if isinstance(name_or_path, str) and name_or_path in scene_names():
         file = resources.files("gearfe.scenes") / f"{name_or_path}.toml"
     else:
@@ -172,10 +177,12 @@ def load_scene(name_or_path: str | os.PathLike[str]) -> Scene:
         data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
-    return _scene(file.name, data)
+    return file.name, data
 
 
-def _scene(file, data):
+def scene_of(file: str, data: dict[str, Any]) -> Scene:
+    """Scene of the tables that a file of that name holds; the messages of its errors begin with the name."""
+    data = dict(data)
     tables = {name: data.pop(name, {}) for name in TABLES}
     told, given = data.pop("assumption", []), data.pop("given", {})
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..units import NEWTON_PER_UM
 from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known
 
 KINDS = ("input", "arithmetic", "model")
@@ -168,11 +169,12 @@ def _row(file, where, table, reference, pairs):
 
 
 def printed_stiffness(scene, pair, case=None):
-    """Lines of text with the stiffnesses [N/m] that the sources of a scene print for a pair in a case (None: healthy)."""
+    """Lines of text with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy)."""
     out, damaged = [], scene.pair(pair).damage
     for one in scene.references:
         for row in one.rows if one.unit == "N/m" else ():
             if row.pair == pair and (row.case == case if case else row.case not in damaged):
-                more = "" if row.corrected is None else f"; {row.corrected:.4g} N/m after a correction: {row.correction}"
-                out.append(f"printed, {one.quantity}: {row.value:.4g} N/m ({one.source}){more}")
+                value, corrected = (None if k is None else f"{k / NEWTON_PER_UM:.4g} N/um" for k in (row.value, row.corrected))
+                more = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
+                out.append(f"printed, {one.quantity}: {value} ({one.source}){more}")
     return out

@@ -3,9 +3,12 @@
 import math
 from typing import NamedTuple
 
+from ..units import NEWTON_PER_UM
+
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
+SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 
 
@@ -183,7 +186,7 @@ def _tolerance(reference):
 
 
 def _unit(reference):
-    return "" if reference.unit in ("-", "statement") else f" [{reference.unit}]"
+    return "" if reference.unit in ("-", "statement") else f" [{SHOWN_AS.get(reference.unit, reference.unit)}]"
 
 
 def _shown(reference, value):
@@ -191,7 +194,7 @@ def _shown(reference, value):
         return ""
     if reference.unit == "statement":
         return "yes" if value else "no"
-    return f"{value:.5g}"
+    return f"{value / (NEWTON_PER_UM if reference.unit in SHOWN_AS else 1.0):.5g}"
 
 
 def _away(reference, row):

@@ -106,7 +106,7 @@ def _stored(kind, gear, case, solve):
     place = folder()
     if place is None:
         return solve()
-    key = repr((kind, gear, *case, _made_by()))
+    key = repr((kind, gear, *case, made_by()))
     file = place / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
     arrays_of, made_from = FORMATS[kind]
     stored = read_flexibility(file, key, partial(made_from, gear))
@@ -120,7 +120,7 @@ def _stored(kind, gear, case, solve):
 
 
 @lru_cache(maxsize=1)
-def _made_by():
+def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
     """Hash of the source of both packages, and the versions of the libraries."""
     digest = hashlib.sha256()
     for source in sources():

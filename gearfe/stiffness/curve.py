@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..files import missing, save, save_as
 from ..pictures.inline import line_svg
-from ..pictures.stiffness_plots import NEWTON_PER_UM, plot_curves
+from ..pictures.stiffness_plots import plot_curves
+from ..units import NEWTON_PER_UM
 from .curve_file import content, read_fields
 
 if TYPE_CHECKING:

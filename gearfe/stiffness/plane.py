@@ -9,6 +9,7 @@ import numpy as np
 
 from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
+from ..steps import steps
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate, fixed_phases
 from .own_flexibility import flexibility_of
@@ -51,7 +52,7 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
 
     gears = list(zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True))
     if own is None:
-        flexible = [named(row, gear, material, found) for gear, material, found in gears]
+        flexible = [named(row, gear, material, found) for gear, material, found in steps(gears)]
     else:
         flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
     contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state, flanks=flanks)
@@ -122,7 +123,7 @@ def with_error(row, curves, case, options):
     turns = any(form.flank.pitch for form in options.get("flanks") or ())
     periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in ({}, *less)]
+    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less))]
     out = []
     for one in curves:
         k, *coarse = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..contact.solid import pair_stiffness3d
 from ..flexibility.solved import solved_gears
+from ..steps import part
 from .cache import solved_solid
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
@@ -57,11 +58,15 @@ def wide_curve(force, case, meta, *, brute, face, groove, refine, extended, orde
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
         options |= {"refine": refine, "order": order}
-    found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
-    more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
+    done = 0.6 if error else 1.0
+    with part("contact", 0.0, 0.7 * done):
+        found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
+    with part("its slope", 0.7 * done, done):
+        more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
     doubt = None
     if error:
-        doubt, ratio = _doubt((pair, force, materials), phase, found, options, (refine, cache, tell) if brute else None)
+        with part("estimate of the error", done, 1.0):
+            doubt, ratio = _doubt((pair, force, materials), phase, found, options, (refine, cache, tell) if brute else None)
         meta = meta | ({"error_refine": ratio * refine} if brute else {})
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):

@@ -14,6 +14,7 @@ from geometry.tooth.modified import Flank, flank_forms
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
+from ..steps import part, steps
 from .curve import StiffnessCurve
 from .inputs import (
     by_gear,
@@ -255,19 +256,21 @@ def mesh_stiffness(
         written = {name: value for name, value in options.items() if name != "order" or row.order}
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
-        curves = [wide_curve(value, case, meta, **options) for value in forces]
+        curves = [wide_curve(value, case, meta, **options) for value in steps(forces, lambda value: f"{row.name}, {value:g} N")]
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
         sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms}
         solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
     else:
         numeric |= {"cracks": cracks, "flanks": forms, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
-        solve, details = section_solver(row, own, pair, materials, phase, **numeric)
+        with part(row.name, 0.0, 0.4 if error else 1.0):
+            solve, details = section_solver(row, own, pair, materials, phase, **numeric)
     meta = provenance(pair, materials, row.name, details | said)
     hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None
     curves = [curve(pair, phase, value, solve, meta, hurt) for value in forces]
     if error and row.error:
-        curves = with_error(row, curves, (pair, materials, phase), numeric)
+        with part("estimate of the error", 0.4, 1.0):
+            curves = with_error(row, curves, (pair, materials, phase), numeric)
     return _answered(curves, pair, materials, force, torque)
 
 

@@ -13,6 +13,7 @@ from ..elements.elasticity import Body
 from ..elements.fe import EDGES, flank_load
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
+from ..steps import steps
 from ..stiffness.inputs import by_gear
 from ..stiffness.solve import mesh_stiffness
 
@@ -104,9 +105,8 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
     out = []
     rolls = found.roll_1[0], found.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
-    for gear, material, own, roll, turn, centre, mirror, ahead in zip(
-        (pair.gear_1, pair.gear_2), materials, cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1), strict=True
-    ):
+    gears = (pair.gear_1, pair.gear_2), materials, cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
+    for gear, material, own, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
         for i, k in carrying:
             radius = pair.relative_radius(found.roll_1[0, i], found.roll_2[0, i])

@@ -16,6 +16,7 @@ from ..contact.solid import Contact3D, pair_stiffness3d
 from ..elements.hexahedron import assemble
 from ..elements.solver import factor, plan
 from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
+from ..steps import part
 from ..stiffness.inputs import by_gear, overlap, two_materials
 from .fields import Field
 
@@ -113,23 +114,26 @@ def pressed_tooth(
     side = which[0]
     gear, half, own_pits = _own(pair, side, face, groove, pits[side])
     crack = next(iter(cracks[side]), None)
-    sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
+    with part("mesh", 0.0, 0.3):
+        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
     order = (1, -1)[side] * tooth
-    contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
+    with part("contact", 0.3, 0.5):
+        contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
     loads = np.column_stack([_pressure(sector, nodes, number, found) for found in lines])
     held = _held(sector, number)
-    moved, unknowns = _moved(nodes, kept, materials[side], held, loads, tell)
+    with part("stress", 0.5, 1.0):
+        moved, unknowns = _moved(nodes, kept, materials[side], held, loads, tell)
     extra = np.zeros(0)
     if removal:
         whole, _ = _moved(nodes, cells, materials[side], held, loads, tell)
         work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
         extra = work / (force * contact.approach)
     moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
-    load = np.array([sum(part[3].sum() for part in found.get(0, ())) for found in lines])
+    load = np.array([sum(one[3].sum() for one in found.get(0, ())) for found in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
     return Pressed(sector, nodes, kept, contact, ("pinion", "wheel")[side], load, moved, stress, extra, unknowns)
 

@@ -11,6 +11,7 @@ from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.stiffness_plots import plot_contact
 from ..scene.load import ScenePair
+from ..steps import part
 from ..stiffness.inputs import by_gear
 from ..stiffness.limits import check_section, checked_refine
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
@@ -83,13 +84,15 @@ def render_stress(
     damage = scene_pair.case(case).get("damage")
     wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
     _check_size(wide, refine)
-    fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
+    with part("", 0.0, 0.85):
+        fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
     told["text"] = _text(title or (case or ""), told)
     if suffix == ".vtu":
         write_vtu(path, fields)
     else:
-        (_draw_tooth if wide else _draw_gears)(scene_pair.pair, fields, told, path, size)
+        with part("picture", 0.85, 1.0):
+            (_draw_tooth if wide else _draw_gears)(scene_pair.pair, fields, told, path, size)
     return told
 
 
@@ -266,7 +269,7 @@ def _draw_tooth(pair, fields, told, path, size):
     rate = gear.twist_rate
     angle = (np.arctan2(x, y) - rate * z) * gear.z / (2 * math.pi)  # in pitches from tooth 0
     deep = gear.outward * (np.hypot(x, y) - gear.r_f) / gear.m_n
-    linear = np.hstack([field.cells[list(part)] for part in EIGHT])
+    linear = np.hstack([field.cells[list(corners)] for corners in EIGHT])
     grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: linear.T}, (field.points + scale * field.moved).T)
     for name, values in ((MISES, field.mises), ("pitch", angle), ("deep", deep)):
         grid.point_data[name] = values

@@ -2,11 +2,13 @@
 
 import contextlib
 import multiprocessing
+import multiprocessing.connection
 import os
 import pickle
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -90,21 +92,49 @@ def _spread(jobs, workers, progress):
         own = any(b"__main__" in pickle.dumps(job) for job in jobs)
     except (AttributeError, TypeError, pickle.PicklingError) as error:
         raise ValueError(f"{error}: processes need functions that can be imported by name; or use workers = 1") from error
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
     try:
-        with (
-            contextlib.nullcontext() if own else _without_main(),
-            ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool,
-        ):
+        with processes(workers, own=own) as pool:
             size = max(1, min(16, len(jobs) // (4 * workers)))
             return _collect(pool.map(_timed, jobs, chunksize=size), len(jobs), progress)
     except BrokenProcessPool as error:
         guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or ' if own else ""
         raise RuntimeError(f"{guard}a worker process ended before its cases were done: killed, or out of memory") from error
+
+
+@contextlib.contextmanager
+def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecutor]:
+    """Pool of new processes of one thread each, which end when this one does, however it ends.
+
+    Parameters
+    ----------
+    workers : int
+    own : bool
+        Whether they need what the caller's script defines: then they run it again.
+    """
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    spawn = multiprocessing.get_context("spawn")
+    try:
+        with (
+            contextlib.nullcontext() if own else _without_main(),
+            ProcessPoolExecutor(workers, mp_context=spawn, initializer=_end_with_parent) as pool,
+        ):
+            yield pool
     finally:
         for name, value in before.items():
             os.environ.pop(name, None) if value is None else os.environ.update({name: value})
+
+
+def _end_with_parent():
+    """Leave this process when the one that started it is gone: a killed one can not say so to its workers."""
+    parent = multiprocessing.parent_process()
+
+    def watch():
+        if parent is not None:
+            multiprocessing.connection.wait([parent.sentinel])
+            os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 @contextlib.contextmanager

@@ -8,11 +8,14 @@ import numpy as np
 
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
+from ..steps import steps
 from ..stiffness.inputs import overlap, why_solid
 from ..stiffness.methods import METHODS, SUMS, fitted
 from ..stiffness.solve import mesh_stiffness
+from ..units import in_newton_per_um
 
 PHASES = 32  # of the cycle looked at
+COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 1.0}  # about, of a curve, in CPU seconds: for the time left
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,14 +84,14 @@ class CaseTable:
         """Markdown: per pair and case the reference, and every method's error of the mean and of the maximum."""
         others = [name for name in self.methods if name != self.reference]
         lines = [
-            f"| pair | case | {self.reference} mean | max [GN/m] | "
+            f"| pair | case | {self.reference} mean [N/um] | max [N/um] | "
             + " | ".join(f"{name} mean | max" for name in others) + " |",
             "|---" * (4 + 2 * len(others)) + "|",
         ]  # fmt: skip
         for pair, case in self.cases():
             truth = self.curves[pair, case, self.reference]
             cells = [_percent(error, "+.1f") for name in others for error in self.errors(pair, case, name)[:2]]
-            head = [pair, case or "healthy", f"{truth.mean / 1e9:.4f}", f"{truth.largest / 1e9:.4f}"]
+            head = [pair, case or "healthy", in_newton_per_um(truth.mean, 5), in_newton_per_um(truth.largest, 5)]
             lines.append("| " + " | ".join([*head, *cells]) + " |")
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
         return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
@@ -190,7 +193,7 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     compute : bool
         Compute three-dimensional finite elements that are not on file.
     progress : callable, optional
-        Gets a text before each solve; one that has a ``step`` gets ``progress.step(text, done, total)`` instead.
+        Gets a text before each solve.
 
     Returns
     -------
@@ -204,7 +207,6 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     """
     if not any(pair.damage for pair in scene.pairs.values()):
         raise ValueError(f"scene {scene.name} has no cases of damage: add [[crack]] or [[pits]] tables")
-    step = getattr(progress, "step", None) or (lambda text, *_: progress(text) if progress else None)
     wide = any(is_wide(pair) for pair in scene.pairs.values())
     stored = read_curves(scene) if wide else {}
     wanted = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]
@@ -214,22 +216,21 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
     taken = {(key, "fe3d") for key in stored}
     curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
-    done, total = 0, sum((key, method) not in taken for key in wanted for method in methods)
-    for name, case in wanted:
-        chosen = scene.pairs[name]
-        for method in methods:
-            if ((name, case), method) in taken:
-                _, k, tooth, estimate, seconds = stored[name, case]
-                curves[name, case, method] = CaseCurve(k, tooth, seconds, estimate)
-                continue
-            step(f"{name} {case or 'healthy'}: {method}", done, total)
-            done += 1
-            try:
-                curves[name, case, method] = case_curve(chosen, case, method, cycles[name])
-            except ValueError as error:
-                if METHODS[method].converged:
-                    raise
-                warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
-                nothing = np.full(PHASES, np.nan)
-                curves[name, case, method] = CaseCurve(nothing, nothing, 0.0, np.nan)
+    work = [(name, case, method) for name, case in wanted for method in methods]
+    cost = [0.0 if (key[:2], key[2]) in taken else COST.get(key[2], 0.1) for key in work]
+    for name, case, method in steps(work, lambda key: f"{key[0]} {key[1] or 'healthy'}: {key[2]}", cost):
+        if ((name, case), method) in taken:
+            _, k, tooth, estimate, seconds = stored[name, case]
+            curves[name, case, method] = CaseCurve(k, tooth, seconds, estimate)
+            continue
+        if progress:
+            progress(f"{name} {case or 'healthy'}: {method}")
+        try:
+            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name])
+        except ValueError as error:
+            if METHODS[method].converged:
+                raise
+            warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
+            nothing = np.full(PHASES, np.nan)
+            curves[name, case, method] = CaseCurve(nothing, nothing, 0.0, np.nan)
     return CaseTable(cycles, curves, methods, reference)

@@ -1,9 +1,7 @@
 """A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
 
 import math
-import warnings
 from dataclasses import dataclass, replace
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import expected_lines, find_lines
+from ..steps import part, steps
 
 FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
 UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
@@ -61,7 +60,7 @@ class Analysis:
         return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
 
 
-def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
+def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
     """Responses of a scene's machine, healthy and, if asked for, in a case of damage.
 
     Parameters
@@ -74,6 +73,8 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
         Of `gearfe.simulate`.
     phases : int
         Of the stiffness curves, per mesh cycle.
+    progress : callable, optional
+        Of `gearfe.simulate`.
 
     Returns
     -------
@@ -89,19 +90,21 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64):
     damage = [] if scene.machine.get("contact") == "impact" else found
     along = any(isinstance(one, Pit) or not one.through for one in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
-    if scene.machine.get("contact") == "impact" and method == "fast" and find_spec("numba") is None:
-        warnings.warn(
-            "without numba the impact law takes minutes for each hundredth of a second: pip install numba", stacklevel=2
-        )
-    made = {
-        name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
-        for name in ("healthy", *([case] if case else []))
-    }
+    names = ("healthy", *([case] if case else []))
+    with part("", 0.0, 0.5):
+        made = {
+            name: build_machine(scene, None if name == "healthy" else name, phases=phases, method=curves)
+            for name in steps(names, lambda name: f"stiffness curves, {name}")
+        }
     rate = math.ceil(duration / min(default_step(one) for one in made.values())) / duration
-    return {name: recorded(one, duration, rate, method=method) for name, one in made.items()}
+    with part("", 0.5, 1.0):
+        return {
+            name: recorded(made[name], duration, rate, method=method, progress=progress)
+            for name in steps(names, lambda name: f"motion, {name}")
+        }
 
 
-def recorded(machine, duration, rate, *, method="fast"):
+def recorded(machine, duration, rate, *, method="fast", progress=None):
     """Response of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
@@ -114,6 +117,7 @@ def recorded(machine, duration, rate, *, method="fast"):
     duration, rate : float
         Of what is kept [s, Hz].
     method : str
+    progress : callable, optional
         Of `gearfe.simulate`.
 
     Returns
@@ -123,8 +127,12 @@ def recorded(machine, duration, rate, *, method="fast"):
     decay = slowest_decay(machine)
     need = -math.log(FREE) / decay if decay else math.inf
     settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    before = simulate(machine, settle, rate=1 / settle)
-    out = simulate(machine, duration, rate=rate, method=method, initial=(before.q[-1], before.v[-1]), start=settle)
+    whole = settle + duration
+    with part("", 0.0, settle / whole):
+        before = simulate(machine, settle, rate=1 / settle, progress=progress)
+    start = before.q[-1], before.v[-1]
+    with part("", settle / whole, 1.0):
+        out = simulate(machine, duration, rate=rate, method=method, initial=start, start=settle, progress=progress)
     stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
     return replace(out, stats=out.stats | stats)
 

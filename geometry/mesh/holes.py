@@ -7,7 +7,7 @@ compared with an integral that knows nothing of the boundary representation, so 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,8 +54,8 @@ class Holed:
     removed: tuple
 
 
-def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
-    """Mesh a sector of `gear` with holes.
+def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, strips=(), stretch=1.0):
+    """Mesh a sector of `gear`, or all of it, with holes.
 
     Parameters
     ----------
@@ -65,12 +65,17 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
         All on one tooth, which becomes tooth 0 of the sector. They may overlap and cross the tip edge and the end faces.
     crack : Crack, optional
         Of the same tooth, through the whole width.
-    teeth : int
-        Odd number of teeth in the sector.
+    teeth : int or None
+        Odd number of teeth in the sector; None: the whole gear.
     refine : float
-        Divides all edge lengths.
+        Divides all edge lengths, not those of `strips`.
     sizes : dict, optional
         Edge lengths instead of those of `SIZES`.
+    strips : sequence of (ndarray (3, n), float, float)
+        Lines of points [mm] in the frame that turns with the helix, the distance from them within which the mesh is finer, and the
+        edge length there [mm].
+    stretch : float
+        Tets are so many times longer along the width than across it.
 
     Returns
     -------
@@ -83,7 +88,7 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
     RuntimeError
         If what was cut is not what the pits take.
     """
-    if teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2:
+    if teeth is not None and (teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2):
         raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0")
@@ -94,18 +99,21 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None):
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
-        made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()})
+        made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()}, strips, stretch)
         if _sizes_of(made.points, made.cells).min() > 0:
             return made
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
 
 
-def _attempt(gear, pits, crack, teeth, size):
+def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     points, curves, faces = _section(gear, crack, teeth)
+    squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
-        points, curves, faces, gear.b, [_tool(gear, pit) for pit in pits], fine=_fine(gear, crack, size), rim=rim, far=size["far"]
-    )
+        points, curves, faces, gear.b / stretch, [_squeezed(_tool(gear, pit), squeeze) for pit in pits],
+        fine=_fine(gear, crack, size), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
+    )  # fmt: skip
+    made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})
     meshed = float(_sizes_of(made.points, made.tets)[made.plug >= 0].sum())
     cut = float(sum(v for (_, plug), v in made.volume.items() if plug >= 0))
     volumes = float(removed_volume(gear, pits)), cut, meshed
@@ -133,7 +141,7 @@ def _check_place(gear, pits, crack):
 
 
 def _section(gear, crack, teeth):
-    """Points ``(2, n)``, curves and faces of the sector: one face, or body and cracked tooth."""
+    """Points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
     points, curves = [], []
 
     def at(xy):
@@ -144,31 +152,50 @@ def _section(gear, crack, teeth):
         curves.append((kind, list(ends)))
         return len(curves) - 1
 
-    pitch, reach = 2 * math.pi / gear.z, teeth // 2
-    edge = (reach + 0.5) * pitch
+    own_teeth = numbers_of(gear, teeth)
+    pitch = 2 * math.pi / gear.z
+    edge = (0.5 - own_teeth[0]) * pitch
     first = last = at(cartesian(gear.r_f, -edge))
     rim, above, marks = [], [], {}  # where the crack's parting line meets the outline
-    for tooth in range(-reach, reach + 1):
+    for tooth in own_teeth:
         for side in ("unloaded", "loaded"):
             mark = None if crack is None or tooth else start_arc(gear, crack)
-            for kind, radius, angle, cut in _half(gear, side, mark):
-                own = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in zip(radius[1:], angle[1:], strict=True))]
+            pieces = _half(gear, side, mark)
+            for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
+                closing = teeth is None and (tooth, side, number) == (own_teeth[-1], "loaded", len(pieces))
+                places = zip(radius[1 : -1 if closing else None], angle[1 : -1 if closing else None], strict=True)
+                own = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in places), *([first] if closing else [])]
                 if cut and side == "unloaded":
                     marks["unloaded"], before = own[0], len(rim)
                 (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *own))
                 last = own[-1]
                 if cut and side == "loaded":
                     marks["loaded"] = last
-    inner = [at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
-    rim += [join("line", last, inner[0]), join("arc", *inner[:2]), join("arc", *inner[1:]), join("line", inner[2], first)]
+    hole = []
+    if teeth is None:
+        inner = [at(cartesian(gear.held, 2 * math.pi * k / 3)) for k in range(3)]
+        hole = [[join("arc", inner[k], inner[(k + 1) % 3]) for k in range(3)]]
+    else:
+        inner = [at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
+        rim += [join("line", last, inner[0]), join("arc", *inner[:2]), join("arc", *inner[1:]), join("line", inner[2], first)]
+
+    def body(loop):
+        return [*hole, loop] if gear.internal else [loop, *hole]
+
     if crack is None:
-        return np.array(points).T, curves, [rim]
+        return np.array(points).T, curves, [body(rim)]
     path = crack_path(gear, crack)
     corners = [marks[crack.side], *(at(xy) for xy in path.T[1:])]
     corners.append(marks["loaded" if crack.side == "unloaded" else "unloaded"])
     parting = [join("line", a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)]
     clockwise = parting if crack.side == "unloaded" else parting[::-1]
-    return np.array(points).T, curves, [rim[:before] + clockwise + rim[before:], above + clockwise[::-1]]
+    return np.array(points).T, curves, [body(rim[:before] + clockwise + rim[before:]), [above + clockwise[::-1]]]
+
+
+def numbers_of(gear, teeth):
+    """Numbers of the teeth of a sector, or of the whole gear (None), about tooth 0."""
+    count = gear.z if teeth is None else teeth
+    return range(-(count // 2), count - count // 2)
 
 
 def _half(gear, side, mark):
@@ -211,6 +238,13 @@ def _tool(gear, pit):
     roll = math.sqrt(pit.radius**2 - gear.r_b**2)
     above = (0.2 + (max(pit.axes) ** 2 / roll if gear.internal else 0.0) / pit.depth) * push
     return centre - above, axes, push + above
+
+
+def _squeezed(tool, squeeze):
+    """A disk and its push after the width was squeezed: again a disk, with other half axes."""
+    centre, axes, push = tool
+    turned, size, _ = np.linalg.svd(squeeze * axes, full_matrices=False)
+    return centre * squeeze[:, 0], turned * size, push * squeeze[:, 0]
 
 
 def _sizes_of(points, cells):
@@ -291,20 +325,16 @@ def _named(gear, points, cells, plug, teeth):
     radius, angle = np.hypot(x, y), np.arctan2(x, y)
     near = 1e-4 * gear.m_n
     roll = np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0))
-    edge = teeth * math.pi / gear.z
-    on = {
-        "end 0": np.abs(z) < near,
-        "end b": np.abs(z - gear.b) < near,
-        "held": np.abs(radius - gear.held) < near,
-        "sides": np.abs(np.abs(angle) - edge) * radius < near,
-    }
+    on = {"end 0": np.abs(z) < near, "end b": np.abs(z - gear.b) < near, "held": np.abs(radius - gear.held) < near}
+    if teeth is not None:
+        on["sides"] = np.abs(np.abs(angle) - teeth * math.pi / gear.z) * radius < near
     curve = root_curve(gear, np.linspace(0.0, fillet_length(gear), 400))
     order = np.argsort(curve[0])
     off = np.abs(angle) - np.interp(radius, curve[0][order], curve[1][order])
     on["fillets 0"] = (np.abs(off) * radius < 10 * near) & (gear.outward * (gear.r_form - radius) > -near)
     low, high = sorted((gear.roll_f, gear.roll_a))
-    for tooth in range(-(teeth // 2), teeth // 2 + 1):
-        off = angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1]
+    for tooth in numbers_of(gear, teeth):
+        off = (angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1] + math.pi) % (2 * math.pi) - math.pi
         on[f"flank {tooth}"] = (np.abs(off) * radius < near) & (roll > low - near) & (roll < high + near)
     own = outer[:, kept]
     return {name: own[:, mask[own].all(axis=0)] for name, mask in on.items()} | {"pits": outer[:, ~kept]}

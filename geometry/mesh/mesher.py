@@ -138,7 +138,7 @@ class Pieces:
     volume: dict
 
 
-def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None, far, growth=0.5):
+def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None, far, growth=0.5, strips=()):
     """Tets of an extruded section, with elliptic cylinders cut out and kept as pieces of their own.
 
     Parameters
@@ -147,8 +147,8 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         Of the section [mm].
     curves : list of (str, sequence of int)
         ``line`` or ``arc`` (about the origin) between two points, ``spline`` through all of them.
-    faces : list of list of int
-        Numbers of the curves around each face; faces may share curves.
+    faces : list of list of list of int
+        Loops of each face, the outer first: numbers of curves; faces may share curves.
     height : float
         [mm].
     cylinders : sequence of (ndarray, ndarray, ndarray)
@@ -162,6 +162,8 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         Largest edge length [mm].
     growth : float
         Of the edge length per length, away from fine places.
+    strips : sequence of (ndarray (3, n), float, float)
+        Points of lines [mm], the distance from them within which the mesh is finer, the edge length there [mm].
 
     Returns
     -------
@@ -177,7 +179,7 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
             "spline": lambda at: occ.addSpline(at),
         }
         lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
-        flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop])]) for loop in faces]
+        flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
         prisms = [next(one for one in occ.extrude([(2, face)], 0, 0, height) if one[0] == 3) for face in flat]
         plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
         if len(prisms) + len(plugs) > 1:
@@ -197,7 +199,7 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         for tag, piece in owner.items():
             volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
         inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
-        _sizes(gmsh, inner, fine, rim, far, growth)
+        _sizes(gmsh, inner, fine, rim, far, growth, strips)
         mesh.generate(3)
         found, coords, _ = mesh.getNodes()
         place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
@@ -220,8 +222,8 @@ def _cylinder(occ, centre, axes, push):
     return next(one for one in occ.extrude([(2, disk)], *push) if one[0] == 3)
 
 
-def _sizes(gmsh, inner, fine, rim, far, growth):
-    """Background field: edge lengths that grow away from circles of the section and from the edges of pieces."""
+def _sizes(gmsh, inner, fine, rim, far, growth, strips):
+    """Background field: edge lengths that grow away from circles of the section, from strips and from the edges of pieces."""
     field = gmsh.model.mesh.field
     numbers = []
     for x, y, radius, size in fine:
@@ -235,13 +237,25 @@ def _sizes(gmsh, inner, fine, rim, far, growth):
         near = field.add("Distance")
         field.setNumbers(near, "CurvesList", sorted({abs(tag) for dim, tag in edges if dim == 1}))
         field.setNumber(near, "Sampling", 40)
-        numbers.append(field.add("Threshold"))
-        for name, value in (("InField", near), ("SizeMin", rim), ("SizeMax", far), ("DistMin", 0.0)):
-            field.setNumber(numbers[-1], name, value)
-        field.setNumber(numbers[-1], "DistMax", (far - rim) / growth)
+        numbers.append(_away(field, near, 0.0, rim, far, growth))
+    for line, reach, size in strips:
+        tags = [gmsh.model.occ.addPoint(*place) for place in line.T.tolist()]
+        gmsh.model.occ.synchronize()
+        near = field.add("Distance")
+        field.setNumbers(near, "PointsList", tags)
+        numbers.append(_away(field, near, reach, size, far, growth))
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", numbers)
     field.setAsBackgroundMesh(least)
     for name, value in (("MeshSizeMax", far), ("MeshSizeFromPoints", 0), ("MeshSizeExtendFromBoundary", 0)):
         gmsh.option.setNumber(f"Mesh.{name}", value)
     gmsh.option.setNumber("Mesh.Algorithm3D", 1)
+
+
+def _away(field, near, reach, size, far, growth):
+    """Field of edge lengths: `size` up to `reach` from the places of field `near`, then growing to `far`."""
+    number = field.add("Threshold")
+    for name, value in (("InField", near), ("SizeMin", size), ("SizeMax", far), ("DistMin", reach)):
+        field.setNumber(number, name, value)
+    field.setNumber(number, "DistMax", reach + (far - size) / growth)
+    return number

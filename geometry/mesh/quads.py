@@ -5,6 +5,7 @@ of the mouth (or to the tip of the crack on the other side). The crack is the pa
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,8 +87,8 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     loaded : sequence of int
         Teeth whose loaded flanks carry or read loads.
     cracks : sequence of Crack
-    patches : sequence of (float, float, float)
-        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm].
+    patches : sequence of (float, float, float), or dict of int to such
+        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth.
     refine : float
         Divides all edge lengths.
     sizes : dict, optional
@@ -112,6 +113,10 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     check_apart(gear, cracks)
     check_single(gear, cracks)
     teeth = [tooth % gear.z for tooth in loaded]
+    if isinstance(patches, Mapping):
+        patches = {tooth % gear.z: found for tooth, found in patches.items()}
+    else:
+        patches = dict.fromkeys(teeth, patches)
     for finer, algorithm in ATTEMPTS:
         edges = {name: value / refine / finer for name, value in size.items()}
         try:
@@ -198,7 +203,7 @@ def _rim(gear, draft, size, teeth, mouths, patches):
     for owner, side in halves:
         away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         own = side == "loaded" and owner in teeth
-        pieces = _half(gear, size, away, own, mouths.get(owner, {}).get(side), patches)
+        pieces = _half(gear, size, away, own, mouths.get(owner, {}).get(side), patches.get(owner, ()))
         sign = 1 if side == "loaded" else -1
         for name, radius, angle, params in pieces[::sign]:
             final = (owner, side, name) == (0, "unloaded", "tip")

@@ -17,6 +17,16 @@ def test_stiffness_writes_curve_and_plot(tmp_path, capsys):
     assert "assumed: face width" in capsys.readouterr().out
 
 
+def test_stiffness_of_one_gear_turned_against_the_other(tmp_path):
+    out = tmp_path / "k.csv"
+    assert main(["stiffness", "planetary_pitting", "--phases", "4", "--pose", "pinion", "-o", str(out)]) == 0
+    case = gf.load_scene("planetary_pitting").pair().case(None)
+    expected = gf.mesh_stiffness(**case, phases=4, span="cycle", pose="pinion")
+    np.testing.assert_allclose(gf.StiffnessCurve.from_csv(out).k, expected.k, rtol=1e-9)
+    mean = gf.mesh_stiffness(**case, phases=4, span="cycle")
+    assert abs(mean.k / expected.k - 1).max() > 1e-6
+
+
 def test_compare_prints_errors_by_zone(capsys):
     assert main(["compare", "planetary_pitting", "--phases", "16"]) == 0
     text = capsys.readouterr().out

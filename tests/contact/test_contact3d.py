@@ -13,6 +13,7 @@ from gearfe.contact import cell_sharing
 from gearfe.contact import cells as lines3d
 from gearfe.contact.sharing import share
 from gearfe.contact.solid import STEP, pair_stiffness3d
+from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility import halfspace
 from gearfe.flexibility.hertz import half_width
 from geometry.tooth.profile import cartesian, flank
@@ -345,3 +346,16 @@ def test_plot_of_the_contact_lines(tmp_path):
     figure = gf.plot_contact(pair, found, path=tmp_path / "lines.png")
     assert (tmp_path / "lines.png").stat().st_size > 10000
     assert figure.axes[1].get_xlabel() == "along the width [mm]"
+
+
+def test_teeth_that_bend_far_are_coupled_to_all_that_touch():
+    """A thin helical disc bends, so that three pairs touch where the first guess of the approach has two: all know each other."""
+    gears = [gf.Gear(z=z, b=2.46, beta=side * math.radians(30), r_bore=11.0 * z / 18, **RACK) for z, side in ((33, -1), (66, 1))]
+    pair, run = gf.GearPair(*gears), {"order": 2, "axial": 5}
+    found = pair_stiffness3d(pair, 246.0, STEEL, [0.75], **run)
+
+    def all_teeth(gear, material, cracks, neighbours):
+        return flexibility3d(gear, material, cracks, neighbours=5, **run)
+
+    assert np.ptp(found.cells[0].order) == 2
+    assert_allclose(found.k, pair_stiffness3d(pair, 246.0, STEEL, [0.75], model=all_teeth).k, rtol=1e-9)

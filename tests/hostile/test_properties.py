@@ -1,7 +1,7 @@
 """Every input drawn at random gives a result that keeps the invariants, or a ValueError that names the input.
 
 Invariants: ``0 < k`` within the range of teeth, forces that add up, symmetry under exchange of the gears, nothing stiffer by
-damage, continuity in the inputs. That estimates cover the difference of methods is judged in ``tests/stiffness/test_error.py``.
+damage, continuity in the inputs, error estimates that cover the difference of methods.
 Profiles: quick in the ordinary run, slow (10 000 examples and more) with ``-m slow``.
 """
 
@@ -122,6 +122,28 @@ def test_the_energy_model_keeps_its_invariants(profile):
 
     run(check, profile, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
         level=st.floats(0.1, 0.4), gap=st.floats(0.05, 0.3))  # fmt: skip
+
+
+@pytest.mark.parametrize("profile", profiles(1, 240))
+def test_estimates_cover_the_difference_of_methods(profile):
+    """Finite elements and the energy model are no further apart than both estimates together."""
+
+    def check(one, two, force, phase, level, fine):
+        pair = made(one, two)
+        assume(pair is not None)
+        damage = {"pinion": [gf.Crack(level=level)]} if level > 0.1 else None  # else healthy
+        run = {"phases": [phase], "damage": damage, "error": True, "cache": False}
+        try:
+            fe = stiffness(pair, force, "fe", refine=fine, **run)
+            ritz = stiffness(pair, force, "ritz", **run)
+        except (ValueError, RuntimeError) as error:
+            assert "force" in str(error) or "triangles" in str(error), str(error)
+            return
+        apart, covered = abs(fe.k[0] - ritz.k[0]) / ritz.k[0], (fe.error[0] + ritz.error[0]) / ritz.k[0]
+        assert apart <= covered, f"{100 * apart:.3f} % apart, estimates together {100 * covered:.3f} %"
+
+    run(check, profile, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
+        level=st.floats(0.0, 0.7), fine=st.floats(0.5, 1.0))  # fmt: skip
 
 
 PAIR = made({"z": 21, "x": 0.0, "bore": 0.4}, {"z": 31, "x": 0.0, "bore": 0.4})

@@ -1,11 +1,14 @@
 """What is kept and how it is integrated are two things: rate and step of `simulate`."""
 
+import time
+
 import numpy as np
 import pytest
-from machines import two_masses
+from machines import RUNS, two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.motion import simulate as dynamics
 from gearfe.motion.simulate import simulate
 from gearfe.motion.step_control import difference
 
@@ -71,3 +74,22 @@ def test_decimation_keeps_what_is_below_and_takes_out_what_is_above():
     assert_allclose(low.values[inside], want[inside], atol=0.01)
     with pytest.raises(ValueError, match="rate = 80000"):
         gf.decimate(whole, 80e3)
+
+
+def test_a_long_run_without_numba_is_refused_before_it_starts(monkeypatch):
+    monkeypatch.setattr(dynamics, "find_spec", lambda name: None)
+    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: None)
+    started = time.process_time()
+    with pytest.raises(ValueError, match=r"minutes.*pip install gearfe\[fast\]"):
+        simulate(two_masses(), 1e4, rate=10.0)
+    assert time.process_time() - started < 10
+    assert simulate(two_masses(), 0.002, rate=1e4).stats["numba"] is False
+
+
+@pytest.mark.skipif(len(RUNS) < 2, reason="numba is not installed")
+def test_what_is_compiled_is_told_of(monkeypatch):
+    told = []
+    monkeypatch.setattr("gearfe.motion.numba_loop.is_ready", lambda: False)
+    simulate(two_masses(), 0.002, rate=1e4, progress=told.append)
+    assert len(told) == 1
+    assert "compiled by numba" in told[0]

@@ -70,8 +70,8 @@ def test_printed_stiffness_of_a_case():
     made = gf.load_scene("herringbone")
     lines = printed_stiffness(made, "sun_planet", "case2")
     assert len(lines) == 2
-    assert "analytical: 9.6e+08 N/m" in lines[0]
-    assert "1.03e+09 N/m after a correction" in lines[0]
+    assert "analytical: 960 N/um" in lines[0]
+    assert "1030 N/um after a correction" in lines[0]
     assert printed_stiffness(made, "sun_planet") != lines
-    assert "1.676e+09 N/m (S2" in printed_stiffness(gf.load_scene("compound_planetary"), "sun_planet")[0]
+    assert "1676 N/um (S2" in printed_stiffness(gf.load_scene("compound_planetary"), "sun_planet")[0]
     assert printed_stiffness(gf.load_scene("helical_pitting"), "pinion_wheel") == []

@@ -68,8 +68,8 @@ def covered(seed, pair, force, damage):
     return inside
 
 
-def test_error_estimate_covers_the_true_error_in_a_few_cases():
-    """The other random cases are slow."""
+@pytest.mark.slow
+def test_error_estimate_covers_the_true_error_in_a_case():
     assert [covered(*case) for case in admissible([1])] == [True]
 
 

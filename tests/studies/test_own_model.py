@@ -158,7 +158,7 @@ def test_compare_gives_the_textbooks_error_row():
     for _, _, _, others in result.rows():
         for name, tolerance in (("file", 1e-9), ("total", 1e-12), ("pairs", 1e-12)):
             assert_allclose(others[name], others["textbook"], rtol=tolerance, err_msg=name)
-    assert result.table().splitlines()[0].endswith("| file [N/m] | error | total [N/m] | error | pairs [N/m] | error |")
+    assert result.table().splitlines()[0].endswith("| file [N/um] | error | total [N/um] | error | pairs [N/um] | error |")
 
 
 @pytest.mark.slow
@@ -175,12 +175,12 @@ def test_command_line(tmp_path, capsys):
     options = ["--phases", "16", "--refine", "0.5", "--plot", str(plot)]
     assert main(["compare", "planetary_pitting", *options, "--model", str(mine), "--model", str(example.EXAMPLE)]) == 0
     text = capsys.readouterr().out
-    assert "| mine [N/m] | error | matlab_curve [N/m] | error |" in text
+    assert "| mine [N/um] | error | matlab_curve [N/um] | error |" in text
     rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in text.splitlines() if line.startswith("| ")]
-    column = {name.removesuffix(" [N/m]"): k for k, name in enumerate(rows[0]) if name != "error"}
+    column = {name.removesuffix(" [N/um]"): k for k, name in enumerate(rows[0]) if name != "error"}
     cells = {row[0]: row for row in rows}
-    assert float(cells["double"][column["mine"]]) == 4e8
-    assert float(cells["single"][column["mine"]]) == 2.5e8
+    assert float(cells["double"][column["mine"]]) == 400.0
+    assert float(cells["single"][column["mine"]]) == 250.0
     own, textbook = column["matlab_curve"], column["textbook"]
     assert cells["mean"][own : own + 2] == cells["mean"][textbook : textbook + 2], "as the textbook, which the example is"
     assert "matlab_curve" in plot.read_text()

@@ -8,6 +8,7 @@ from pathlib import Path
 import gearfe as gf
 from gearfe.files import written
 from gearfe.scene.load import scene_names
+from gearfe.units import in_newton_per_um
 from geometry.pair.gear_pair import GearPair
 
 from ..shared.places import PAGES, TABLES
@@ -92,6 +93,8 @@ def text():
         name = f"{scene}, {pair}" if (scene, pair) != last else ""
         last = scene, pair
         shown = f"{value:.4g}" if "[" in change else f"{value:+.1f}"
+        if "[N/m]" in change:
+            change, shown = change.replace("[N/m]", "[N/um]"), in_newton_per_um(value)
         lines.append(f"| {name} | {change} | {shown} |")
     return "\n".join(lines) + "\n"
 

@@ -11,6 +11,7 @@ from scipy.signal import resample_poly
 import gearfe as gf
 from gearfe.files import written
 from gearfe.machine.compound_planetary import compound_planetary
+from gearfe.units import in_newton_per_um
 
 from ..shared.places import TABLES
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
@@ -150,9 +151,9 @@ def more():
     lines = [
         "What the foundation is worth, sun and planet, the same inferred gears:",
         "",
-        "| model | mean k [N/m] | of the first |",
+        "| model | mean k [N/um] | of the first |",
     ]
-    lines += ["|---|---|---|", *(f"| {name} | {float(k):.4g} | {float(k) / first:.2f} |" for name, k in parts), ""]
+    lines += ["|---|---|---|", *(f"| {name} | {in_newton_per_um(float(k))} | {float(k) / first:.2f} |" for name, k in parts), ""]
     with open(PHASES, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
     lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]

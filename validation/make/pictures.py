@@ -9,6 +9,7 @@ import gearfe as gf
 from gearfe.files import written
 from gearfe.scene.load import scene_names
 from gearfe.stress.render import render_contact, render_stress
+from gearfe.units import in_newton_per_um
 
 from ..shared import machine
 from ..shared.places import PAGES
@@ -63,7 +64,7 @@ def picture(task):
     else:
         path = FOLDER / f"{name}_{case}_contact.png"
         told = render_contact(pair, path, case=case)
-        numbers = f"phase {told['phase']:.3g}, k {told['k']:.4g} N/m, {pressure(told)}."
+        numbers = f"phase {told['phase']:.3g}, k {in_newton_per_um(told['k'])} N/um, {pressure(told)}."
         text = f"`{case}`: contact lines on the unrolled flank and load over the width; {numbers}"
     _small(path)
     return [f"![{name} {case}](pictures/{path.name})", "", text, ""]

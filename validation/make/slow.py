@@ -14,15 +14,16 @@ from ..shared import code
 from ..shared.places import PAGES, ROOT, TABLES
 
 PAGE, RECORD = PAGES / "slow.md", TABLES / "slow.jsonl"
-NOT_RUN = "not run on this code"
+NOT_RUN, EARLIER = "never run", " on earlier code"
 DONE = ("passed", "expected failure")
+FAILED = ("failed", "unexpected pass", "skipped")
 WORKERS = 2
 HEAD = """# Slow tests: the record
 
 Made by `python -m validation slow` from [tables/slow.jsonl](tables/slow.jsonl), one line per test, written as each ends. A result
-counts for the code it ran on: both packages with their scenes, the libraries and the file of the test. What has none on the code
-of this page is *{not_run}*; `python -m validation slow` runs just these, `python -m validation slow tests/FILE ...`
-those of some files.
+counts for the code it ran on: both packages with their scenes, the libraries and the file of the test; when any of them has
+changed since, it is the result *on earlier code*, of the commit named below. `python -m validation slow` runs all that have
+no result on the present code, `python -m validation slow tests/FILE ...` those of some files.
 
 {total}.
 
@@ -43,7 +44,7 @@ def run(files=()):
         execute(waiting, {test: row["seconds"] for test, row in known.items()})
     finally:
         keep(tests)
-    bad = [row["test"] for row in judged() if row["outcome"] not in (*DONE, NOT_RUN)]
+    bad = [row["test"] for row in judged() if row["outcome"] in FAILED]
     if bad:
         raise RuntimeError(f"slow tests that did not pass: {', '.join(bad)}")
 
@@ -112,8 +113,8 @@ def keep(tests):
 
 
 def judged():
-    """Rows on file with the outcome on the code of the page."""
-    return [row | ({} if row.get("on") else {"outcome": NOT_RUN, "printed": []}) for row in read()]
+    """Rows on file; an outcome that is not of the code of the page says so."""
+    return [row if row.get("on") or "code" not in row else row | {"outcome": row["outcome"] + EARLIER} for row in read()]
 
 
 def total(rows):
@@ -123,15 +124,15 @@ def total(rows):
 
 
 def _rank(item):
-    order = (*DONE, "failed", "unexpected pass", "skipped", NOT_RUN)
-    return order.index(item[0])
+    now = (*DONE, *FAILED)
+    return (*now, *(word + EARLIER for word in now), NOT_RUN).index(item[0])
 
 
 def page():
     """The page, from the table alone."""
     rows = judged()
     words = [word for word, _ in sorted(Counter(row["outcome"] for row in rows).items(), key=_rank)]
-    head = HEAD.format(not_run=NOT_RUN, total=total(rows), columns=" | ".join(words), rule="---|" * len(words))
+    head = HEAD.format(total=total(rows), columns=" | ".join(words), rule="---|" * len(words))
     lines = [head.rstrip("\n")]
     for file in dict.fromkeys(file_of(row["test"]) for row in rows):
         own = [row for row in rows if file_of(row["test"]) == file]

@@ -14,6 +14,7 @@ import numpy as np
 import gearfe as gf
 from gearfe.elements.elasticity import Body
 from gearfe.files import written
+from gearfe.units import in_newton_per_um
 
 from ..shared import machine, reference
 from ..shared.places import PAGES, TABLES
@@ -246,14 +247,16 @@ def _contact_text():
         "",
         f"Both gears of a pair {pair.gear_1.z}/{pair.gear_2.z} (m 2.5, x {pair.gear_1.x:g}/{pair.gear_2.x:g}, bores 12/20 mm, "
         f"{LINE_LOAD:g} N/mm), meshed anew for each phase",
-        "with eight edges per Hertz half width, surface-to-surface contact of all flanks (`gearfe.write_contact_inp`), turned by",
-        f"the approach that `ritz` computes. Double contact begins at phase 0 and ends at {pair.eps_alpha % 1:.4f}.",
+        "with eight edges per Hertz half width, surface-to-surface contact of all flanks (`gearfe.write_contact_inp`), both",
+        "in the mean pose: each gear is turned by half of the approach that `ritz` computes. Double contact begins at phase 0",
+        f"and ends at {pair.eps_alpha % 1:.4f}.",
         "",
-        "| phase | gearfe, ritz [N/m] | CalculiX [N/m] | difference | from an end of double contact [cycles] |",
+        "| phase | gearfe, ritz [N/um] | CalculiX [N/um] | difference | from an end of double contact [cycles] |",
         "|---|---|---|---|---|",
     ]
     for one, a, b in zip(phase, ours, theirs, strict=True):
-        lines.append(f"| {one:.4f} | {a:.5g} | {b:.5g} | {100 * (a / b - 1):+.3f} % | {away(pair, one):.3f} |")
+        values = f"{in_newton_per_um(a, 5)} | {in_newton_per_um(b, 5)}"
+        lines.append(f"| {one:.4f} | {values} | {100 * (a / b - 1):+.3f} % | {away(pair, one):.3f} |")
     far = np.array([away(pair, one) >= NEAR for one in phase])
     worst = 100 * np.abs(ours / theirs - 1)
     lines += [

@@ -8,6 +8,7 @@ import gearfe as gf
 from gearfe.pictures.stiffness_plots import plot_errors
 from gearfe.scene.verdicts import judge, text
 from gearfe.studies.case_table import printed_beside
+from gearfe.units import in_newton_per_um
 
 from .places import TABLES
 
@@ -94,12 +95,12 @@ def error_table():
     methods = [name for name in dict.fromkeys(row["method"] for row in rows) if name != "fe3d"]
     head = " | ".join(f"`{name}` mean | max" for name in methods)
     pairs = gf.load_scene(SCENE).pairs
-    lines = [f"| pair | case | FE mean [GN/m] | max | estimate | {head} |", "|---" * (5 + 2 * len(methods)) + "|"]
+    lines = [f"| pair | case | FE mean [N/um] | max | estimate | {head} |", "|---" * (5 + 2 * len(methods)) + "|"]
     for pair, case in dict.fromkeys((row["pair"], row["case"]) for row in rows):
         own = {row["method"]: row for row in rows if (row["pair"], row["case"]) == (pair, case)}
         truth = own["fe3d"]
         cells = [_error(float(own[name][f"error of {what}"])) for name in methods for what in ("mean", "max")]
-        numbers = [f"{float(truth[name]) / 1e9:.4f}" for name in ("mean [N/m]", "max [N/m]")]
+        numbers = [in_newton_per_um(float(truth[name]), 5) for name in ("mean [N/m]", "max [N/m]")]
         # of rings it does not cover the difference from the energy model: pairs_three.md
         inside = pairs[pair].pair.gear_2.internal
         estimate = "not covering" if inside else f"± {100 * float(truth['estimate']):.2f} %"

@@ -19,6 +19,7 @@ import gearfe as gf
 from gearfe.energy.closed import published, textbook
 from gearfe.energy.closed.slices import faces, stations
 from gearfe.flexibility.hertz import linear_hertz
+from gearfe.stiffness.inputs import overlap
 from gearfe.studies.case_table import printed_cases
 
 from . import herringbone_scan_nodes as nodes
@@ -27,7 +28,7 @@ from .herringbone_scan_nodes import BORES, FLAT, GROUPS, LENGTHS, PAIRS, PHASES,
 from .places import TABLES
 
 NAME = "herringbone_scan"
-SIZE, SEED = 640, 20
+SIZE, SEED = 1024, 20
 RANGES = {  # of the Sobol sample
     "group": (0.0, float(len(GROUPS))),
     "length": (
@@ -145,8 +146,8 @@ class Ritz3D:
                 self.anchor[row["pair"], case] = full / self.stiffness(base, row["pair"], case, anchored=False).mean()
 
     def _node(self, group, pair, bores, length):
-        if not length and GROUPS[group][2] == GROUPS[0][2]:
-            group = 0
+        if not length:
+            group = nodes.healthy(group)
         return 1 / self.known[f"{group} {pair} {' '.join(map(str, bores))} {length}"]
 
     def _flat(self, pair, bores, half):
@@ -314,8 +315,19 @@ def curves(ritz, reading):
     return out
 
 
-def numbers(found):
-    """Columns of a reading: by row and kind mean and maximum [GN/m], largest drop [%], error of the worst phase [%].
+@lru_cache(maxsize=32)
+def most_pairs(name, group):
+    """Phases ``(PHASES,)`` at which as many tooth pairs as ever in the cycle are in contact; at the others it is one less."""
+    chosen = gf.load_scene(SCENE).pairs[name]
+    pair = nodes.changed(chosen.pair, half=GROUPS[group][2])
+    length = pair.eps_alpha + overlap(pair, chosen.face, 0.0)
+    behind = nodes.cycle(pair, chosen.face)[:, None] + np.arange(-math.ceil(length), math.ceil(length) + 1)
+    count = ((behind >= 0) & (behind < length)).sum(axis=1)
+    return count == count.max()
+
+
+def numbers(found, group):
+    """Columns of a reading: by row and kind mean and maximum [GN/m], largest drop [%], errors by zone and of the worst phase [%].
 
     Of `external` only those of planet and ring, since sun and planet have no other foundation in it.
     """
@@ -327,7 +339,10 @@ def numbers(found):
             if case and kind != "external":
                 out[f"{row} drop"] = 100 * float((1 - k / found[pair, None, kind]).max())
         if kind == "printed":
-            out[f"{row} phase"] = 100 * float(np.abs(k / found[pair, case, "ritz3d"] - 1).max())
+            truth, most = found[pair, case, "ritz3d"], most_pairs(pair, group)
+            out[f"{row} phase"] = 100 * float(np.abs(k / truth - 1).max())
+            for zone, part in (("most", most), ("fewest", ~most)):
+                out[f"{row} {zone}"] = 100 * float(k[part].mean() / truth[part].mean() - 1) if part.any() else math.nan
     return out
 
 
@@ -371,7 +386,7 @@ def compute():
     for number, reading in enumerate(readings()):
         if reading.group in groups:
             own = {key: getattr(reading, key) for key in Reading.__slots__}
-            found.append({"number": number, **own, **numbers(curves(ritz, reading))})
+            found.append({"number": number, **own, **numbers(curves(ritz, reading), reading.group)})
     seconds = time.process_time() - started
     with table("").open("w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")

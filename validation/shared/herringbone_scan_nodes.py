@@ -28,6 +28,10 @@ GROUPS = (  # crack angle [degrees] and start, width of a half [mm]: S4 prints 4
     (38.0, "30deg", 30.0),
     (45.0, "middle", 30.0),
     (55.0, "30deg", 30.0),
+    (45.0, "root", 60.0),
+    (38.0, "30deg", 60.0),
+    (45.0, "middle", 60.0),
+    (55.0, "30deg", 60.0),
 )
 BORES = {"sun_planet": ((0.36, 0.36), (0.80, 0.36), (0.36, 0.80)), "planet_ring": ((0.36,), (0.80,))}  # parts of r_f
 LENGTHS = (0.0, 0.15, 0.4, 0.65, 0.9)  # of the crack, in tooth chords where it starts
@@ -100,6 +104,11 @@ def with_pits(pair, count, rows):
     return [pit for row in made for pit in row]
 
 
+def healthy(group):
+    """The first group of the same width, which has the nodes without a crack: healthy gears know no other difference."""
+    return next(i for i, one in enumerate(GROUPS) if one[2] == GROUPS[group][2])
+
+
 def jobs():
     """All nodes as (name, callable giving an array [N/m]), in the order of their importance."""
     pairs = gf.load_scene(SCENE).pairs
@@ -112,8 +121,8 @@ def jobs():
         for name in PAIRS:
             for bores in BORES[name]:
                 for length in LENGTHS:
-                    if not length and group and half == 30.0:
-                        continue  # healthy gears do not know the crack: those of group 0
+                    if not length and group != healthy(group):
+                        continue
                     text = " ".join(map(str, bores))
                     out[f"{group} {name} {text} {length}"] = (_node, pairs[name], bores, half, (length, angle, start))
         if group == 0:

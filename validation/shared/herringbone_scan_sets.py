@@ -31,7 +31,8 @@ class Scan:
     """The table of the scan as arrays ``(readings, 10)``.
 
     `mean`, `largest` (maxima) [GN/m] of `ritz3d` and, by foundation of the ring, `published`; `drop` [%] of `ritz3d` and
-    `published`; `phase`, the error of `published` at the worst phase [%].
+    `published`; `phase`, the error of `published` at the worst phase [%]; `zone`, its errors where most and where fewest pairs
+    touch.
     """
 
     def __init__(self, table=None):
@@ -40,6 +41,7 @@ class Scan:
         self.largest = {kind: self._read(kind, "max") for kind in ("ritz3d", *READINGS)}
         self.drop = {kind: self._read(kind, "drop") for kind in ("ritz3d", "printed")}
         self.phase = self._read("printed", "phase")
+        self.zone = {name: self._read("printed", name) for name in ("most", "fewest")}
 
     def _read(self, kind, what):
         names = [

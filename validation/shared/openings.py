@@ -1,5 +1,7 @@
 """The three sentences that open the page of a machine: what the article claims, what gearfe finds, what decides it."""
 
+from gearfe.units import NEWTON_PER_UM
+
 
 def planetary_pitting(found):
     """Articles S0 and S1."""
@@ -57,16 +59,18 @@ def herringbone_machine(found):
 
 def compound_planetary(found):
     """Article S2."""
-    beams, true = (found.ours(name, "s2_sun_planet", "sun_planet") for name in ("mean_stiffness", "converged_stiffness"))
+    beams, true = (
+        found.ours(name, "s2_sun_planet", "sun_planet") / NEWTON_PER_UM for name in ("mean_stiffness", "converged_stiffness")
+    )
     rings = [found.ours("stiffness_ratio", f"{name}_ring_planet") for name in ("s1", "s2")]
     heard = found.all("kurtosis")
     return (
-        "mean stiffnesses of five meshes near 1.6e9 N/m, and sidebands 16.8 and 18.2 Hz about two mesh lines for cracked "
+        "mean stiffnesses of five meshes near 1600 N/um, and sidebands 16.8 and 18.2 Hz about two mesh lines for cracked "
         "sun teeth, found in "
         "measured signals by kurtosis and kurtogram",
-        f"the frequencies and sidebands, and with the article's beams {beams:.3g} N/m for sun and planet, but ring meshes "
+        f"the frequencies and sidebands, and with the article's beams {beams:.0f} N/um for sun and planet, but ring meshes "
         f"{rings[0]:.2f} and "
-        f"{rings[1]:.2f} times as stiff instead of 1.00 and 0.94, a converged stiffness of the same gears of {true:.2g} N/m, "
+        f"{rings[1]:.2f} times as stiff instead of 1.00 and 0.94, a converged stiffness of the same gears of {true:.0f} N/um, "
         f"{beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to {max(heard):.3g} instead of 3.01 to 5.24 "
         f"({found.counted()})",
         "the foundation under the teeth, which the article leaves out, its lost table of parameters, and the resonances of "

@@ -8,7 +8,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.machine.tables import pulses
-from gearfe.motion.step_control import chosen_step, default_step
+from gearfe.motion.step_control import default_step
 
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 
@@ -46,10 +46,11 @@ def periodic(name, case=None, method="ritz3d"):
 
 def record(made, seconds, rate, settle, start=None):
     """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as of `gearfe.simulate`."""
-    impact = (made.law["power"] != 1).any()  # steep: its step is chosen by what half of it changes
-    step = chosen_step(made, settle + seconds)[0] if impact else default_step(made)
-    finer = math.ceil(1 / rate / step * (1 - 1e-9))
-    whole = gf.simulate(made, settle + seconds, dt=1 / rate / finer, every=finer, initial=start)
+    if (made.law["power"] != 1).any():  # steep: halved where it is
+        whole = gf.simulate(made, settle + seconds, rate=rate, initial=start)
+    else:
+        finer = math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
+        whole = gf.simulate(made, settle + seconds, dt=1 / rate / finer, every=finer, initial=start)
     kept = whole.time >= settle - 1e-9
     count = round(seconds * rate)
     return replace(whole, time=whole.time[kept][:count], states=whole.states[kept][:count])

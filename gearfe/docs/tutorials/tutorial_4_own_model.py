@@ -43,7 +43,7 @@ np.savetxt("cosine.csv", np.transpose([phase, k]), delimiter=",", header="phase,
 
 result = gf.compare(scene, models=[square_wave, gf.PairModel(parabola), "cosine.csv"])
 for zone, fe, _, others in result.rows():
-    print(f"{zone:6s} fe {fe:.3e} N/m")
+    print(f"{zone:6s} fe {fe / 1e6:.1f} N/um")
     for name, (_, error) in others.items():
         print(f"       {name:12s} {100 * error:+6.1f} %")
 

@@ -74,7 +74,7 @@ def axial(width, degree, parts=(), m_n=1.0):
             first += made[0].shape[1]
     short, inside = {}, {}
     for (band, k), places in fine.items():
-        made, own = _short(z, places, 1 - 2 * k)
+        made, own = _short(z, places, band[k], 1 - 2 * k)
         columns.append(made[0])
         slopes.append(made[1])
         number = np.arange(first, first + own.size)
@@ -124,26 +124,34 @@ def _open(z, band, degree, width):
 
 
 def _steps(band, k, width, m_n):
-    """Five places about one end of a band, between which the short cubics change [mm]."""
-    end = band[k]
+    """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end."""
+    end, inwards = band[k], 1 - 2 * k
     # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
-    reach = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0]), 0.9 * end, 0.9 * (width - end))
-    return end + reach * np.array([-1.0, -ENDS[1], 0.0, ENDS[1], 1.0])
+    inside, outside = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0])), min(ENDS[0] * m_n, 0.9 * (width - end if k else end))
+    nearest = ENDS[1] * min(inside, outside)
+    steps = [side * _graded(nearest, reach) for side, reach in ((inwards, inside), (-inwards, outside))]
+    return np.sort(end + np.concatenate([[0.0], *steps]))
 
 
-def _short(z, places, inwards):
+def _graded(nearest, reach):
+    """Distances from `nearest` to `reach` [mm], each at most 1 / `ENDS[1]` times the one before."""
+    count = max(1, math.ceil(math.log(reach / nearest) / -math.log(ENDS[1]) - 1e-9))
+    return nearest * (reach / nearest) ** (np.arange(count + 1) / count)
+
+
+def _short(z, places, end, inwards):
     """Continuous cubics between `places`, zero at the first and the last, their slopes, and which vanish outside the crack."""
     value, rise, own = [], [], []
     for low, middle, high in zip(places[:-2], places[1:-1], places[2:], strict=True):  # hats
         up, down = (z > low) & (z <= middle), (z > middle) & (z < high)
         value.append(np.where(up, (z - low) / (middle - low), np.where(down, (high - z) / (high - middle), 0.0)))
         rise.append(np.where(up, 1 / (middle - low), np.where(down, -1 / (high - middle), 0.0)))
-        own.append(inwards * (middle - places[2]) > 0)
+        own.append(inwards * (middle - end) > 0)
     for low, high in zip(places[:-1], places[1:], strict=True):
         there, t = (z > low) & (z < high), 2 * (z - low) / (high - low) - 1
         value += [np.where(there, 1 - t**2, 0.0), np.where(there, t * (1 - t**2), 0.0)]
         rise += [np.where(there, slope * 2 / (high - low), 0.0) for slope in (-2 * t, 1 - 3 * t**2)]
-        own += [inwards * ((low + high) / 2 - places[2]) > 0] * 2
+        own += [inwards * ((low + high) / 2 - end) > 0] * 2
     return (np.column_stack(value), np.column_stack(rise)), np.array(own)
 
 

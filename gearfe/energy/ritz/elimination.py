@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
-from scipy.linalg.blas import dsyrk
+from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
@@ -152,47 +152,72 @@ def front(body, tree):
     """What a set of triangles is to the rest: numbers of the nodes and loads still coupled, and the matrix between them.
 
     Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
-    unknowns that stay: at the end their block is minus the displacements under each other.
+    unknowns that stay: at the end their block is minus the displacements under each other. Unknowns of a set are in the order in
+    which they go, so that lower triangles add up to lower triangles; those to be eliminated, the coupling and the rest are arrays
+    of their own, in which everything happens in place.
     """
-    parts, own = (), tree[0]
-    if not tree[1]:
+    turn = np.full(body.size.size, body.size.size)
+    plan = _planned(body, tree, turn, [0])
+    ids, lower = _eliminated(body, plan, turn)
+    return ids, np.tril(lower) + np.tril(lower, -1).T
+
+
+def _planned(body, tree, turn, count):
+    """Triangles, numbers that go, numbers that stay, and the same of both halves; `turn` is when each number goes."""
+    own = tree[0]
+    parts = [_planned(body, half, turn, count) for half in tree[1:] if half]
+    if parts:
+        ids = np.union1d(parts[0][2], parts[1][2])
+    else:
         nodes = np.unique(body.numbers[:, own])
         loads = body.load[nodes[np.isin(body.owner[nodes], own)]].any(axis=(0, 1))
         ids = np.unique(np.concatenate([body.touch[k] for k in own.tolist()]))
         ids = np.append(ids, body.first_load + np.flatnonzero(loads))
-    else:
-        parts = [front(body, half) for half in tree[1:]]
-        ids = np.union1d(parts[0][0], parts[1][0])
-    ids = ids[body.there[ids]]
+        ids = ids[body.there[ids]]
     used = np.bincount(np.concatenate([body.touch[k] for k in own.tolist()]), minlength=body.size.size)
     gone = (used[ids] == body.uses[ids]) & ~body.stays[ids]
-    ids = np.append(ids[gone], ids[~gone])
-    matrix = np.zeros((body.size[ids].sum(),) * 2) if parts else leaf(body, own, ids)
-    for others, part in parts:
-        _add(matrix, part, places(body, ids, others))
-    first = body.size[ids[: gone.sum()]].sum()
+    turn[ids[gone]] = count[0]
+    count[0] += 1
+    return own, ids[gone], ids[~gone], parts
+
+
+def _eliminated(body, plan, turn):
+    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them."""
+    own, gone, rest, parts = plan
+    rest = rest[np.lexsort((rest, turn[rest]))]
+    ids, first = np.append(gone, rest), int(body.size[gone].sum())
+    if parts:
+        left = int(body.size[rest].sum())
+        blocks = [np.zeros(shape, order="F") for shape in ((first, first), (left, first), (left, left))]
+        for part in parts:
+            others, matrix = _eliminated(body, part, turn)
+            _add(blocks, matrix, places(body, ids, others), first)
+    else:
+        matrix = leaf(body, own, ids)
+        cuts = (slice(first), slice(first)), (slice(first, None), slice(first)), (slice(first, None), slice(first, None))
+        blocks = [np.asfortranarray(matrix[cut]) for cut in cuts]
+    inside, across, matrix = blocks
     if first:
-        lower = cholesky(matrix[:first, :first], lower=True, check_finite=False)
-        across = solve_triangular(lower, matrix[:first, first:], lower=True, check_finite=False)
-        matrix = matrix[first:, first:] - _square(across)
-    return ids[gone.sum() :], matrix
+        lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
+        if failed:
+            raise RuntimeError("the triangles of the section fold or nearly do: change refine a little")
+        if rest.size:
+            across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
+            matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
+    return rest, matrix
 
 
-def _square(across):
-    """``across' across``, half of it computed."""
-    upper = dsyrk(1.0, across, trans=1)
-    out = upper + upper.T
-    out[np.diag_indices_from(out)] /= 2
-    return out
-
-
-def _add(matrix, part, at):
-    """Add `part` to the rows and columns `at` of `matrix`, run by run: faster than by index arrays."""
-    ends = [0, *(np.flatnonzero(np.diff(at) != 1) + 1).tolist(), at.size]
-    runs = [(slice(a, b), slice(at[a], at[b - 1] + 1)) for a, b in pairwise(ends)]
-    for source, rows in runs:
-        for across, columns in runs:
-            matrix[rows, columns] += part[source, across]
+def _add(blocks, part, at, first):
+    """Add the lower triangle of `part` at the rows and columns `at`, run by run: faster than by index arrays."""
+    inside, across, outside = blocks
+    cuts = np.flatnonzero((np.diff(at) != 1) | (at[1:] == first)) + 1
+    ends = [0, *cuts.tolist(), at.size]
+    runs = [(slice(a, b), at[a] >= first, at[a] - first * (at[a] >= first)) for a, b in pairwise(ends) if a < b]
+    for k, (source, outer, row) in enumerate(runs):
+        rows = slice(row, row + source.stop - source.start)
+        for others, beyond, column in runs[: k + 1]:
+            target = outside if beyond else across if outer else inside
+            target[rows, column : column + others.stop - others.start] += part[source, others]
 
 
 def places(body, ids, wanted):
@@ -253,10 +278,11 @@ def _times(body, plane, here, nodes, loads):
     for f, at, rows in groups.values():
         for g, others, columns in groups.values():
             both = np.ix_(at, others)
-            block = np.kron(plane[0][both], along.mass[np.ix_(f, g)]) + np.kron(plane[2][both], along.slope[np.ix_(f, g)])
-            block += np.kron(plane[1][both], along.mixed[np.ix_(f, g)])
-            block += np.kron(plane[1].T[both], along.mixed.T[np.ix_(f, g)])
-            _put(out, rows, columns, block)
+            widths = np.ix_(f, g)
+            first = np.array([part[both].ravel() for part in (plane[0], plane[1], plane[1].T, plane[2])])
+            second = np.array([part[widths].ravel() for part in (along.mass, along.mixed, along.mixed.T, along.slope)])
+            block = (first.T @ second).reshape(at.size, others.size, f.size, g.size).transpose(0, 2, 1, 3)
+            _put(out, rows, columns, block.reshape(rows.size, columns.size))
         for k, load in enumerate(loads.tolist()):
             pushed = along.sets[body.kind[load]]
             first = start[nodes.size + k]

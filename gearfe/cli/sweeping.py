@@ -1,0 +1,30 @@
+"""The verb ``gearfe sweep``: all cases of a study into a folder."""
+
+from .progress import working
+
+
+def sweep(arguments):
+    """``gearfe sweep``."""
+    from ..sweeps.plan import plan_sweep
+    from ..sweeps.run import sweep as run
+
+    if arguments.dry_run:
+        with working("trying one block"):
+            plan = plan_sweep(arguments.study, arguments.output, workers=arguments.workers)
+        print(plan.text())
+        return
+    options = {"workers": arguments.workers, "scheduler": arguments.scheduler, "mixed": arguments.mixed}
+    with working("sweep") as tell:
+        runs = run(
+            arguments.study,
+            arguments.output,
+            progress=lambda done, total: tell.step(f"{done} of {total}", done, total),
+            **options,
+        )
+    table = runs.table(["status", "error", "seconds"])
+    count = table["status"].value_counts()
+    print(f"{runs.about['title']}: {len(table)} cases, {', '.join(f'{n} {name}' for name, n in count.items())}")
+    print(f"processor time {table['seconds'].sum():.4g} s, median of a case {table['seconds'].median():.3g} s")
+    for text, n in table["error"].value_counts().head(3).items():
+        print(f"  {n} times: {text}")
+    print(f"written: {arguments.output}")

@@ -1,0 +1,82 @@
+"""How far long work is: it says so to whoever listens, for instance the bar of the command line; without a listener, silence.
+
+Work inside of a part of other work counts as a part of that part, so that one bar runs once from its start to its end.
+"""
+
+import contextlib
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextvars import ContextVar
+from typing import NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+
+class _Range(NamedTuple):
+    """Who listens, and the part of the whole work, from `low` to `high`, that is being done."""
+
+    listener: Callable[[str, float], object]
+    low: float
+    high: float
+
+
+_range: ContextVar[_Range | None] = ContextVar("range", default=None)
+
+
+@contextlib.contextmanager
+def listening(listener: Callable[[str, float], object]) -> Iterator[None]:
+    """Inside of the block `listener` gets a text and the part of the work that is done, 0 to 1, before each part of it."""
+    token = _range.set(_Range(listener, 0.0, 1.0))
+    try:
+        yield
+    finally:
+        _range.reset(token)
+
+
+@contextlib.contextmanager
+def part(text: str, low: float, high: float) -> Iterator[None]:
+    """The block is the work from `low` to `high`, both 0 to 1; an empty text keeps what was said last."""
+    whole = _range.get()
+    if whole is None:
+        yield
+        return
+    low, high = (whole.low + (whole.high - whole.low) * share for share in (low, high))
+    whole.listener(text, low)
+    _range.set(_Range(whole.listener, low, high))
+    try:
+        yield
+    finally:
+        _range.set(whole)
+
+
+def steps(items: Iterable[T], text: str | Callable[[T], str] = "", weights: Sequence[float] | None = None) -> Iterator[T]:
+    """Give the items one after the other, each a part of the work.
+
+    Parameters
+    ----------
+    items : iterable
+    text : str or callable
+        What is said before each item, or ``text(item)``.
+    weights : sequence of float, optional
+        What each item costs, in any unit; default: all the same.
+
+    Yields
+    ------
+    item
+
+    Examples
+    --------
+    >>> said = []
+    >>> with listening(lambda text, done: said.append((text, round(done, 3)))):
+    ...     for gear in steps(["pinion", "wheel"], lambda gear: gear, weights=[3, 1]):
+    ...         for _ in steps([1, 2]):
+    ...             pass
+    >>> said
+    [('pinion', 0.0), ('', 0.0), ('', 0.375), ('wheel', 0.75), ('', 0.75), ('', 0.875)]
+    """
+    items = list(items)
+    cost = [1.0] * len(items) if weights is None else list(weights)
+    done = 0.0
+    for item, own in zip(items, cost, strict=True):
+        with part(text(item) if callable(text) else text, done / sum(cost), (done + own) / sum(cost)):
+            yield item
+        done += own

@@ -1,0 +1,181 @@
+"""Shards: Parquet files of rows in a folder, each whole or not there; nothing is ever appended to one. Needs pyarrow."""
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from ..files import missing
+from .folder import durable
+
+if TYPE_CHECKING:
+    import pyarrow
+    from pyarrow import dataset
+
+SUFFIX = ".parquet"
+
+
+class Field(NamedTuple):
+    """A column of a shard: its `kind`, one of `KINDS`, and unit (``"-"``: none)."""
+
+    kind: str
+    unit: str = "-"
+
+
+KINDS = ("number", "whole", "truth", "text", "list", "json")  # list: of numbers, of any length; json: any value, as JSON text
+
+
+def arrow() -> Any:
+    """Return the package ``pyarrow`` with its parts that read and write Parquet.
+
+    Raises
+    ------
+    RuntimeError
+        If it is not installed; the message names what to install.
+    """
+    try:
+        import pyarrow
+        import pyarrow.dataset
+        import pyarrow.parquet
+    except ImportError as error:
+        raise missing("pyarrow", "data", error) from error
+    return pyarrow
+
+
+def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
+    """Rows as a table with exactly the columns `fields`; what a row lacks is null.
+
+    Raises
+    ------
+    ValueError
+        If a row has a value that `fields` does not name.
+    """
+    pa = arrow()
+    extra = sorted({name for row in rows for name in row} - set(fields))
+    if extra:
+        raise ValueError(f"rows have {', '.join(extra)}, but the columns are {', '.join(fields)}")
+    schema = schema_of(fields)
+    columns = [
+        pa.array([_plain(row.get(name), field.kind) for row in rows], schema.field(name).type) for name, field in fields.items()
+    ]
+    return pa.Table.from_arrays(columns, schema=schema)
+
+
+def schema_of(fields: Mapping[str, Field]) -> "pyarrow.Schema":
+    """Schema of `table`, with kind and unit of each column in its metadata."""
+    pa = arrow()
+    types = {"number": pa.float64(), "whole": pa.int64(), "truth": pa.bool_(), "text": pa.string(), "json": pa.string()}
+    types["list"] = pa.list_(pa.float64())
+    return pa.schema([pa.field(n, types[f.kind], metadata={"kind": f.kind, "unit": f.unit}) for n, f in fields.items()])
+
+
+def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
+    """Columns by name, of a schema that `schema_of` made."""
+    told = {field.name: {k.decode(): v.decode() for k, v in (field.metadata or {}).items()} for field in schema}
+    return {name: Field(one.get("kind", "text"), one.get("unit", "-")) for name, one in told.items()}
+
+
+def _plain(value, kind):
+    """As pyarrow takes it."""
+    if value is None:
+        return None
+    if kind == "list":
+        return np.asarray(value, dtype=float)
+    return json.dumps(value) if kind == "json" else value
+
+
+def encoded(table: "pyarrow.Table") -> bytes:
+    """Table as the bytes of a Parquet file, compressed, with checksums; the same for the same table."""
+    pa = arrow()
+    out = pa.BufferOutputStream()
+    pa.parquet.write_table(table, out, compression="zstd", write_page_checksum=True)
+    return out.getvalue().to_pybytes()
+
+
+def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> None:
+    """Put an `encoded` table into a folder; one of the same name is replaced.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be written; all other shards stay as they are.
+    """
+    with durable(Path(folder) / f"{name}{SUFFIX}") as file:
+        file.write(content)
+
+
+def shard_names(folder: str | os.PathLike[str]) -> list[str]:
+    """Names of the shards in a folder, sorted."""
+    return sorted(one.name.removesuffix(SUFFIX) for one in Path(folder).glob(f"[!.]*{SUFFIX}"))
+
+
+def check_shards(folder: str | os.PathLike[str]) -> None:
+    """Raise ValueError if a shard is damaged or has other columns than the rest: their ends are read, not all of them."""
+    pa = arrow()
+    first = None
+    for name in shard_names(folder):
+        file = Path(folder) / f"{name}{SUFFIX}"
+        try:
+            schema = pa.parquet.read_schema(file)
+        except (OSError, pa.ArrowInvalid) as error:
+            raise ValueError(f"{file} is damaged: {error}; delete this file, and what it held is computed anew") from error
+        first = first or schema
+        if schema != first:
+            raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
+
+
+def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
+    """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
+
+    Raises
+    ------
+    ValueError
+        If there is no shard, or the first is damaged.
+    """
+    pa = arrow()
+    files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
+    if not files:
+        raise ValueError(f"{folder} holds no results yet")
+    try:
+        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked_scan())
+        return pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
+    except (OSError, pa.ArrowInvalid) as error:
+        raise ValueError(f"{files[0]} is damaged: {error}") from error
+
+
+def checked_scan() -> Any:
+    """Return options of a scan that verify the checksums of all pages read."""
+    return arrow().dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+
+
+def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
+    """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
+
+    Raises
+    ------
+    ValueError
+        If a shard is damaged, or there is no such column.
+    """
+    pa = arrow()
+    found = opened(folder)
+    unknown = [name for name in columns or () if name not in found.schema.names]
+    if unknown:
+        raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(found.schema.names)}")
+    try:
+        return found.to_table(columns=list(columns) if columns is not None else None, filter=where)
+    except (OSError, pa.ArrowInvalid) as error:
+        raise ValueError(f"{_damaged(folder)} is damaged: {error}; delete it, and what it held is computed anew") from error
+
+
+def _damaged(folder):
+    """First shard in a folder that cannot be read as a whole."""
+    pa = arrow()
+    for name in shard_names(folder):
+        try:
+            pa.parquet.read_table(Path(folder) / f"{name}{SUFFIX}", page_checksum_verification=True)
+        except (OSError, pa.ArrowInvalid):
+            return Path(folder) / f"{name}{SUFFIX}"
+    return f"a shard in {folder}"

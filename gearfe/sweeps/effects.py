@@ -1,0 +1,171 @@
+"""What a sweep shows: effect of each input, Sobol indices, percentile bands of curves, and how sure two states are told apart."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy import stats
+
+from .runs import Runs
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+BINS = 8  # of a value that is drawn
+RESAMPLES = 200  # of the bootstrap
+
+
+def main_effects(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
+    """Mean of an output for each value of each input, all others averaged; of drawn numbers for each eighth of them.
+
+    Parameters
+    ----------
+    runs : Runs
+    output : str
+        A column of numbers.
+    where : optional
+        As of `Runs.table`; failed cases are always left out.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns ``input``, ``value`` (of a bin: its median), ``mean``, ``spread`` (standard deviation), ``cases``.
+
+    Raises
+    ------
+    ValueError
+        If there is no such column, or no case with a value.
+    """
+    import pandas
+
+    table = _numbers(runs, output, where)
+    parts = []
+    for name in runs.inputs:
+        column = table[name]
+        drawn = column.dtype.kind == "f" and column.nunique() > 4 * BINS
+        home = pandas.qcut(column, BINS, labels=False) if drawn else column
+        groups = table.groupby(home, sort=True)
+        one = groups[output].agg(["mean", "std", "count"]).reset_index(drop=True)
+        one.columns = ["mean", "spread", "cases"]
+        values = groups[name].median() if drawn else groups[name].first()
+        parts.append(pandas.DataFrame({"input": name, "value": values.to_numpy(dtype=object)}).join(one))
+    return pandas.concat(parts, ignore_index=True)
+
+
+def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFrame":
+    """First-order and total Sobol indices of the drawn inputs, of a study whose sample is ``method = "saltelli"``.
+
+    The first-order index is the part of an output's variance that goes with one input alone, the total one that in which it takes
+    part. By `scipy.stats.sobol_indices`, which has the estimators of Saltelli et al. (2010).
+
+    Parameters
+    ----------
+    runs : Runs
+    output : str
+        A column of numbers.
+    where : optional
+        As of `Runs.table`: must leave one value of all other inputs.
+
+    Returns
+    -------
+    pandas.DataFrame
+        By input: ``first``, ``total`` and the ends of their 95 % bootstrap intervals.
+
+    Raises
+    ------
+    ValueError
+        If the sample is another one, or a case of it is missing or failed.
+    """
+    import pandas
+
+    sample = runs.about["study"]["sample"]
+    if sample.get("method") != "saltelli":
+        raise ValueError(f"the sample is {sample.get('method')!r}, but Sobol indices need method = 'saltelli' in [sample]")
+    names, count = list(sample["of"]), sample["count"]
+    table = _numbers(runs, output, where).sort_values("draw")
+    if table["draw"].tolist() != list(range(count * (len(names) + 2))):
+        raise ValueError(
+            f"Sobol indices need each of the {count * (len(names) + 2)} draws once, but there are {len(table)} with a value, "
+            f"of {table['draw'].nunique()} draws: choose one value of the other inputs by where, within which no case fails"
+        )
+    parts = table[output].to_numpy().reshape(len(names) + 2, 1, count)
+    found = stats.sobol_indices(func={"f_A": parts[0], "f_B": parts[1], "f_AB": parts[2:]}, n=count)
+    spread = found.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES)
+    return pandas.DataFrame(
+        {
+            "first": found.first_order.ravel(),
+            "first_low": spread.first_order.confidence_interval.low.ravel(),
+            "first_high": spread.first_order.confidence_interval.high.ravel(),
+            "total": found.total_order.ravel(),
+            "total_low": spread.total_order.confidence_interval.low.ravel(),
+            "total_high": spread.total_order.confidence_interval.high.ravel(),
+        },
+        index=pandas.Index(names, name="input"),
+    )
+
+
+def curve_bands(
+    runs: Runs, name: str = "k", *, percentiles: Sequence[float] = (5, 50, 95), where: Any = None
+) -> "xarray.Dataset":
+    """Percentiles of a curve over all cases, place by place.
+
+    Parameters
+    ----------
+    runs : Runs
+    name : str
+        A column of curves that have the same places in all cases.
+    percentiles : sequence of float
+    where : optional
+        As of `Runs.table`; failed cases are left out.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``name`` over ``percentile`` and ``place``, with the phase as a coordinate where there is one.
+
+    Raises
+    ------
+    ValueError
+        If curves have other phases, or there is none.
+    """
+    found = runs.curves([name], where)
+    found = found.isel(number=found["status"].to_numpy() == "done")
+    if not found.sizes["number"] or "phase" in found.data_vars:
+        raise ValueError("percentiles need curves at the same phases: choose cases of one geometry and span by where")
+    made = found[[name]].quantile(np.asarray(percentiles) / 100, dim="number", keep_attrs=True, skipna=False)
+    return made.rename(quantile="percentile").assign_coords(percentile=list(percentiles)).dropna("place")
+
+
+def told_apart(healthy: Any, damaged: Any) -> float:
+    """Chance that a damaged gear drawn at random has the larger value than a healthy one: the area under the ROC curve.
+
+    0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
+
+    Parameters
+    ----------
+    healthy, damaged : array_like, shape (n,) and (m,)
+
+    Returns
+    -------
+    float
+
+    Examples
+    --------
+    >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])
+    0.8888888888888888
+    """
+    one, other = np.asarray(healthy, dtype=float), np.asarray(damaged, dtype=float)
+    return float(stats.mannwhitneyu(other, one).statistic / (one.size * other.size))
+
+
+def _numbers(runs, output, where):
+    """Inputs, draw and a numeric output of the cases that are done."""
+    if output not in runs.fields or runs.fields[output].kind not in ("number", "whole"):
+        known = [name for name, field in runs.fields.items() if field.kind == "number" and name not in runs.inputs]
+        raise ValueError(f"{output!r} is no column of numbers; there is {', '.join(known)}")
+    table = runs.table([*runs.inputs, "draw", "status", output], where)
+    table = table[(table["status"] == "done") & table[output].notna()]
+    if table.empty:
+        raise ValueError(f"no finished case has a value of {output!r}")
+    return table

@@ -1,0 +1,128 @@
+"""`plan_sweep`: what a sweep will take, from cases of it that are computed for that."""
+
+import os
+import resource
+import shutil
+import sys
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..store.shards import encoded, table
+from .blocks import DONE, jobs, rows
+from .blocks import blocks as blocks_of
+from .study import read_study
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a sweep will take.
+
+    Attributes
+    ----------
+    cases, blocks : int
+        Cases in all, and shards they make.
+    seconds : float
+        Processor time of all cases together [s].
+    workers : int
+        Processes that share it.
+    memory : float
+        Of each process [bytes]: the largest of this one so far.
+    disk, free : float
+        Of the whole folder, and what is free there [bytes].
+    tried, failed : int
+        Cases that were computed for this, and those of them that cannot be.
+    error : str
+        Of the first that cannot be; empty if there is none.
+    """
+
+    cases: int
+    blocks: int
+    seconds: float
+    workers: int
+    memory: float
+    disk: float
+    free: float
+    tried: int
+    failed: int
+    error: str
+
+    def text(self) -> str:
+        """Lines for people."""
+        out = [
+            f"{self.cases} cases in {self.blocks} blocks",
+            f"time: about {_time(self.seconds)} of processor, {_time(self.seconds / self.workers)} with {self.workers} processes",
+            f"memory: about {self.memory / 1e6:.0f} MB in each process",
+            f"disk: about {_size(self.disk)}, {_size(self.free)} are free",
+            f"from {self.tried} cases computed now, {self.failed} of them failed",
+        ]
+        return "\n".join([*out, *([f"the first that failed: {self.error}"] if self.error else [])])
+
+
+def plan_sweep(
+    study: str | os.PathLike[str] | Mapping[str, Any], folder: str | os.PathLike[str] = ".", *, workers: int | None = None
+) -> Plan:
+    """Say what a sweep will take, without writing anything: one block from the middle of it is computed.
+
+    Parameters
+    ----------
+    study : str or path or dict
+        As of `gearfe.sweep`.
+    folder : str or path
+        Where it would be written: how much is free there.
+    workers : int, optional
+        Processes; default one per core.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    ValueError
+        If the study cannot be.
+    RuntimeError
+        If pyarrow is missing.
+
+    Examples
+    --------
+    >>> study = {"scene": "planetary_pitting", "vary": {"gear.sun.r_bore_mm": [6.0, 7.0]}, "options": {"method": "coupled"}}
+    >>> plan_sweep(study).cases
+    2
+    """
+    checked = read_study(study)
+    every, fields = blocks_of(checked)
+    chosen = every[len(every) // 2]
+    warm, job = jobs(checked, [chosen.part(0, 1), chosen], fields)
+    rows(warm)  # imports and tables that are made once
+    started = time.process_time()
+    made = rows(job)
+    tried = len(made)
+    content = encoded(table(made, fields))
+    each = (time.process_time() - started) / tried
+    cases = sum(len(one.numbers) for one in every)
+    wrong = [row["error"] for row in made if row["status"] != DONE]
+    unit = 1 if sys.platform == "darwin" else 1024
+    return Plan(
+        cases, len(every), each * cases, workers or os.cpu_count() or 1,
+        float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit), len(content) / tried * cases,
+        float(shutil.disk_usage(_there(Path(folder))).free), tried, len(wrong), wrong[0] if wrong else "",
+    )  # fmt: skip
+
+
+def _there(folder):
+    """The folder, or the nearest one above it that exists."""
+    folder = folder.absolute()
+    return next(one for one in (folder, *folder.parents) if one.exists())
+
+
+def _time(seconds):
+    if seconds < 120:
+        return f"{seconds:.3g} s"
+    return f"{seconds / 60:.3g} min" if seconds < 7200 else f"{seconds / 3600:.3g} h"
+
+
+def _size(size):
+    return f"{size / 1e6:.3g} MB" if size < 1e9 else f"{size / 1e9:.3g} GB"
