@@ -129,6 +129,8 @@ def page():
         "",
         verdict(),
     ]
+    left = sum(key not in known for key in wanted())
+    lines += ["", f"{left} of {len(wanted())} rows are not computed yet."] if left else []
     return "\n".join(lines) + "\n"
 
 

@@ -258,9 +258,9 @@ apart: of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of ac
 Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls, and its deflection grows, as the mesh is
 refined.
 
-Which differences are of the mesh: the healthy helical pair shows how far a mesh is from its limit. With pits there is one coarse
-mesh of tets so far, with a coarse crack tip: it is too stiff by more than the hexahedra, and how much of the difference is due to
-pits as lost contact can not be told from it; [holed_cracks](holed_cracks.md) bounds that part.
+Which differences are of the mesh: the healthy helical pair shows how far a mesh is from its limit. With pits there is one
+coarse mesh of tets so far, straight and coarse at the crack's tip; no second one says whether it is near its limit, so its
+difference is no verdict yet.
 
 `python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
 installed, run by run.
@@ -269,9 +269,9 @@ installed, run by run.
 PRESSED = """
 Contact pressure on the pinion's flanks of the healthy helical pair, all teeth laid over each other, each picture with a scale of
 its own. Where they touch agrees: the line of pair 0 across the whole width, that of pair 1 up to the tip corner, and the corner
-itself beyond it, which `ritz3d` carries by rows of their own that are not drawn. The values do not compare: CalculiX's contact is
-enforced at more points than the coarse faces can follow, so that few of them carry, with pressures far above Hertz's; what the
-approach sees is their mean.
+itself beyond it, which `ritz3d` carries by rows of their own that are not drawn. The values do not compare: on these
+coarse faces few of CalculiX's contact points carry, with pressures far above Hertz's; the likely cause is that contact is
+enforced at more points than the faces can follow. The approach sees their mean.
 """
 
 
