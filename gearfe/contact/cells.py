@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.mesh.outline import spaced
+from geometry.pair.gear_pair import GearPair
 from geometry.pair.lines import covered
 from geometry.pair.modified import first_touch
 
@@ -51,7 +52,7 @@ class Cells:
     load: NDArray[np.float64] = None  # type: ignore[assignment]  # None until the contact is solved
     pressure: NDArray[np.float64] = None  # type: ignore[assignment]
 
-    def at_ends(self, pair):
+    def at_ends(self, pair: GearPair) -> list[tuple[float, float]]:
         """Where a contact line carries the most at an end face of the common width: (z, roll length of the pinion) [mm]."""
         out, width = [], min(pair.gear_1.b, pair.gear_2.b)
         for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):
