@@ -71,13 +71,9 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
     seams = list(zip(seams[::2], seams[1::2], strict=True))
     load = np.concatenate([load, apart], axis=2)
     every, nodes = all_nodes(numbers, count, order)
+    own_degrees = degrees(gear, sector, every, sides, width, degree, order)
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
-    kinds[:nodes] = 1 + 3 * len(parts) + degrees(gear, sector, every, sides, width, degree, order)
-    side_kinds = kinds[sides]
-    for i, (_, right) in zip([i for i, own in enumerate(parts) if own], seams, strict=True):
-        kinds[_near(gear, sector, every, sector.faces[i])] = 3 + 3 * i
-        kinds[right] = 1 + 3 * i
-    kinds[sides] = side_kinds
+    kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 3 * i for i in owner]
     section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
     held = chain(sector.held)
@@ -102,8 +98,19 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         open_push=push[:, n:] @ points.T,
         open_own=points @ own[n:, :n],
         open_open=points @ own[n:, n:] @ points.T,
-        unknowns=int(body.size[: body.first_load].sum()),
+        unknowns=int(body.size[: body.first_load][body.there[: body.first_load]].sum()),
     )
+
+
+def _kinds(gear, sector, numbers, degree, sides, parts, right):
+    """Which set of `axial.Axial` each node has: by its degree, but near and on the faces of cracks over parts of the width."""
+    whole = 1 + 3 * len(parts) + degree
+    out = whole.copy()
+    for i, face in zip([i for i, own in enumerate(parts) if own], right, strict=True):
+        out[_near(gear, sector, numbers, sector.faces[i])] = 3 + 3 * i
+        out[face] = 1 + 3 * i
+    out[sides] = whole[sides]
+    return out
 
 
 def _apart(sector, chain, count):
