@@ -3,6 +3,7 @@
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
@@ -91,7 +92,7 @@ def write_contact_inp(
         raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(PINION)}")
     if not approach > 0:
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
-    rest = {"pose": pose, "penalty": penalty, "refine": refine}
+    rest: dict[str, Any] = {"pose": pose, "penalty": penalty, "refine": refine}
     if face is None:
         if damage:
             raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")

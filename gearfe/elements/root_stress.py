@@ -102,7 +102,8 @@ def root_stress_along_width(
         raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
     middle = float(roll_at_arc(gear, load_at(gear, radius)))
     slope = gear.outward * math.tan(gear.beta_b)
-    ends = np.clip(middle + slope * gear.b / 2 * np.array([-1, 1]), *sorted((gear.roll_f, gear.roll_a)))
+    least, most = sorted((gear.roll_f, gear.roll_a))
+    ends = np.clip(middle + slope * gear.b / 2 * np.array([-1, 1]), least, most)
     low, high = np.sort(arc_at(gear, ends))
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(
