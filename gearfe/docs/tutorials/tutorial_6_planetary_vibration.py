@@ -27,7 +27,7 @@ for stage in machine.stages:
 # ----------
 # ``simulate`` starts at rest under load. It chooses its own step, and says how large its error is.
 
-responses = {case: gf.simulate(each, 0.8) for case, each in machines.items()}
+responses = {case: gf.simulate(each, 1.5) for case, each in machines.items()}
 print(f"error estimate {responses['crack50'].stats['error']:.1e} of the range")
 print(", ".join(responses["crack50"].names[:6]), "...")
 
@@ -39,7 +39,7 @@ print(", ".join(responses["crack50"].names[:6]), "...")
 
 signals = {}
 for case, response in responses.items():
-    late = response.time > 0.3  # after the start has died down
+    late = response.time > 0.5  # after the start has died down
     signals[case] = gf.Signal(response["sun2.theta acceleration"][late], rate=1 / response.time[1], unit="rad/s^2")
 spectra = {case: gf.spectrum(signal) for case, signal in signals.items()}
 stage = machine.stages[-1]
