@@ -133,7 +133,8 @@ def write_contact_solid(
     starts = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
     centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
-    return SolidDeck((held[0], held[1]), (centred[0], centred[1]), (pair.gear_1.r_b, pair.gear_2.r_b), (parts[0], parts[1]), slaves)
+    radii = pair.gear_1.r_b, pair.gear_2.r_b
+    return SolidDeck((held[0], held[1]), (centred[0], centred[1]), radii, (parts[0], parts[1]), slaves)
 
 
 def _flank(pair, number, order):

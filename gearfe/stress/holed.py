@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
-from geometry.tooth.profile import arc_at, flank_normal
+from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
 from ..contact.solid import Contact3D, pair_stiffness3d
 from ..elements.hexahedron import assemble
@@ -76,6 +76,7 @@ def pressed_tooth(
     teeth=3,
     removal=False,
     sizes=None,
+    strip=None,
     tell=None,
 ):
     """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
@@ -89,6 +90,8 @@ def pressed_tooth(
         Default: the one of 16 at which the damaged tooth carries most.
     refine, teeth, sizes
         As of `geometry.mesh.holes.holed_sector`.
+    strip : float, optional
+        Edge length along the loaded contact lines of the damaged tooth [modules]; default: that of the flank.
     removal : bool
         Solve the tooth without its holes too, for `Pressed.extra`.
     tell : callable, optional
@@ -114,15 +117,16 @@ def pressed_tooth(
     side = which[0]
     gear, half, own_pits = _own(pair, side, face, groove, pits[side])
     crack = next(iter(cracks[side]), None)
-    with part("mesh", 0.0, 0.3):
-        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
     order = (1, -1)[side] * tooth
-    with part("contact", 0.3, 0.5):
+    with part("contact", 0.0, 0.2):
         contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
+    lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
+    strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine)
+    with part("mesh", 0.2, 0.5):
+        sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
-    lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
     loads = np.column_stack([_pressure(sector, nodes, number, found) for found in lines])
     held = _held(sector, number)
     with part("stress", 0.5, 1.0):
@@ -211,6 +215,17 @@ def _lines(pair, cells, side, tooth, half):
         place = (sense * int(order) - tooth + gear.z // 2) % gear.z - gear.z // 2
         roll = (cells.roll_1, cells.roll_2)[side][own]
         out.setdefault(place, []).append((z, cells.width[own], roll, cells.load[own]))
+    return out
+
+
+def _strips(gear, lines, edge):
+    """Loaded contact lines of tooth 0 in the frame that turns with the helix, for a mesh with edges of a length [mm] there."""
+    out = []
+    for found in lines:
+        for z, _, roll, load in found.get(0, ()):
+            if (load > 0).sum() > 1:
+                radius, angle = flank(gear, roll[load > 0])
+                out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * SPREAD * gear.m_n, edge))
     return out
 
 

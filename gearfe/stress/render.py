@@ -32,6 +32,7 @@ FINE = {
     "tip": 0.1,
     "rim": 0.3,
 }  # edge lengths of such a picture, see geometry.mesh.holes.SIZES
+STRIP = 0.08  # edge length along the contact lines of a tooth [modules], about half of the width that the load is spread over
 # corners and middles of a second-order tet (VTK's order) to eight tets
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
@@ -139,7 +140,8 @@ def _gears(scene_pair, damage, phase, refine):
 
 def _tooth(scene_pair, damage, phase, refine):
     phases = None if phase is None else [phase]
-    options = {"phases": phases, "face": scene_pair.face, "groove": scene_pair.groove, "refine": refine, "sizes": FINE}
+    options = {"phases": phases, "face": scene_pair.face, "groove": scene_pair.groove}
+    options |= {"refine": refine, "sizes": FINE, "strip": STRIP}
     made = pressed_tooth(scene_pair.pair, scene_pair.force, scene_pair.materials, damage, **options)
     field = tooth_field(made)
     told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
