@@ -322,3 +322,23 @@ def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel
     means = [np.linalg.eigvalsh(tensor)[piece == k, 2].mean() for k in range(10)]
     radius = math.hypot(pair.gear_1.r_b, float(made.contact.cells[0].roll_1.mean()))
     assert_allclose(max(means), gf.root_stress(pair.gear_1, radius, 125.0, steel), rtol=0.04)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("gear", [GEAR, HELICAL])
+def test_the_mesh_is_finer_along_loaded_contact_lines_only(gear, steel):
+    """Nodes within 0.1 mm of the lines of tooth 0, and more than 2 mm away, with edges of 0.12 modules there and without."""
+    pair = gf.GearPair(replace(gear, b=4.0), replace(gear, b=4.0, z=27))
+    near, far = [], []
+    for strip in (None, 0.12):
+        made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes=COARSE, teeth=1, strip=strip)
+        cells = made.contact.cells[0]
+        own = (cells.order == 0) & (cells.load > 0)
+        radius, angle = flank(pair.gear_1, cells.roll_1[own])
+        turn = made.sector.gear.twist_rate * cells.z[own]
+        line = np.array([*cartesian(radius, angle + turn), cells.z[own]])
+        away = np.linalg.norm(made.nodes[:, :, None] - line[:, None, :], axis=0).min(axis=1)
+        near.append(int((away < 0.1).sum()))
+        far.append(int((away > 2.0).sum()))
+    assert near[1] > 3 * near[0]
+    assert far[1] < 2 * far[0]
