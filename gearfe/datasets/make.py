@@ -5,15 +5,14 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, wait
 from concurrent.futures.process import BrokenProcessPool
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from ..steps import reached
-from ..stiffness.cache import made_by
+from ..stiffness.cache import program
 from ..store.folder import begin, durable, locked
 from ..store.shards import arrow, check_shards, encoded, shard_names, write_shard
-from ..studies.batches import processes
+from ..studies.batches import check_workers, processes
 from .card import card
 from .conditions import Condition, conditions
 from .opened import FAILED, FORMAT, WINDOWS, Dataset, open_dataset
@@ -65,8 +64,7 @@ def dataset(
     RuntimeError
         If pyarrow is missing, or a process ended before its condition was done: what is finished stays, call it again.
     """
-    if workers is not None and not (isinstance(workers, int) and not isinstance(workers, bool) and workers >= 1):
-        raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
+    check_workers(workers)
     unknown = [one for one in also if one not in EXPORTS]
     if unknown or isinstance(also, str):
         raise ValueError(f"also = {also!r}, but it lists {' and '.join(EXPORTS)}")
@@ -93,15 +91,13 @@ def dataset(
 
 def _about(plan, count, told):
     """Note of a folder of windows."""
-    source, libraries = made_by()
-    made = {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
     return {
         "format": FORMAT,
         "title": plan.title,
         "conditions": count,
         "plan": plan.content(),
         "units": told["units"],
-        "made": made,
+        "made": program(),
     }
 
 

@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..files import missing, written
 from ..store.folder import read_about
-from ..store.shards import arrow, fields_of, opened, read, shard_names
+from ..store.shards import arrow, fields_of, opened, read, shard_names, where_of
 
 if TYPE_CHECKING:
     import pandas
@@ -102,7 +102,7 @@ class Dataset:
         found = opened(self.folder / WINDOWS)
         fields = fields_of(found.schema)
         names = [name for name in fields if name != "signal"]
-        got = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], _expression(where, names))
+        got = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
         labels = got.select(names).to_pandas()
         labels.attrs["units"] = {name: fields[name].unit for name in names}
         if not signal:
@@ -143,19 +143,6 @@ class Dataset:
                 write(name, signals, labels, self.about)
             out.append(path)
         return out
-
-
-def _expression(where: Mapping[str, Any] | None, names: Sequence[str]) -> Any:
-    field, out = arrow().dataset.field, None
-    for name, value in (where or {}).items():
-        if name not in names:
-            raise ValueError(f"where: no column {name!r}; there is {', '.join(names)}")
-        if isinstance(value, tuple):
-            one = (field(name) >= value[0]) & (field(name) <= value[1])
-        else:
-            one = field(name).isin(value) if isinstance(value, list) else field(name) == value
-        out = one if out is None else out & one
-    return out
 
 
 def _mat(name, signals, labels, about):

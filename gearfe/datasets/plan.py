@@ -42,16 +42,15 @@
 import json
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 from ..machine.of_scene import MACHINES
 from ..scene.load import Scene, read_tables, scene_of
 from ..scene.strict import NUMBER, NUMBERS, REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
+from ..scene.toml_file import given_tables
 from ..sweeps.keys import check_key, placed
 from ..sweeps.samples import check_shape
 from .faults import FAULTS
@@ -126,16 +125,7 @@ def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
     ValueError
         Naming file, table and key if anything is unknown, missing or impossible.
     """
-    if isinstance(given, Mapping):
-        file, place, data = "data set", Path(), json.loads(json.dumps(dict(given), default=list))
-    else:
-        path = Path(given)
-        if not path.is_file():
-            raise ValueError(f"no file {str(given)!r}: give a .toml file that says what the data set holds")
-        try:
-            file, place, data = path.name, path.parent, tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise ValueError(f"{path.name}: not readable as TOML: {error}") from error
+    file, place, data = given_tables(given, "data set")
     top = checked(file, "top level", data, TOP)
     for name, table in (("window", WINDOW), ("operation", OPERATION), ("split", SPLIT)):
         top[name] = checked(file, name, top[name], table)

@@ -8,7 +8,6 @@ import time
 from importlib import resources
 from pathlib import Path
 
-from ..files import check_output, missing, written
 from ..scene.load import Scene
 from ..steps import part
 from ..stiffness.methods import METHODS
@@ -16,6 +15,7 @@ from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
 from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
 from .findings import find
+from .template import page_maker
 
 PICTURE = (1120, 840)  # of stress [px]
 CONFIG = {"responsive": True, "displaylogo": False}
@@ -56,31 +56,19 @@ def report(
     RuntimeError
         If plotly or jinja2 is missing; the message has the command that installs them.
     """
-    check_output(path, "page")
-    try:
-        import jinja2
-        from plotly.offline import get_plotlyjs
-    except ImportError as error:
-        raise missing(f"{error.name}", "report", error) from error
+    write = page_maker(path, "page.html")
     started = time.perf_counter()
     with part("", 0.0, 0.85):
         found = find(scene, case, duration=duration, phases=phases)
     with part("stress pictures", 0.85, 1.0), _part(found, "stress pictures"):
         pictures = _pictures(found)
-    texts = resources.files("gearfe.reports")
-    maker = jinja2.Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
-    template = maker.from_string((texts / "page.html").read_text(encoding="utf-8"))
     figures = _Figures()
-    page = template.render(
+    return write(
         found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
         versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
-        style=(texts / "page.css").read_text(encoding="utf-8"), turning=(texts / "page.js").read_text(encoding="utf-8"),
-        plotly=get_plotlyjs(),
+        turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
     )  # fmt: skip
-    with written(path) as name:
-        Path(name).write_text(page, encoding="utf-8")
-    return Path(path)
 
 
 class _Figures:

@@ -2,17 +2,16 @@
 
 import json
 import os
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..files import check_output, missing, written
 from ..pictures.look import COLOURS
 from ..sweeps.effects import curve_bands, main_effects
 from ..sweeps.runs import Runs, open_runs
 from .figures import DASH, LOOK
+from .template import page_maker
 
 SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
 
@@ -39,29 +38,18 @@ def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[st
     RuntimeError
         If plotly, jinja2, pandas or xarray is missing; the message has the command that installs them.
     """
-    check_output(path, "page")
-    try:
-        import jinja2
-        from plotly.offline import get_plotlyjs
-    except ImportError as error:
-        raise missing(f"{error.name}", "report", error) from error
+    write = page_maker(path, "sweep.html")
     runs = runs if isinstance(runs, Runs) else open_runs(runs)
     table, study = runs.table(), runs.about["study"]
     output, curve = SHOWN[study["kind"]]
-    texts = resources.files("gearfe.reports")
-    made = jinja2.Environment(autoescape=True, trim_blocks=True).from_string((texts / "sweep.html").read_text(encoding="utf-8"))
-    page = made.render(
+    return write(
         title=runs.about["title"], there=len(table), cases=runs.about["cases"], study=study, made=runs.about["made"],
         varied=_varied(table, runs), numbers=_numbers(table, runs), failed=_failed(table),
         output=f"{output} [{runs.units[output]}]", effects=_effects(runs, output), bands=_bands(runs, curve),
         seconds=f"{table['seconds'].sum():.4g} s",
-        each=f"{table['seconds'].median():.3g} s", text=json.dumps(study, indent=1), plotly=get_plotlyjs(),
+        each=f"{table['seconds'].median():.3g} s", text=json.dumps(study, indent=1),
         versions=", ".join(f"{name} {value}" for name, value in runs.about["made"].items()),
-        style=(texts / "page.css").read_text(encoding="utf-8"),
     )  # fmt: skip
-    with written(path) as name:
-        Path(name).write_text(page, encoding="utf-8")
-    return Path(path)
 
 
 def _varied(table, runs):

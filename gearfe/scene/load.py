@@ -2,7 +2,6 @@
 
 import math
 import os
-import tomllib
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -20,6 +19,7 @@ from . import assumed, machine_table
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .references import Reference, read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
+from .toml_file import read_toml
 
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
 TABLES = {
@@ -183,11 +183,7 @@ def read_tables(name_or_path: str | os.PathLike[str]) -> tuple[str, dict[str, An
         file = Path(name_or_path)
         if not file.is_file():
             raise ValueError(f"no scene {str(name_or_path)!r}: built in are {', '.join(scene_names())}; or give a .toml file")
-    try:
-        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
-    return file.name, data
+    return file.name, read_toml(file)
 
 
 def scene_of(file: str, data: dict[str, Any]) -> Scene:

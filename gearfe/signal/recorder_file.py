@@ -2,6 +2,7 @@
 
 import logging
 import os
+import struct
 import warnings
 from typing import Any
 
@@ -15,6 +16,9 @@ TIME_RESPONSE = 1  # function type of a data set 58 that holds a quantity over t
 DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
 TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
 SAID_NOTHING = ("", "none", "unknown")
+# what scipy and npTDMS, which trust their files, raise when these are damaged (NameError: a chunk is missing)
+DAMAGE = (ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, NameError, NotImplementedError, OSError)
+DAMAGE += (TypeError, ValueError, Warning, struct.error)
 
 
 def wav_file(path: str | os.PathLike[str]) -> Found:
@@ -26,7 +30,7 @@ def wav_file(path: str | os.PathLike[str]) -> Found:
             warnings.simplefilter("error", wavfile.WavFileWarning)
             warnings.filterwarnings("ignore", ".*not understood", wavfile.WavFileWarning)  # chunks of other programs
             rate, data = wavfile.read(path)
-    except Exception as error:  # struct, index and other errors of a parser that trusts its file
+    except DAMAGE as error:
         raise _damaged(path, "WAV", error) from error
     values = _full_scale(np.atleast_2d(data.T))
     found = Found({f"channel {i}": one for i, one in enumerate(values, 1)})
@@ -59,7 +63,7 @@ def uff_file(path: str | os.PathLike[str]) -> Found:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             sets = pyuff.UFF(os.fspath(path)).read_sets()
-    except Exception as error:  # pyuff raises no narrower class
+    except Exception as error:  # pyuff itself raises just Exception
         raise _damaged(path, "universal file (UFF)", error) from error
     found = Found({})
     for one in sets if isinstance(sets, list) else [sets]:
@@ -104,7 +108,7 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
         groups = file.groups()
         values = {(group.name, one.name): one[:] for group in groups for one in group.channels()}
         status = file.file_status
-    except Exception as error:  # struct, index and other errors of a parser that trusts its file
+    except DAMAGE as error:
         raise _damaged(path, "TDMS", error) from error
     if status.incomplete_final_segment:
         raise ValueError(f"{path} is not a whole TDMS file: its last segment is cut; record or copy it again")

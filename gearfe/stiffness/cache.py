@@ -128,6 +128,12 @@ def made_by() -> tuple[str, tuple[tuple[str, str], ...]]:
     return digest.hexdigest(), tuple((name, version(name)) for name in LIBRARIES)
 
 
+def program() -> dict[str, str]:
+    """Versions of gearfe, of its source and of the libraries, as studies note them."""
+    source, libraries = made_by()
+    return {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
+
+
 def sources():
     """Source files of both packages."""
     packages = (Path(geometry.__file__).parent, Path(__file__).parents[1])

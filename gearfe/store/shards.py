@@ -45,6 +45,35 @@ def arrow() -> Any:
     return pyarrow
 
 
+def where_of(where: Any, names: Sequence[str]) -> Any:
+    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column.
+
+    Parameters
+    ----------
+    where : dict, pyarrow expression or None
+        ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
+    names : sequence of str
+        Columns that there are.
+
+    Raises
+    ------
+    ValueError
+        If there is no such column.
+    """
+    if not isinstance(where, Mapping):
+        return where
+    field, out = arrow().dataset.field, None
+    for name, value in where.items():
+        if name not in names:
+            raise ValueError(f"where: no column {name!r}; there is {', '.join(names)}")
+        if isinstance(value, tuple):
+            one = (field(name) >= value[0]) & (field(name) <= value[1])
+        else:
+            one = field(name).isin(value) if isinstance(value, list) else field(name) == value
+        out = one if out is None else out & one
+    return out
+
+
 def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
     """Rows as a table with exactly the columns `fields`; what a row lacks is null.
 

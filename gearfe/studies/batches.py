@@ -73,8 +73,7 @@ def batch(
     ValueError: workers = 0, but give a number of processes >= 1, or None for one per core
     """
     cases, work = list(cases), work or mesh_stiffness
-    if workers is not None and not (isinstance(workers, int) and workers >= 1):
-        raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
+    check_workers(workers)
     if getattr(multiprocessing.current_process(), "_inheriting", False):
         sys.exit(1)  # a worker that imports an unguarded script: `_spread` in the process that started it says what to do
     workers = min(workers or os.cpu_count() or 1, max(1, len(cases)))
@@ -84,6 +83,12 @@ def batch(
     done = _collect(map(_timed, jobs), len(cases), progress) if workers == 1 else _spread(jobs, workers, progress)
     results, seconds = ([row[k] for row in done] for k in (0, 1))
     return Batch(results, seconds, time.perf_counter() - started, workers)
+
+
+def check_workers(workers: int | None) -> None:
+    """ValueError unless it is a number of processes, or None."""
+    if workers is not None and not (isinstance(workers, int) and not isinstance(workers, bool) and workers >= 1):
+        raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
 
 
 def _spread(jobs, workers, progress):

@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.metadata import version
 from itertools import groupby
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 
 from ..scene.load import Scene, scene_of
 from ..steps import listening
-from ..stiffness.cache import made_by
+from ..stiffness.cache import program
 from ..store.shards import Field, encoded, table
 from .keys import placed, rank, trimmed
 from .kinds import KINDS
@@ -179,7 +178,8 @@ def _told(block, i):
 @cache
 def _program():
     """What each row says of the program that made it."""
-    return {"version": version("gearfe"), "source": made_by()[0][:12]}
+    made = program()
+    return {"version": made["gearfe"], "source": made["source"]}
 
 
 def _computed(study, cases, built):

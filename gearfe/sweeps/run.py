@@ -4,13 +4,13 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from importlib.metadata import version
 from typing import Any
 
 from ..steps import reached
-from ..stiffness.cache import made_by
+from ..stiffness.cache import program
 from ..store.folder import begin, locked
 from ..store.shards import check_shards, shard_names, write_shard
+from ..studies.batches import check_workers
 from .blocks import blocks, jobs
 from .cluster import cluster
 from .local import local
@@ -61,8 +61,7 @@ def sweep(
     RuntimeError
         If pyarrow or, for a scheduler, distributed is missing; the message names what to install.
     """
-    if workers is not None and not (isinstance(workers, int) and not isinstance(workers, bool) and workers >= 1):
-        raise ValueError(f"workers = {workers!r}, but give a number of processes >= 1, or None for one per core")
+    check_workers(workers)
     if workers is not None and scheduler is not None:
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
@@ -102,9 +101,7 @@ def _say(done, total, progress):
 
 def _about(study: Study, cases: int) -> dict[str, Any]:
     """Note of a folder of results."""
-    source, libraries = made_by()
-    made = {"gearfe": version("gearfe"), "source": source[:12], **dict(libraries)}
-    return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": made}
+    return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": program()}
 
 
 def _compared(folder, stored, about, study, mixed):

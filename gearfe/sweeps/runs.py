@@ -1,7 +1,7 @@
 """`open_runs`: results of a sweep as pandas and xarray, reading only the columns and rows that are asked for."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ import numpy as np
 
 from ..files import missing
 from ..store.folder import read_about
-from ..store.shards import Field, arrow, fields_of, opened, read, shard_names
+from ..store.shards import Field, fields_of, opened, read, shard_names, where_of
 
 if TYPE_CHECKING:
     import pandas
@@ -90,7 +90,7 @@ class Runs:
         if columns is None:
             columns = [name for name, field in self.fields.items() if field.kind != "list"]
         wanted = ["number", *(name for name in columns if name != "number")]
-        found = read(self.folder, wanted, self._expression(where)).to_pandas().set_index("number").sort_index()
+        found = read(self.folder, wanted, where_of(where, list(self.fields))).to_pandas().set_index("number").sort_index()
         found.attrs["units"] = {name: self.fields[name].unit for name in columns}
         return found
 
@@ -128,7 +128,7 @@ class Runs:
                 raise ValueError(f"{name!r} is no curve of this study; it has {', '.join(known)}")
         beside = ["number", *self.inputs, "status"]
         lists = list(dict.fromkeys([*(["phase"] if "phase" in known else []), *names]))
-        found = read(self.folder, [*beside, *lists], self._expression(where)).sort_by("number")
+        found = read(self.folder, [*beside, *lists], where_of(where, list(self.fields))).sort_by("number")
         values = {name: padded(found[name]) for name in lists}
         coords: dict[str, Any] = {name: ("number", found[name].to_pandas().to_numpy()) for name in beside}
         if "phase" in values and "phase" not in names and _alike(values["phase"]):
@@ -137,21 +137,6 @@ class Runs:
             names = ["phase", *names]
         data = {name: (("number", "place"), values[name], {"units": self.fields[name].unit}) for name in names}
         return xarray.Dataset(data, coords=coords, attrs={"title": self.about["title"]})
-
-    def _expression(self, where):
-        """Where as a pyarrow expression."""
-        if not isinstance(where, Mapping):
-            return where
-        field, out = arrow().dataset.field, None
-        for name, value in where.items():
-            if name not in self.fields:
-                raise ValueError(f"where: no column {name!r}; there is {', '.join(self.fields)}")
-            if isinstance(value, tuple):
-                one = (field(name) >= value[0]) & (field(name) <= value[1])
-            else:
-                one = field(name).isin(value) if isinstance(value, list) else field(name) == value
-            out = one if out is None else out & one
-        return out
 
 
 def padded(column: Any) -> np.ndarray:

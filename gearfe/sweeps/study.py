@@ -37,16 +37,15 @@ gives other keys the same value.
 import json
 import math
 import os
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..scene.load import DAMAGE, read_tables, scene_of
 from ..scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
+from ..scene.toml_file import given_tables
 from . import samples
 from .axes import axes, checked_sample
 from .keys import check_key, trimmed
@@ -117,26 +116,7 @@ def read_study(study: str | os.PathLike[str] | Mapping[str, Any]) -> Study:
     ValueError
         Naming file, table and key if anything is unknown, missing, of the wrong type or contradicts the rest.
     """
-    if isinstance(study, Mapping):
-        file, place, data = "study", Path(), _plain(study)
-    else:
-        path = Path(study)
-        if not path.is_file():
-            raise ValueError(f"no study {str(study)!r}: give a .toml file")
-        try:
-            file, place, data = path.name, path.parent, tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            raise ValueError(f"{path.name}: not readable as TOML: {error}") from error
-    return _study(file, place, data)
-
-
-def _plain(value):
-    """Numbers and arrays of numpy, and tuples, as TOML would give them."""
-    if isinstance(value, Mapping):
-        return {str(name): _plain(one) for name, one in value.items()}
-    if isinstance(value, (list, tuple, np.ndarray)):
-        return [_plain(one) for one in value]
-    return value.item() if isinstance(value, np.generic) else value
+    return _study(*given_tables(study, "study"))
 
 
 def _study(file, place, data):

@@ -12,7 +12,7 @@ from gearfe.contact import bodies as bodies3d
 from gearfe.contact import cell_sharing
 from gearfe.contact import cells as lines3d
 from gearfe.contact.sharing import share
-from gearfe.contact.solid import STEP, pair_stiffness3d
+from gearfe.contact.solid import pair_stiffness3d
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility import halfspace
 from gearfe.flexibility.hertz import half_width
@@ -178,28 +178,6 @@ def test_cells_that_cannot_touch_are_as_good_as_absent():
         )
 
 
-@pytest.mark.slow
-def test_moving_pits_by_parts_of_a_cell():
-    """A row on a spur gear's line; on a helical gear, where moving means another phase, the drop by cell size."""
-    run = {"order": 2, "axial": 8, "phases": np.array([0.7])}
-    pair, drops = pair_of(30.0, 0.0), []
-    healthy = pair_stiffness3d(pair, 3800.0, STEEL, face="spur", **run).k[0]
-    radius = math.hypot(pair.gear_1.r_b, pair.path[0] + 0.7 * pair.p_bt)
-    for shift in (0.0, 0.1, 0.2, 0.3):
-        pits = [gf.Pit(radius=radius, z=z + shift, axes=(1.0, 1.0), depth=0.1) for z in np.linspace(2.0, 27.7, 7)]
-        drops.append(1 - pair_stiffness3d(pair, 3800.0, STEEL, face="spur", pits=(pits, ()), **run).k[0] / healthy)
-    assert min(drops) > 0.03
-    assert np.ptp(drops) < 0.02 * np.mean(drops)
-    pair, drops = pair_of(30.0), []
-    run["phases"] = np.array([1.1])
-    pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in np.linspace(2.0, 27.7, 7)]
-    for step in (STEP, STEP / 4):
-        healthy, pitted = (pair_stiffness3d(pair, 3800.0, STEEL, pits=(own, ()), step=step, **run).k[0] for own in ((), pits))
-        drops.append(1 - pitted / healthy)
-    assert drops[0] > 0.02
-    assert abs(drops[0] - drops[1]) < 0.02 * drops[1]
-
-
 @pytest.mark.parametrize(
     ("options", "message"),
     [
@@ -210,13 +188,6 @@ def test_moving_pits_by_parts_of_a_cell():
 def test_impossible_pairs(options, message):
     with pytest.raises(ValueError, match=message):
         pair_stiffness3d(pair_of(), **({"force": 1500.0, "material": STEEL} | options))
-
-
-def test_pits_over_a_whole_line_are_refused():
-    pit = gf.Pit(radius=18.7, z=6.0, axes=(8.0, 20.0), depth=0.1)
-    pits = [replace(pit, tooth=k) for k in range(3)]
-    with pytest.raises(RuntimeError, match="no contact"):
-        pair_stiffness3d(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), order=2, axial=6)
 
 
 @pytest.mark.slow
@@ -255,50 +226,6 @@ def test_error_estimate_covers_a_finer_solve():
     print(f"off by at most {np.abs(solved.k / fine.k - 1).max():.2e}, estimated {(error / solved.k).max():.2e}")
     assert (np.abs(solved.k - fine.k) < error).all()
     assert (error < 0.03 * solved.k).all()
-
-
-@pytest.mark.slow
-def test_crack_lowers_a_spur_pair_as_in_the_plane():
-    """Without its free ends the drop of k by a crack is that of plane strain; with them, within a hundredth of it."""
-    pair, crack, phase = pair_of(20.0, 0.0), gf.Crack(level=0.5), np.array([0.3, 0.7])
-    run = {"phases": phase, "face": "spur", "order": 2, "axial": 5}
-    solid = [pair_stiffness3d(pair, 2500.0, STEEL, cracks=(own, ()), **run).k for own in ((), (crack,))]
-    run = {"phases": phase, "extended": False}
-    plane = [gf.mesh_stiffness(pair, 2500.0, STEEL, damage={"pinion": own}, **run).k for own in ([], [crack])]
-    drop = 1 - plane[1] / plane[0]
-    assert_allclose(1 - solid[1] / solid[0], drop, rtol=0.04)
-    other = pair_stiffness3d(
-        pair, 2500.0, STEEL, phase, face="spur", cracks=((), (gf.Crack(level=0.5, tooth=-1),)), order=2, axial=5
-    )
-    assert other.k[0] < 0.98 * solid[0][0], "tooth -1 of the wheel meets tooth 1 of the pinion"
-    assert abs(other.k[1] / solid[0][1] - 1) < 0.1
-
-
-@pytest.mark.parametrize("side", ["loaded", "unloaded"])
-def test_faces_of_cracks_are_kept_apart_as_in_the_plane(side):
-    """On a wide spur pair: the same phases as in the plane, and the same k within what wide spur pairs differ without cracks."""
-    pair, phases = pair_of(200.0, 0.0), np.array([-0.2, 0.1, 0.9, 1.7])
-    crack = gf.Crack(level=0.3, side=side)
-    plane = gf.mesh_stiffness(pair, 3e4, STEEL, phases=phases, method="ritz", damage={"pinion": [crack]})
-    solid = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0, cracks=((crack,), ()))
-    assert_allclose(solid.k, plane.k, rtol=4e-3)
-    assert phases[list(solid.closed)].tolist() == plane.meta["crack_closed_phases"]
-    healthy = pair_stiffness3d(pair, 3e4, STEEL, phases, face="spur", axial=0, step=10.0)
-    assert (solid.k < 0.85 * healthy.k).any() == (side == "loaded")
-
-
-@pytest.mark.slow
-def test_crack_in_one_half_of_a_herringbone_pair():
-    """Each half bears its share at one approach: k is the sum of a healthy and a cracked half's at their own loads."""
-    pair, run = pair_of(24.0), {"order": 2, "axial": 6, "face": "herringbone", "phases": np.array([0.9])}
-    crack = gf.Crack(level=0.5)
-    cases = [(), (replace(crack, width=(0.0, 12.0)),), (replace(crack, width=(12.0, 24.0)),), (crack,)]
-    healthy, first, second, both = (pair_stiffness3d(pair, 3000.0, STEEL, cracks=(own, ()), **run).k[0] for own in cases)
-    assert_allclose(first, second, rtol=1e-9)
-    assert both < 0.97 * first < 0.97 * 0.97 * healthy
-    assert_allclose(first, (healthy + both) / 2, rtol=5e-3)
-    part = pair_stiffness3d(pair, 3000.0, STEEL, cracks=((replace(crack, width=(0.0, 6.0)),), ()), **run).k[0]
-    assert first < part < healthy
 
 
 def test_cells_that_cannot_touch_leave_the_corners_and_the_faces_of_cracks_in():

@@ -57,7 +57,7 @@ def changed(**values):
         (changed(scatter={"machine.profile_error_um": {"uniform": [1.0, 0.2]}}), "rise"),
         (changed(scene="helical_pitting2"), "no scene"),
         (changed(title=3), "expected a text"),
-        ("nowhere.toml", "no file"),
+        ("nowhere.toml", "no data set"),
     ],
 )
 def test_what_cannot_be_is_refused(given, said):

@@ -11,6 +11,7 @@ from gearfe.elements.hexahedron import gauss, shapes
 from gearfe.elements.solid_deck import FACES, TWENTY, sides_of
 from geometry.tooth.profile import flank
 from validation.make import outsider_three
+from validation.shared import outsider
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH = 0.015  # mm
@@ -151,12 +152,12 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is 
 
 @needs_ccx
 @pytest.mark.slow
-@pytest.mark.parametrize("name", list(outsider_three.lines()))
+@pytest.mark.parametrize("name", list(outsider.lines()))
 def test_calculix_under_a_line_load(name):
-    row = outsider_three.line_row(name, {"refine": 0.6})
-    print(f"{name}: {100 * outsider_three.apart(row):+.2f} %")
-    assert abs(outsider_three.apart(row)) < outsider_three.ASKED
-    on_file = outsider_three.stored().get((name, row["mesh"]))
+    row = outsider.line_row(name, {"refine": 0.6})
+    print(f"{name}: {100 * outsider.apart(row):+.2f} %")
+    assert abs(outsider.apart(row)) < outsider.ASKED
+    on_file = outsider.stored().get((name, row["mesh"]))
     assert on_file is None or math.isclose(float(row["theirs"]), float(on_file["theirs"]), rel_tol=1e-4)
 
 
@@ -164,6 +165,6 @@ def test_calculix_under_a_line_load(name):
 @pytest.mark.slow
 def test_calculix_in_contact():
     name = "helical, healthy"
-    row = outsider_three.contact_row(name, {"per_width": 1.0})
-    print(f"{name}: {100 * outsider_three.apart(row):+.2f} %")
-    assert abs(outsider_three.apart(row)) < outsider_three.ASKED
+    row = outsider.contact_row(name, {"per_width": 1.0})
+    print(f"{name}: {100 * outsider.apart(row):+.2f} %")
+    assert abs(outsider.apart(row)) < outsider.ASKED

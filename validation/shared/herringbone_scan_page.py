@@ -2,6 +2,7 @@
 """The page of the scan, from its tables alone."""
 
 import csv
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -97,7 +98,7 @@ def checked(scan):
 def bore_factor(ritz=None):
     """By how much k of the healthy sun and planet grows from bores of 0.33 to 0.85 of the root radius."""
     ritz, base = ritz or herringbone_scan.Ritz3D(), herringbone_scan.SCENE_READING
-    low, high = (ritz.stiffness(herringbone_scan.replace(base, sun=q, planet=q), "sun_planet", None).mean() for q in (0.33, 0.85))
+    low, high = (ritz.stiffness(replace(base, sun=q, planet=q), "sun_planet", None).mean() for q in (0.33, 0.85))
     return float(high / low)
 
 

@@ -1,0 +1,38 @@
+"""A page of one file from its template, with style and plotly in it."""
+
+import os
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from ..files import check_output, missing, written
+
+
+def page_maker(path: str | os.PathLike[str], name: str) -> Any:
+    """Check that a page can be written; give a function that fills the template `name` with values and writes it.
+
+    Raises
+    ------
+    ValueError
+        If the page could not be written.
+    RuntimeError
+        If plotly or jinja2 is missing; the message has the command that installs them.
+    """
+    check_output(path, "page")
+    try:
+        import jinja2
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise missing(f"{error.name}", "report", error) from error
+    maker = jinja2.Environment(
+        loader=jinja2.PackageLoader("gearfe.reports", ""), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    template, style = maker.get_template(name), (resources.files("gearfe.reports") / "page.css").read_text(encoding="utf-8")
+
+    def write(**values: Any) -> Path:
+        text = template.render(style=style, plotly=get_plotlyjs(), **values)
+        with written(path) as place:
+            Path(place).write_text(text, encoding="utf-8")
+        return Path(path)
+
+    return write

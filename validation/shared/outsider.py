@@ -1,0 +1,239 @@
+"""CalculiX on whole gears, under line loads and in contact, beside `ritz3d`: the cases, and every run kept in a table.
+
+`reference` computes what `tables/outsider_three.csv` lacks if `ccx` is there.
+"""
+
+import csv
+import math
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+import warnings
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.elements.contact_solid import SolidDeck
+from gearfe.energy.ritz import solid as ritz3d
+from gearfe.energy.ritz.join import join
+from gearfe.files import written
+from gearfe.flexibility import solid as flexibility3d
+from geometry.tooth.profile import arc_at
+
+from .places import TABLES
+
+TABLE = TABLES / "outsider_three.csv"
+PRESSURE = TABLES / "outsider_three_pressure.csv"
+COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
+STEEL = gf.Material(E=207e3, nu=0.3)
+LOAD = 300.0  # N/mm
+SHOWN = "helical, healthy"  # whose pressure is drawn
+ASKED = 0.005  # largest difference asked for where both meshes are converged
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A pair in contact: `damage` as of `mesh_stiffness`, the phases, and the meshes as options of `write_contact_inp`."""
+
+    pair: gf.GearPair
+    phase: float = 0.45
+    damage: dict = field(default_factory=dict)
+    meshes: tuple = ({"per_width": 1.0}, {"per_width": 1.5})
+
+
+def pinion(degrees=15.0):
+    """The small gear of all cases."""
+    return gf.Gear(z=13, x=0.3, r_bore=8.0, beta=math.radians(degrees), **RACK)
+
+
+def pair_of(degrees):
+    """External pair 13/16."""
+    return gf.GearPair(pinion(degrees), gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-math.radians(degrees), **RACK))
+
+
+def ring_pair():
+    """Pinion in a ring of 36 teeth."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # its tip is trimmed
+        ring = gf.Gear(z=36, r_rim=45.0, tip_radius=0.2, addendum=0.8, beta=math.radians(15), **RACK)
+        return gf.GearPair(pinion(), ring)
+
+
+def pits():
+    """Two pits on the pinion's tooth 0 where it touches: circular and elliptic."""
+    return [
+        gf.Pit(radius=14.0, z=1.8, axes=(0.4, 0.4), depth=0.2),
+        gf.Pit(radius=14.4, z=4.2, axes=(0.35, 0.7), depth=0.2),
+    ]
+
+
+def cases():
+    """Cases in contact, by name, in order of importance."""
+    crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
+    coarse, main, fine = {"per_width": 1.0}, {"per_width": 1.5}, {"per_width": 2.0, "layers": 4, "refine": 1.2}
+    return {
+        "helical, healthy": Case(pair_of(15.0), meshes=(coarse, main, fine)),
+        "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
+        "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
+        "spur, healthy": Case(pair_of(0.0)),
+        "ring, healthy": Case(ring_pair()),
+        "helical, two pits cut out": Case(pair_of(15.0), damage={"pinion": pits()}),
+        "helical, crack 50 % and two pits cut out": Case(pair_of(15.0), damage={"pinion": [crack, *pits()]}),
+    }
+
+
+def lines():
+    """Single gears under a line load, by name: gear, cracks."""
+    ring = ring_pair().gear_2
+    return {
+        "line load, spur": (pinion(0.0), ()),
+        "line load, helical": (pinion(), ()),
+        "line load, crack 50 %": (pinion(), (gf.Crack(level=0.5),)),
+        "line load, ring": (ring, ()),
+    }
+
+
+LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
+
+
+def calculix(folder, name):
+    """Run CalculiX and give its CPU seconds; RuntimeError with its last words if it has no result."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
+    if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
+        raise RuntimeError(f"CalculiX gave no result: {done.stdout[-500:]}")
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+
+
+def line_row(name, mesh):
+    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by `ritz3d` and by CalculiX."""
+    gear, cracks = lines()[name]
+    axial = ritz3d.axial_degree(gear.b, gear.m_n)
+    panels = [ritz3d.solid_sector(gear, STEEL, own, width=gear.b, order=3, axial=axial, refine=1.0) for own in (cracks, ())]
+    found, _ = join(gear, {0: panels[0], 1: panels[1]}, panels[1])
+    knots = flexibility3d.hats(gear)
+    whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
+    top = int(whole[len(whole) // 2])
+    at = top * (axial + 1)
+    ours = found[0, 0][at, at] / gear.b
+    radius = math.hypot(math.sqrt(2 * gear.r_b * gear.outward * knots[1, top]), gear.r_b)
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        deck = gf.write_line_inp(
+            folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=flexibility3d.HAT * gear.m_n, **mesh
+        )
+        seconds = calculix(folder, "gear")
+        theirs = deck.deflection(folder / "gear.dat") / deck.force
+    return _row(name, mesh, deck.part.points.shape[1], seconds, 1e6 * ours, 1e6 * theirs, 0.0)
+
+
+def contact_row(name, mesh):
+    """Stiffness [N/um] of a pair by `ritz3d` and by CalculiX at the approach that `ritz3d` has under the load."""
+    case = cases()[name]
+    pair, face = case.pair, "helical" if case.pair.gear_1.beta else "spur"
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        ours, approach = stiffness(case)
+        deck = gf.write_contact_inp(
+            folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), face=face, damage=case.damage, **mesh
+        )
+        seconds = calculix(folder, "pair")
+        first, second = deck.forces(folder / "pair.dat")
+        if name == SHOWN and mesh == case.meshes[-1] and isinstance(deck, SolidDeck):
+            keep_pressure(case, deck, folder / "pair.frd")
+    theirs = (first + second) / 2 / approach / 1e3
+    nodes = sum(part.points.shape[1] for part in deck.parts)
+    return _row(name, mesh, nodes, seconds, ours, theirs, first / second - 1)
+
+
+def stiffness(case):
+    """Stiffness [N/um] and approach [mm] of a case by `ritz3d`."""
+    run = {"method": "ritz3d", "phases": [case.phase], "damage": case.damage or None}
+    curve = gf.mesh_stiffness(case.pair, LOAD * case.pair.gear_1.b, STEEL, **run)
+    return float(curve.k[0]) / 1e6, 1e3 * float(curve.lte[0])
+
+
+def _row(name, mesh, *values):
+    return dict(zip(COLUMNS, (name, told(mesh), *(f"{v:.6g}" for v in values)), strict=True))
+
+
+def told(mesh):
+    """A mesh's options as text."""
+    return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
+
+
+def keep_pressure(case, deck, path):
+    """Nodal contact pressure of CalculiX on the slave flanks, as a table of gear, order, arc [mm], z [mm], pressure [MPa]."""
+    pressure, rows = nodal_pressure(path), []
+    first = (0, deck.parts[0].points.shape[1])
+    for order, (side, faces) in deck.slaves.items():
+        gear, part = (case.pair.gear_1, case.pair.gear_2)[side], deck.parts[side]
+        centre = (0.0, case.pair.centre_2)[side]
+        for node in np.unique(faces).tolist():
+            x, y, z = part.points[:, node]
+            roll = math.sqrt(max(x * x + (y - centre) ** 2 - gear.r_b**2, 0.0))
+            rows.append((side, order, float(arc_at(gear, roll)), z, pressure.get(first[side] + node + 1, 0.0)))
+    with written(PRESSURE) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("gear", "pair", "arc [mm]", "z [mm]", "pressure [MPa]"))
+        out.writerows([(side, order, f"{s:.5g}", f"{z:.5g}", f"{p:.5g}") for side, order, s, z, p in rows])
+
+
+def nodal_pressure(path):
+    """Contact pressure by node from CalculiX's ``.frd`` file: the fourth value of its last CONTACT block."""
+    found, inside = {}, False
+    for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
+        if line.startswith(" -4"):
+            inside = "CONTACT" in line
+        elif inside and line.startswith(" -1"):
+            found[int(line[3:13])] = float(line[13 + 36 : 13 + 48])
+        elif line.startswith(" -3"):
+            inside = False
+    return found
+
+
+def wanted():
+    """(name, mesh) of all runs in order of importance: one mesh of everything first, then the studies of convergence."""
+    runs = [(name, LINE_MESHES[0]) for name in lines()]
+    main = [(name, case.meshes[0]) for name, case in cases().items()]
+    runs += main + [(name, mesh) for name, case in cases().items() for mesh in case.meshes if (name, mesh) not in main]
+    return runs + [(name, LINE_MESHES[1]) for name in lines()]
+
+
+def stored():
+    """Rows of the table by (case, mesh)."""
+    if not TABLE.exists():
+        return {}
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        return {(row["case"], row["mesh"]): row for row in csv.DictReader(file)}
+
+
+def reference():
+    """Compute the runs that the table lacks, each kept at once; without CalculiX say so and compute nothing."""
+    if not shutil.which("ccx"):
+        print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
+        return
+    for name, mesh in wanted():
+        if (name, told(mesh)) not in stored():
+            keep((line_row if name in lines() else contact_row)(name, mesh))
+
+
+def keep(row):
+    """Append a row to the table."""
+    known = stored()
+    with written(TABLE) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        out.writeheader()
+        out.writerows([*known.values(), row])
+    print(f"  {row['case']}, {row['mesh']}: {100 * apart(row):+.2f} %, {float(row['seconds']):.0f} s", flush=True)
+    sys.stdout.flush()
+
+
+def apart(row):
+    """Relative difference of a row, ours over theirs."""
+    return float(row["ours"]) / float(row["theirs"]) - 1
