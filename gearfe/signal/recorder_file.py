@@ -17,8 +17,8 @@ DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
 TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
 SAID_NOTHING = ("", "none", "unknown")
 # what scipy and npTDMS, which trust their files, raise when these are damaged (NameError: a chunk is missing)
-DAMAGE = (ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, NameError, NotImplementedError, OSError)
-DAMAGE += (TypeError, ValueError, Warning, struct.error)
+DAMAGE: tuple[type[Exception], ...] = (ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, NameError)
+DAMAGE += (NotImplementedError, OSError, TypeError, ValueError, Warning, struct.error)
 
 
 def wav_file(path: str | os.PathLike[str]) -> Found:
