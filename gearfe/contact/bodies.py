@@ -4,6 +4,7 @@ Heights count from the end that touches first: the pinion's roll length falls wi
 its own frame, is the opposite one; also a ring's, whose frame is mirrored.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.linalg import block_diag
 
 from geometry.damage.crack import check_single, crack_in_band
 
+from ..flexibility.end_faces import mirrored_cells
 from ..steps import steps
 
 
@@ -76,6 +78,20 @@ def between(cells, bodies):
         for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
             out[np.ix_(at, at)] += body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
     return (out + out.T) / 2
+
+
+def mirrored(cells, bodies, x):
+    """What the images of the cells' loads in the free end faces of both bodies add to `between`, line by line ``(n, n)`` [mm/N].
+
+    `x` [mm] as in `end_faces.mirrored_cells`.
+    """
+    out = np.zeros((cells.z.size,) * 2)
+    for half, order in sorted(set(zip(cells.half.tolist(), cells.order.tolist(), strict=True))):
+        at = np.flatnonzero((cells.half == half) & (cells.order == order))
+        for body, offset in bodies[half]:
+            low, high = ((cells.depth[at] + offset + side * cells.width[at] / 2) / math.cos(body.gear.beta_b) for side in (-1, 1))
+            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), x)
+    return out
 
 
 def faces_of(cells, bodies):

@@ -8,8 +8,9 @@ import numpy as np
 from geometry.pair.lines import bands_of
 from geometry.pair.modified import first_touch
 
+from ..flexibility.halfspace import strip
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from .bodies import between, faces_of
+from .bodies import between, faces_of, mirrored
 from .cell_sharing import line_cells
 from .cells import Cells, beyond, cells_of, gaps, pieces_of, touching
 from .corner import CornerLaw
@@ -150,7 +151,9 @@ class PhaseContact:
         if self.law is not None:
             at = self.law.ends(self.pair, cells)
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
-        case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
+        x = strip(float(half_width(force / cos / (ends[1] - ends[0]).sum(), self.radius, self.modulus)))
+        matrix = between(cells, bodies) + mirrored(cells, bodies, x)
+        case = (matrix, cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
         options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies), "floor": cells.floor}
         load, approach = line_cells(*case, **options)
         load, closed = load[: line.size], bool(load[line.size :].any())
