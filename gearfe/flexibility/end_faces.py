@@ -65,7 +65,9 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
 
 
 def mirrored_cells(start, stop, length, x):
-    """Mean of ``1 / sqrt(q**2 + x**2)`` between cells of one contact line and their images, q apart, in its ends ``(n, n)`` [1/mm].
+    """Mean of ``1 / sqrt(q**2 + x**2)`` over pairs of a cell of one contact line and an image, q apart ``(n, n)`` [1/mm].
+
+    The images are those of all cells in both end faces.
 
     Parameters
     ----------
