@@ -70,14 +70,16 @@ class Sector:
 
     def edge_bulges(self):
         """Bulges of the local edges of all triangles ``(3, 2, k, m)``, zero inside."""
-        shape = next(iter(self.bulge.values())).shape
-        out = np.zeros((3, *shape, self.triangles.shape[1]))
-        for local, (a, b) in enumerate(ENDS):
-            for i, (p, q) in enumerate(zip(self.triangles[a].tolist(), self.triangles[b].tolist(), strict=True)):
-                if (q, p) in self.bulge:
-                    out[local, :, :, i] = self.bulge[q, p][:, ::-1]
-                elif (p, q) in self.bulge:
-                    out[local, :, :, i] = self.bulge[p, q]
+        count, values = self.points.shape[1], np.array(list(self.bulge.values()))
+        first, second = np.array(list(self.bulge), dtype=np.int64).T
+        out = np.zeros((3, *values.shape[1:], self.triangles.shape[1]))
+        for along, keys in ((values, first * count + second), (values[..., ::-1], second * count + first)):
+            order = np.argsort(keys)
+            for local, (a, b) in enumerate(ENDS):
+                wanted = self.triangles[a].astype(np.int64) * count + self.triangles[b]
+                at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
+                found = keys[at] == wanted
+                out[local][..., found] = np.moveaxis(along[at[found]], 0, -1)
         return out
 
 
