@@ -31,20 +31,20 @@ def dissect(sector):
 
 def _halves(triangles, centre, own):
     """Two parts of a set of triangles, on both sides of the straight cut through the fewest vertices."""
-    fewest, halves = np.inf, None
-    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])
-    for turn in np.arange(CUTS) * math.pi / CUTS:
-        order = own[np.argsort(np.array([math.cos(turn), math.sin(turn)]) @ centre[:, own], kind="stable")]
-        found, place = np.unique(triangles[:, order], return_inverse=True)
-        rank = np.broadcast_to(np.arange(own.size), (3, own.size)).ravel()
-        first, last = np.full(found.size, own.size), np.zeros(found.size, dtype=int)
-        np.minimum.at(first, place.ravel(), rank)
-        np.maximum.at(last, place.ravel(), rank)
-        shared = ((first < cuts[:, None]) & (last >= cuts[:, None])).sum(axis=1)
-        best = int(shared.argmin())
-        if shared[best] < fewest:
-            fewest, halves = shared[best], (order[: cuts[best]], order[cuts[best] :])
-    return halves
+    turn = np.arange(CUTS) * math.pi / CUTS
+    order = np.argsort(np.array([np.cos(turn), np.sin(turn)]).T @ centre[:, own], axis=1, kind="stable")
+    rank = np.empty_like(order)
+    np.put_along_axis(rank, order, np.arange(own.size)[None, :], axis=1)
+    corners = triangles[:, own].ravel()
+    by_vertex = np.argsort(corners, kind="stable")
+    starts = np.flatnonzero(np.diff(corners[by_vertex], prepend=-1))
+    rank = np.tile(rank, 3)[:, by_vertex]  # (directions, corners), those of a vertex side by side
+    first, last = np.minimum.reduceat(rank, starts, axis=1), np.maximum.reduceat(rank, starts, axis=1)
+    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])[:, None]
+    shared = ((first[:, None] < cuts) & (last[:, None] >= cuts)).sum(axis=2)
+    k, cut = np.unravel_index(shared.argmin(), shared.shape)
+    own = own[order[k]]
+    return own[: cuts[cut, 0]], own[cuts[cut, 0] :]
 
 
 @dataclass(frozen=True, slots=True)
