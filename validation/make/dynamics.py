@@ -87,7 +87,7 @@ def accuracy(again=()):
         runs, covered = runs + len(larger), covered + inside
         spans = f"{min(row['step']):.2g} to {max(row['step']):.2g} | {min(row['estimate']):.1e} to {max(row['estimate']):.1e}"
         worst = f"{max(row['displacement']):.1e} | {max(row['force']):.1e} | {inside} of {len(larger)}"
-        yield f"| {name} | {spans} | {worst} | {' or '.join(map(str, sorted(set(row['losses']))))} |"
+        yield f"| {name} | {spans} | {worst} | {' or '.join(str(int(n)) for n in sorted(set(row['losses'])))} |"
     yield ""
     yield f"Covered: {covered} of {runs} runs, {100 * covered / runs:.0f} %."
 
