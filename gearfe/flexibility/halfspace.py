@@ -158,3 +158,12 @@ def pair_kernel(ends, i, j, x):
 
     kernel = twice(stop[i] - start[j]) + twice(stop[j] - start[i]) - twice(start[i] - start[j]) - twice(stop[i] - stop[j])
     return kernel / ((stop[i] - start[i]) * (stop[j] - start[j]))
+
+
+def pair_slope(ends, i, j, x):
+    """``dK / dx_i / x_i``, the same as ``dK / dx_j / x_j``, of `pair_kernel` K with the other x held ``(n,)`` [1/mm**3]."""
+    start, stop = ends
+    least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
+    away = (stop[i] - start[j], stop[j] - start[i], start[i] - start[j], stop[i] - stop[j])
+    one, two, three, four = (np.hypot(apart, least) for apart in away)
+    return (three + four - one - two) / (2 * least**2) / ((stop[i] - start[i]) * (stop[j] - start[j]))
