@@ -17,6 +17,8 @@ from geometry.damage.crack import check_single, crack_in_band
 from ..flexibility.end_faces import mirrored_cells
 from ..steps import steps
 
+STRIP = 0.01  # modules: of `halfspace.strip` where a load meets its image, whatever the load; half of it changes k by 1e-4
+
 
 def seen_gears(pair, face, groove):
     """Pinion and wheel, or a half of each, and where contact begins on them: ``[(Gear, offset [mm]), ...]``."""
@@ -136,17 +138,14 @@ def _add(out, body, rows, lines):
                 out[one.phase][two.own, one.own] += part.T
 
 
-def mirrored(cells, bodies, x):
-    """What the images of the cells' loads in the free end faces of both bodies add to `between`, line by line ``(n, n)`` [mm/N].
-
-    `x` [mm] as in `end_faces.mirrored_cells`.
-    """
+def mirrored(cells, bodies):
+    """What the images of the cells' loads in the free end faces of both bodies add to `between`, line by line ``(n, n)`` [mm/N]."""
     out = np.zeros((cells.z.size,) * 2)
     for half, order in sorted(set(zip(cells.half.tolist(), cells.order.tolist(), strict=True))):
         at = np.flatnonzero((cells.half == half) & (cells.order == order))
         for body, offset in bodies[half]:
             low, high = ((cells.depth[at] + offset + side * cells.width[at] / 2) / math.cos(body.gear.beta_b) for side in (-1, 1))
-            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), x)
+            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), STRIP * body.gear.m_n)
     return out
 
 

@@ -10,7 +10,6 @@ from geometry.pair.contacts import touching
 from geometry.pair.lines import bands_of
 from geometry.pair.modified import first_touch
 
-from ..flexibility.halfspace import strip
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..steps import steps
 from .bodies import between, faces_of, mirrored
@@ -229,8 +228,7 @@ class PhaseContact:
             ends = tuple((own.depth + side * own.width / 2) / cos for side in (-1, 1))
             line = np.cumsum(np.append(0, (np.diff(own.half) != 0) | (np.diff(own.order) != 0)))
             faces = faces_of(own, found)
-            x = strip(float(half_width(self.force / own.width.sum(), self.radius, self.modulus)))
-            matrix = matrix + mirrored(own, found, x)
+            matrix = matrix + mirrored(own, found)
             systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), own.half, faces, own.floor))
         lines = SharedLines(systems, sum(body.kernel for body, _ in found[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")

@@ -76,7 +76,7 @@ def mirrored_cells(start, stop, length, x):
     length : float
         Where it meets the second [mm].
     x : float
-        Of `halfspace.strip`, for the load per width in the mean: it matters where a cell is nearer to its image [mm].
+        As of `halfspace.strip`: it matters where a cell is nearer to its image [mm].
     """
 
     def twice(one, other):

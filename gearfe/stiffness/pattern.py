@@ -13,9 +13,11 @@ from geometry.tooth.modified import Flank
 
 from ..contact.solid import Contact3D, pair_stiffness3d
 from ..material import Material
+from ..threads import single
 from .inputs import by_gear, forces_of, overlap, phase_array, two_materials
 
 
+@single
 def contact_pattern(
     pair: GearPair,
     force: float,

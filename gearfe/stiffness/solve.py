@@ -16,6 +16,7 @@ from geometry.tooth.modified import Flank
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
 from ..steps import part
+from ..threads import single
 from .curve import StiffnessCurve, joined
 from .inputs import (
     by_gear,
@@ -95,6 +96,7 @@ def mesh_stiffness(
 ) -> list[StiffnessCurve]: ...
 
 
+@single
 def mesh_stiffness(
     pair: GearPair,
     force: float | Sequence[float] | NDArray[np.float64] | None = None,
