@@ -11,6 +11,7 @@ from numbers import Integral
 
 import numpy as np
 
+from geometry.damage.crack import crack_in_band
 from geometry.mesh.sector import sector
 
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
@@ -80,12 +81,28 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     options = (width, int(order), int(axial), float(refine))
     case = (gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
     kept = solved_gears(cache)
-    return kept.get(("ritz3d", *case), partial(_solved, *case, kept))
+    return kept.get(("ritz3d", *case), partial(_mirrored if gear.beta < 0 else _solved, *case, kept))
 
 
 def axial_degree(width, m_n):
     """Degree along a `width` [mm] that goes with cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
+
+
+def _mirrored(gear, material, cracks, neighbours, width, order, axial, refine, cache):
+    """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
+    cracks = tuple(crack_in_band(crack, width, width, 0.0) for crack in cracks)
+    options = {"width": width, "neighbours": neighbours, "order": order, "axial": axial, "refine": refine, "cache": cache}
+    other = flexibility3d(replace(gear, beta=-gear.beta), material, cracks, **options)
+    sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
+    near, far = ({key: sign[:, None] * found * sign for key, found in own.items()} for own in (other.near, other.far))
+    healthy = None
+    if other.healthy is not None:
+        healthy = flexibility3d(gear, material, **options)
+    seam = other.seam
+    if seam is not None:
+        seam = replace(seam, opening={tooth: found * sign for tooth, found in seam.opening.items()})
+    return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
 
 
 def _solved(gear, material, cracks, neighbours, width, order, axial, refine, cache):
