@@ -14,10 +14,7 @@ from scipy.linalg import block_diag
 
 from geometry.damage.crack import check_single, crack_in_band
 
-from ..flexibility.end_faces import mirrored_cells
 from ..steps import steps
-
-STRIP = 0.01  # modules: of `halfspace.strip` where a load meets its image, whatever the load; half of it changes k by 1e-4
 
 
 def seen_gears(pair, face, groove):
@@ -138,15 +135,24 @@ def _add(out, body, rows, lines):
                 out[one.phase][two.own, one.own] += part.T
 
 
-def mirrored(cells, bodies):
-    """What the images of the cells' loads in the free end faces of both bodies add to `between`, line by line ``(n, n)`` [mm/N]."""
-    out = np.zeros((cells.z.size,) * 2)
-    for half, order in sorted(set(zip(cells.half.tolist(), cells.order.tolist(), strict=True))):
-        at = np.flatnonzero((cells.half == half) & (cells.order == order))
-        for body, offset in bodies[half]:
-            low, high = ((cells.depth[at] + offset + side * cells.width[at] / 2) / math.cos(body.gear.beta_b) for side in (-1, 1))
-            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), STRIP * body.gear.m_n)
-    return out
+def mirrors_of(cells, bodies):
+    """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
+
+    Returns
+    -------
+    list of (float, ndarray (n,), ndarray (n,))
+        Nearer ends first.
+    """
+    faces = {}
+    for side, other in ((False, False), (False, True), (True, False), (True, True)):
+        low, high, weight = np.zeros(cells.z.size), np.zeros(cells.z.size), 0.0
+        for half in np.unique(cells.half).tolist():
+            at, (body, offset) = cells.half == half, bodies[half][side]
+            ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
+            low[at], high[at] = (np.array(ends) if not other else body.width - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (other, offset, body.width)  # faces of equally wide gears are flush
+        faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
+    return list(faces.values())
 
 
 def faces_of(cells, bodies):

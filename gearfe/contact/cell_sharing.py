@@ -46,6 +46,8 @@ class System(NamedTuple):
         them apart [mm/N], and the block of each.
     floor : ndarray, shape (n,), optional
         How deep the pits above the cells are [mm]; cells of one depth share their mean load.
+    mirrors : list of (float, ndarray (n,), ndarray (n,))
+        End faces in which loads are mirrored, as of `bodies.mirrors_of`; as many in all systems solved together.
     """
 
     matrix: NDArray[np.float64]
@@ -56,6 +58,7 @@ class System(NamedTuple):
     block: NDArray[np.int64] | None = None
     faces: Any = None
     floor: NDArray[np.float64] | None = None
+    mirrors: Any = ()
 
 
 class Shared(NamedTuple):
@@ -100,7 +103,9 @@ class SharedLines:
         self.mean_radius = np.bincount(self.problem, self.radius * flat) / np.bincount(self.problem, flat)
         self.widest = self._pieces() / 2  # a piece shorter than it is wide acts as one as wide as it is long
         self._arrange()
-        self._near = None
+        mirrors = zip(*(one.mirrors for one in systems), strict=True)
+        self.mirrors = [(own[0][0], *(np.concatenate([one[k] for one in own]) for k in (1, 2))) for own in mirrors]
+        self._near, self._images = None, []
 
     def _pieces(self):
         """Length of the unbroken piece of contact each cell belongs to ``(n,)`` [mm]."""
@@ -138,16 +143,24 @@ class SharedLines:
         last = np.searchsorted(self.line, self.line, side="right")
         i, j = _ranges(np.arange(self.line.size), last)
         forth, back = self._places(i, j), self._places(j, i)
+        widest = np.maximum.reduceat(x, self.first)[self.line[i]]
+        near = np.flatnonzero(self.start[j] - self.stop[i] < NEAR * widest)
         bulk = self._flat[forth]
+        for weight, low, high in self.mirrors:
+            image = weight * pair_kernel((low, high), i, j, x, (-high, -low))
+            bulk += image
+            at = np.flatnonzero(low[i[near]] + low[j[near]] < NEAR * widest[near])
+            self._images.append((weight, low, high, at, image[near[at]]))
         self._flat[forth] = self._flat[back] = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
-        widest = np.maximum.reduceat(x, self.first)
-        near = self.start[j] - self.stop[i] < NEAR * widest[self.line[i]]
         self._near = i[near], j[near], forth[near], back[near], bulk[near]
 
     def _widen(self, x):
-        """The half-space of strips with distances `x`."""
+        """The half-space and the images in end faces of strips with distances `x`."""
         i, j, forth, back, bulk = self._near
-        self._flat[forth] = self._flat[back] = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
+        own = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
+        for weight, low, high, at, before in self._images:
+            own[at] += weight * pair_kernel((low, high), i[at], j[at], x, (-high, -low)) - before
+        self._flat[forth] = self._flat[back] = own
 
     def _smoother(self, load):
         """Sparse matrix from the cells' forces to mean line loads over some half widths, within their lines and floors."""
@@ -288,6 +301,8 @@ class SharedLines:
         cells = self._cells(forces)
         i, j = self._near[:2]
         slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)
+        for weight, low, high, at, _ in self._images:
+            slope[at] += weight * pair_slope((low, high), i[at], j[at], x, (-high, -low))
         apart = i != j
         i, j, slope = np.append(i, j[apart]), np.append(j, i[apart]), np.append(slope, slope[apart])
         own, number = x * np.bincount(i, slope * cells[j], minlength=x.size), np.arange(x.size)

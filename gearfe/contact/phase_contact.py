@@ -12,7 +12,7 @@ from geometry.pair.modified import first_touch
 
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..steps import steps
-from .bodies import between, faces_of, mirrored
+from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines, System
 from .cells import Cells, cells_of
 from .corner import CornerLaw
@@ -227,9 +227,8 @@ class PhaseContact:
         for own, matrix in zip(solved, between(solved, found), strict=True):
             ends = tuple((own.depth + side * own.width / 2) / cos for side in (-1, 1))
             line = np.cumsum(np.append(0, (np.diff(own.half) != 0) | (np.diff(own.order) != 0)))
-            faces = faces_of(own, found)
-            matrix = matrix + mirrored(own, found)
-            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), own.half, faces, own.floor))
+            faces, mirrors = faces_of(own, found), mirrors_of(own, found)
+            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), own.half, faces, own.floor, mirrors))
         lines = SharedLines(systems, sum(body.kernel for body, _ in found[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
         whole = Cells(*(np.concatenate([getattr(own, name) for own in solved]) for name in names))
