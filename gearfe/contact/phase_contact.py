@@ -13,6 +13,7 @@ from .bodies import between, faces_of
 from .cell_sharing import line_cells
 from .cells import Cells, beyond, cells_of, gaps, pieces_of, touching
 from .corner import CornerLaw
+from .hubs import given_way, hubs_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
@@ -37,9 +38,12 @@ class PhaseContact:
         Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
         As in `gearfe.contact.corner.CornerLaw`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
     """
 
-    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, flanks=None, cache=True):
+    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, flanks=None, cache=True, supports=None):
+        self.hubs = hubs_of(pair, supports)
         self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
@@ -66,7 +70,10 @@ class PhaseContact:
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
     def solve(self, phase, bodies, reach=None):
-        """`Cells` with their loads, the approach in the transverse section [mm], and whether faces of a crack touched.
+        """`Cells` with their loads, the approach in the transverse section, whether faces of a crack touched, and what hubs gave.
+
+        The last are two parts of the approach: what the supports of the hubs give way, the mean over the loads (so that it adds
+        up to the approach with the rest), and at the cell where it is least.
 
         Parameters
         ----------
@@ -86,19 +93,20 @@ class PhaseContact:
         while True:
             cells = self._cells(phase, reach, closing)
             if cells is not None:
-                cells, approach, closed = self._carried(cells, bodies(int(np.ptp(cells.order))))
-                normal = approach * math.cos(self.beta_b)
+                cells, approach, closed, given = self._carried(cells, bodies(int(np.ptp(cells.order))))
+                closes = approach - given[1]  # what of it teeth can close gaps by
+                normal = closes * math.cos(self.beta_b)
                 if any(closing < depth < normal for depth in self.floors):
                     closing = normal  # shallow pits: solved again with their floors, which can only make it stiffer
                     continue
-                if not self.extended or approach <= reach or reach - self.least > self.furthest:
-                    return cells, approach, closed
+                if not self.extended or closes <= reach or reach - self.least > self.furthest:
+                    return cells, approach, closed, given
             if reach - self.least > self.furthest:
                 if cells is None and any(closing < depth <= self.deepest for depth in self.floors):
                     closing = self.deepest
                     continue
                 raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
-            reach = 2 * reach if cells is None else approach  # fewer cells approach more: enough
+            reach = 2 * reach if cells is None else closes  # fewer cells approach more: enough
 
     def unloaded(self, found):
         """Approach at which the flanks first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
@@ -133,10 +141,10 @@ class PhaseContact:
     def _carried(self, cells, bodies):
         """What `solve` gives, under the whole force; two halves alike are solved once."""
         first = cells.half == 0
-        if len(bodies) == 1 or not _same(*bodies) or not _alike(cells, first):
+        if len(bodies) == 1 or self.hubs is not None or not _same(*bodies) or not _alike(cells, first):
             return self._shared(cells, bodies, self.force)
-        half, approach, closed = self._shared(_some(cells, first), bodies[:1], self.force / 2)
-        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach, closed
+        half, *rest = self._shared(_some(cells, first), bodies[:1], self.force / 2)
+        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), *rest
 
     def _shared(self, cells, bodies, force):
         cos = math.cos(self.beta_b)
@@ -150,13 +158,19 @@ class PhaseContact:
         if self.law is not None:
             at = self.law.ends(self.pair, cells)
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
-        case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
-        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies), "floor": cells.floor}
+        matrix, block, faces, yields = between(cells, bodies), cells.half, faces_of(cells, bodies), None
+        if self.hubs is not None:  # both halves of a herringbone gear are on one hub
+            yields = given_way(cells, self.pair, self.hubs, self.bands, self.beta_b)
+            matrix, block = matrix + yields, np.zeros(cells.z.size, dtype=int)
+            faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
+        case = (matrix, cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
+        options = {"block": block, "local": local, "faces": faces, "floor": cells.floor}
         load, approach = line_cells(*case, **options)
         load, closed = load[: line.size], bool(load[line.size :].any())
         pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
         pressure[(cells.corner > 0) & (load > 0)] = np.nan
-        return replace(cells, load=load, pressure=pressure), approach / cos, closed
+        way = np.zeros(load.size) if yields is None else yields @ load / cos
+        return replace(cells, load=load, pressure=pressure), approach / cos, closed, (load @ way / load.sum(), way.min())
 
 
 def _same(one, two):

@@ -33,7 +33,8 @@ class Contact3D:
     without load [mm], 0 of involutes; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
-    `error` (phases,) difference of k from that of coarser bodies [N/m], or None.
+    `error` (phases,) difference of k from that of coarser bodies [N/m], or None; `supports` (phases,) the part of the approach
+    that the supports of the hubs give way [mm], the mean over the loads.
     """
 
     phase: NDArray[np.float64]
@@ -46,6 +47,7 @@ class Contact3D:
     closed: tuple[int, ...] = ()
     error: NDArray[np.float64] | None = None
     unloaded: NDArray[np.float64] | None = None
+    supports: NDArray[np.float64] | None = None
 
 
 def pair_stiffness3d(
@@ -67,6 +69,7 @@ def pair_stiffness3d(
     error=False,
     model=None,
     cache=True,
+    supports=None,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -108,6 +111,8 @@ def pair_stiffness3d(
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
 
     Returns
     -------
@@ -130,7 +135,7 @@ def pair_stiffness3d(
         check_pits(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
-    options["flanks"] = flanks
+    options |= {"flanks": flanks, "supports": supports}
     contact = PhaseContact(pair, force, materials, **options)
 
     def energy(order, less):
@@ -162,12 +167,12 @@ def pair_stiffness3d(
 
 
 def _solved(contact, phase, bodies):
-    cells, approach, reach, closed = [], np.zeros(phase.size), None, []
+    cells, approach, given, reach, closed = [], np.zeros(phase.size), np.zeros(phase.size), None, []
     for i, at in enumerate(steps(phase.tolist())):
-        own, approach[i], shut = contact.solve(at, bodies, reach)
+        own, approach[i], shut, (given[i], least) = contact.solve(at, bodies, reach)
         closed += [i] if shut else []
         cells.append(own)
-        reach = contact.least + REACH * (approach[i] - contact.least)
+        reach = contact.least + REACH * (approach[i] - least - contact.least)
     orders = np.array(sorted({order for own in cells for order in own.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
     for i, own in enumerate(cells):
@@ -175,4 +180,5 @@ def _solved(contact, phase, bodies):
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
     unloaded = contact.unloaded(cells)
     k = 1e3 * contact.force / (approach - unloaded)
-    return Contact3D(phase, k, approach, orders, load, tuple(cells), dofs, tuple(closed), unloaded=unloaded)
+    parts = {"unloaded": unloaded, "supports": None if contact.hubs is None else given}
+    return Contact3D(phase, k, approach, orders, load, tuple(cells), dofs, tuple(closed), **parts)

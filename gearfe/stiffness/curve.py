@@ -44,6 +44,9 @@ class StiffnessCurve:
         Estimated discretisation error of k [N/m], if one was asked for.
     unloaded : ndarray, shape (n,) or None
         Transmission error without load [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
+    lte_supports : ndarray, shape (n,) or None
+        The part of `lte` that shafts and springs under the hubs give way [m], the mean over the loads of the contact; None of
+        rigid bores.
     meta : dict
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
@@ -58,6 +61,7 @@ class StiffnessCurve:
     error: NDArray[np.float64] | None = None
     meta: dict[str, Any] = field(default_factory=dict)
     unloaded: NDArray[np.float64] | None = None
+    lte_supports: NDArray[np.float64] | None = None
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""
@@ -240,6 +244,13 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
         force=rows("force"),
         pressure=rows("pressure"),
         error=row("error"),
-        meta=curves[0].meta,
+        meta=_meta_of(curves),
         unloaded=row("unloaded"),
+        lte_supports=row("lte_supports"),
     )
+
+
+def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
+    """What is said of the first, and at which phases of all of them cracks closed."""
+    meta, name = curves[0].meta, "crack_closed_phases"
+    return meta | {name: [at for one in curves for at in one.meta[name]]} if name in meta else meta

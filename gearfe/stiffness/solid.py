@@ -18,7 +18,21 @@ LESS = 2  # axial degrees less in it
 
 
 def wide_curve(
-    force, case, meta, *, brute, face, groove, refine, extended, order, error=False, flanks=None, cache=True, tell=None
+    force,
+    case,
+    meta,
+    *,
+    brute,
+    face,
+    groove,
+    refine,
+    extended,
+    order,
+    error=False,
+    flanks=None,
+    supports=None,
+    cache=True,
+    tell=None,
 ):
     """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
 
@@ -44,6 +58,8 @@ def wide_curve(
         their limit at least with the second power of the edges, so the difference is an upper bound.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        Of the hubs of pinion and wheel.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     tell
@@ -58,7 +74,7 @@ def wide_curve(
     cache = solved_gears(cache)
     pair, materials, phase, cracks, pits = case
     options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
-    options["flanks"] = flanks
+    options |= {"flanks": flanks, "supports": supports}
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
@@ -92,6 +108,7 @@ def wide_curve(
         pressure=1e6 * pressure[:, used],
         error=doubt,
         unloaded=None if flanks is None else 1e-3 * found.unloaded,
+        lte_supports=None if found.supports is None else 1e-3 * found.supports,
         meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
     )
 

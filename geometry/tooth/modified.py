@@ -178,6 +178,11 @@ class FlankForm:
         """Whether the flank changes along the width, or lies askew: `tilt`, how much further back it lies by height [mm/mm]."""
         return self._lead is not None or bool(self.tilt)
 
+    @property
+    def differs(self) -> bool:
+        """Whether the teeth of the gear differ from each other."""
+        return bool(np.ptp(self._shifts)) if self._shifts.size else False
+
     def at(self, z: ArrayLike | None) -> "FlankForm":
         """The same flank at heights `z` [mm], which go with the leading axes of roll lengths; None: what changes is left out."""
         out = copy(self)
