@@ -157,6 +157,8 @@ class PhaseContact:
         local = None
         if self.law is not None:
             at = self.law.ends(self.pair, cells)
+            for end, form in enumerate((self.flanks or ())[::-1]):
+                at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
             local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
         matrix, block, faces, yields = between(cells, bodies), cells.half, faces_of(cells, bodies), None
         if self.hubs is not None:  # both halves of a herringbone gear are on one hub

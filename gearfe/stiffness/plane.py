@@ -124,7 +124,7 @@ def with_error(row, curves, case, options):
     """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
     pair, materials, phase = case
     less = coarser(options["refine"], _numeric(row, options).get("order"))
-    turns = any(form.flank.pitch for form in options.get("flanks") or ())
+    turns = any(form.differs for form in options.get("flanks") or ())
     periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
     solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less))]

@@ -115,7 +115,7 @@ def wide_curve(
 
 def _doubt(case, phase, found, options, brute):
     """Estimated error of k at `phase` [N/m], see `wide_curve`, and the part of the resolution it is estimated with."""
-    turns = any(form.flank.pitch for form in options["flanks"] or ())
+    turns = any(form.differs for form in options["flanks"] or ())
     healthy = not (any(options["cracks"]) or any(options["pits"]) or turns)
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]

@@ -21,11 +21,12 @@ def check_length(pair, span, phases):
     """ValueError for a span of more values than `MOST`, before anything is solved."""
     cycles = cycles_in(pair, span)
     if cycles > 1 and cycles * phases * (cycles + pair.eps_alpha) > MOST:
-        fewer = max(int(MOST / cycles / (cycles + pair.eps_alpha)), 0)
+        fewer = int(MOST / cycles / (cycles + pair.eps_alpha))
+        instead = f"at most {fewer} phases in each cycle" if fewer else "span = 'revolution'"
         raise ValueError(
             f"span = {span!r} of {pair.gear_1.z} and {pair.gear_2.z} teeth is {cycles} mesh cycles ({LONGEST[span]}), with "
-            f"{phases} phases each {cycles * phases} contacts of up to {cycles} tooth pairs, more than a curve can hold: give at "
-            f"most {fewer} phases in each cycle, or the phases of the cycles you need"
+            f"{phases} phases each {cycles * phases} contacts of up to {cycles} tooth pairs, more than a curve can hold: give "
+            f"{instead}, or the phases of the cycles you need"
         )
 
 

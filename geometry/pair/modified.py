@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.modified import FlankForm
+from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, roll_at_arc
 from .contacts import Contacts, approach, contacts, facing
 
@@ -110,11 +110,11 @@ def first_touch(
     """
     common = min(pair.gear_1.b, pair.gear_2.b)
     own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
-    here = forms[0].at(own_z[0]), forms[1].at(own_z[1])
+    here = tuple(form.at(heights).of(order) for form, heights in zip(forms, own_z, strict=True))
     rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
-    inner = [form.at(None if h is None else h[near]) for form, h in zip(forms, own_z, strict=True)]
+    inner = [form.at(None if h is None else h[near]).of(order[near]) for form, h in zip(forms, own_z, strict=True)]
     rolls_1[near], rolls_2[near], found[near] = _inside(pair, inner, nominal[near], order[near], start[near])
     for driver, own, met in ((True, rolls_1, rolls_2), (False, rolls_2, rolls_1)):
         tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
@@ -180,6 +180,7 @@ def _inside(pair, forms, nominal, order, start):
 def _residual(pair, forms, arc, turns, order, pose):
     """How far a further approach closes each place of the pinion's flank, with the gears at `pose` [mm]; inf off the flanks."""
     roll = roll_at_arc(pair.gear_1, arc)
+    forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)
     distance, met, _ = facing(pair, roll, None, True, turns)(pose / 2 - back)
     low, high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
