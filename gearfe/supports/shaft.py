@@ -91,6 +91,10 @@ class Shaft:
         """Whether a force in the middle of the gear tilts it."""
         return self.support().tilts
 
+    def untilted(self) -> Support:
+        """Its springs, of which a force only moves the gear and tilts it no more."""
+        return self.support().untilted()
+
     def support(self) -> Support:
         """The springs under the middle of the gear, as numbers."""
         hub = self.hub(0.0)

@@ -1,7 +1,7 @@
 """`Support`: the springs on which the hub of a gear sits, as numbers."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 
 import numpy as np
@@ -77,6 +77,10 @@ class Support:
     def tilts(self) -> bool:
         """Whether a force in the middle of the gear tilts it."""
         return self.coupling != 0
+
+    def untilted(self) -> "Support":
+        """The same without coupling: a force moves the gear, and tilts it no more."""
+        return replace(self, coupling=0.0)
 
     def hub(self, width: float) -> Hub:
         """`Hub` of a gear of this width [mm]: one place."""

@@ -110,7 +110,7 @@ def first_touch(
     """
     common = min(pair.gear_1.b, pair.gear_2.b)
     own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
-    here = tuple(form.at(heights).of(order) for form, heights in zip(forms, own_z, strict=True))
+    here = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
     rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
