@@ -95,7 +95,7 @@ ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEX
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage; `flanks`, `misalignment`, `supports` are as it takes them.
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage; `flanks`, `misalignment`, `supports` are as it has them.
     """
 
     pair: GearPair
