@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -162,6 +162,20 @@ class StiffnessCurve:
     def te(self) -> NDArray[np.float64]:
         """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
         return self.lte if self.unloaded is None else self.lte + self.unloaded
+
+    def without_supports(self) -> "StiffnessCurve":
+        """The stiffness of the teeth and bodies alone, loaded as they are on their shafts.
+
+        For models that have shafts and bearings of their own: they must not be counted twice. The tangent stiffness takes the
+        shafts' tangent for their secant, which is exact of hubs that do not tilt.
+        """
+        if self.lte_supports is None:
+            return self
+        lte, way = self.lte - self.lte_supports, self.lte_supports / self.meta["force_N"]
+        k_tangent = 1 / (1 / self.k_tangent - way)
+        error = None if self.error is None else self.error * (self.lte / lte) ** 2
+        k = self.meta["force_N"] / lte
+        return replace(self, k=k, k_tangent=k_tangent, lte=lte, error=error, lte_supports=None)
 
     @property
     def share(self) -> NDArray[np.float64]:

@@ -47,6 +47,10 @@ def test_centred_supports_are_springs_in_series(method):
     assert_allclose(1 / found.k_tangent - 1 / plain.k_tangent, SERIES, rtol=1e-6)
     assert_allclose(found.lte_supports, 2000 * SERIES, rtol=1e-9)
     assert_allclose(found.force, plain.force, rtol=1e-6, atol=1e-6)
+    teeth = found.without_supports()
+    assert_allclose([teeth.k, teeth.lte], [plain.k, plain.lte], rtol=1e-9)
+    assert_allclose(teeth.k_tangent, plain.k_tangent, rtol=1e-6)
+    assert plain.without_supports() is plain
 
 
 def test_modified_flanks_on_springs():
