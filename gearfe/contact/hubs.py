@@ -3,11 +3,11 @@
 import numpy as np
 
 
-def hubs_of(pair, supports):
+def hubs_of(supports):
     """`gearfe.supports.hub.Hub` of pinion and wheel, None where rigid; None if both are."""
     if supports is None:
         return None
-    return [held and held.hub(gear.b) for held, gear in zip(supports, (pair.gear_1, pair.gear_2), strict=True)]
+    return [held and held.hub() for held in supports]
 
 
 def given_way(cells, pair, hubs, bands, beta_b):

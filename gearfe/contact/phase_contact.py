@@ -43,7 +43,7 @@ class PhaseContact:
     """
 
     def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, flanks=None, cache=True, supports=None):
-        self.hubs = hubs_of(pair, supports)
+        self.hubs = hubs_of(supports)
         self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})

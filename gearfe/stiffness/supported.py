@@ -52,8 +52,8 @@ def at_middle(pair, supports, method):
                 f"the {name}'s support tilts it under a force, with method = {method!r}, which knows no width: use method = "
                 "'ritz3d' or 'fe3d', or give a Support without coupling to leave the tilt out"
             )
-        hub = held.hub(gear.b)
-        out += float(hub.bending[0, 0] + gear.r_b**2 * hub.torsion[0, 0])
+        hub = held.hub()
+        out += float(hub.bending[0, 0] + gear.r_b**2 * hub.torsion)
     return out * min(pair.gear_1.b, pair.gear_2.b)
 
 

@@ -1,7 +1,7 @@
 """`Shaft`: a stepped shaft on two bearings, and the springs it puts under its gear."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +15,6 @@ from .support import Support
 if TYPE_CHECKING:
     from ..material import Material
 
-SECTIONS = 17  # of a gear that is one with its shaft, straight in between
 NONE = 1e-10  # of the largest coupling possible: rounding
 
 
@@ -40,10 +39,6 @@ class Shaft:
         is left out.
     bearing_stiffness : float or (float, float)
         Of each bearing across the axis [N/mm]; default rigid.
-    integral : bool
-        The gear is cut from its shaft: its core bends and twists along the face width as the shaft does there, each cross section
-        by itself. Give the shaft its root diameter there, and the gear an `r_bore` well inside of it: what is held by the core.
-        Without it, the hub moves as one rigid piece.
 
     Raises
     ------
@@ -66,7 +61,6 @@ class Shaft:
     material: "Material"
     torque: float | None = None
     bearing_stiffness: Any = math.inf
-    integral: bool = False
 
     def __post_init__(self) -> None:
         """Bring all into one form, and refuse what is no shaft."""
@@ -94,8 +88,8 @@ class Shaft:
 
     @property
     def tilts(self) -> bool:
-        """Whether a force in the middle of the gear tilts it, or moves its sections differently."""
-        return self.integral or self.support().tilts
+        """Whether a force in the middle of the gear tilts it."""
+        return self.support().tilts
 
     def untilted(self) -> Support:
         """Its springs, of which a force only moves the gear and tilts it no more."""
@@ -103,37 +97,24 @@ class Shaft:
 
     def support(self) -> Support:
         """The springs under the middle of the gear, as numbers."""
-        hub = replace(self, integral=False).hub(0.0)
-        (soft, coupling), (_, tilt) = hub.bending.tolist()
-        twist = float(hub.torsion[0, 0])
+        (soft, coupling), (_, tilt) = self.bends().tolist()
+        twist = self.twists()
         coupling = coupling if abs(coupling) > NONE * math.sqrt(soft * tilt) else 0.0
         return Support(1 / soft, 1 / tilt, 1 / twist if twist else math.inf, coupling=coupling)
 
-    def hub(self, width: float) -> Hub:
-        """`Hub` of a gear of this width [mm].
+    def hub(self) -> Hub:
+        """`Hub` of its gear."""
+        return self.support().hub()
 
-        Raises
-        ------
-        ValueError
-            If a gear that is one with its shaft reaches beyond it.
-        """
-        at = self.gear + (width * np.linspace(-0.5, 0.5, SECTIONS) if self.integral else np.zeros(1))
-        if self.integral and (at[0] < -1e-9 or at[-1] > self.length + 1e-9):
-            raise ValueError(
-                f"shaft: the gear from {at[0]:g} to {at[-1]:g} mm is one with its shaft, which reaches from 0 to "
-                f"{self.length:g} mm: give it a segment that long"
-            )
-        return Hub(at - self.gear, self.bends(at), self.twists(at), np.zeros((at.size, at.size)))
+    def bends(self) -> NDArray[np.float64]:
+        """Displacement and slope ``(2, 2)`` at the gear by a force and a moment there."""
+        return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, np.array([self.gear]))
 
-    def bends(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Displacements and slopes ``(2 k, 2 k)`` at positions ``(k,)`` [mm] by forces and moments there."""
-        return bending_flexibility(self.segments, self.material, self.bearings, self.bearing_stiffness, at)
-
-    def twists(self, at: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Twist ``(k, k)`` [rad] at positions ``(k,)`` [mm] by unit torques there [N mm]; zero without a `torque`."""
+    def twists(self) -> float:
+        """Twist [rad] at the gear by a unit torque there [N mm]; zero without a `torque`."""
         if self.torque is None:
-            return np.zeros((at.size, at.size))
-        return twist_flexibility(self.segments, self.material, self.torque, at)
+            return 0.0
+        return float(twist_flexibility(self.segments, self.material, self.torque, np.array([self.gear]))[0, 0])
 
 
 def _rows(segments):

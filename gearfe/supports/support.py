@@ -82,7 +82,7 @@ class Support:
         """The same without coupling: a force moves the gear, and tilts it no more."""
         return replace(self, coupling=0.0)
 
-    def hub(self, width: float) -> Hub:
-        """`Hub` of a gear of this width [mm]: one place."""
+    def hub(self) -> Hub:
+        """`Hub` on these springs."""
         bending = np.array([[1 / self.radial, self.coupling], [self.coupling, 1 / self.tilt]])
-        return Hub(np.zeros(1), bending, np.array([[1 / self.torsion]]), np.array([[1 / self.axial]]))
+        return Hub(bending, 1 / self.torsion, 1 / self.axial)
