@@ -25,8 +25,10 @@ from .contacts import Contacts, approach, contacts, facing
 if TYPE_CHECKING:
     from .gear_pair import GearPair
 
+EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that it cuts away
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
+OFF = 1e6  # a distance that no flanks have [mm]
 GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
 
@@ -144,8 +146,11 @@ def _radius(pair, forms, roll_1, roll_2, there):
 def _inside(pair, forms, nominal, order, start):
     """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
     one = pair.gear_1
-    amounts = [form.removed(np.linspace(form.low, form.high, 65)[None, :]) for form in forms]
+    amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
+    edges = [form.edge.most for form in forms if form.edge is not None]
+    if edges:  # a tip's edge is part of the flank and may touch beyond the path; sharp corners are looked at by `first_touch`
+        range_ = range_ + start + EDGE * max(edges)
     shift = forms[0].shift(order) + forms[1].shift(order)
     low, high = (arc_at(one, roll) for roll in pair.path)
     ends = np.linspace(*pair.path, 9)
@@ -155,7 +160,8 @@ def _inside(pair, forms, nominal, order, start):
     half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * one.m_n
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
     roll_0 = np.clip(nominal, *pair.path)
-    pose = start + forms[0].removed(roll_0) + forms[1].removed(pair.mate_roll(roll_0)) + shift
+    pose = start + shift + forms[0].removed(forms[0].before_edge(roll_0))
+    pose = pose + forms[1].removed(forms[1].before_edge(pair.mate_roll(roll_0)))
     turns = pair.turn(nominal)
     arcs = first[:, None] + (last - first)[:, None] * np.linspace(0, 1, SCAN)
     own = [turn[:, None] for turn in turns]
@@ -187,7 +193,8 @@ def _residual(pair, forms, arc, turns, order, pose):
     slack = 1e-6 * pair.gear_1.m_n
     on = (met >= low - slack) & (met <= high + slack)
     value = back + forms[1].removed(np.where(on, met, low)) + forms[1].shift(order) + distance - pose
-    return np.where(on, value, np.inf)
+    off = np.abs(met - np.clip(met, low, high))  # leads the search back
+    return np.where(on, value, np.where(np.isfinite(off), OFF + off, np.inf))
 
 
 def _least(function, low, high, steps):

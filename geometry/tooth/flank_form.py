@@ -177,6 +177,12 @@ class FlankForm:
             out = out + self._lead.removed(roll, _along(self._z, roll), n)
         return out
 
+    def before_edge(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Roll lengths, those on the edge of the tip moved to its beginning."""
+        if self.edge is None:
+            return roll
+        return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)
+
     def bounds(self) -> tuple[float, float]:
         """Least and most that any place of any tooth lies behind the involute [mm]."""
         heights = np.linspace(0, self.gear.b, 33)

@@ -55,6 +55,30 @@ def test_a_chamfer_is_a_straight_cut():
     assert_allclose(-flank_normal(gear, roll[0]) @ cut, math.sin(math.pi / 4), rtol=1e-4)
 
 
+@pytest.mark.parametrize("size", [0.02, 0.1, 0.3])
+@pytest.mark.parametrize("phase", [0.96875, 0.99, 0.67])
+def test_gaps_of_rounded_tips_are_the_least_over_both_flanks(size, phase):
+    """Every point of both flanks, edges included, brought to touch by `approach`: none is nearer than the gap found."""
+    forms = flank_forms(PAIR, both(tip_rounding=size))
+    found = PAIR.contacts([phase], flanks=forms)
+    for k in np.flatnonzero(found.gap[0] < 0.05).tolist():
+        least = []
+        for driver, gear, other, form in (
+            (True, PAIR.gear_1, PAIR.gear_2, forms[0]),
+            (False, PAIR.gear_2, PAIR.gear_1, forms[1]),
+        ):
+            roll = np.concatenate(
+                [np.linspace(gear.roll_f, form.edge.start, 400), np.linspace(form.edge.start, gear.roll_a, 2000)]
+            )
+            gap, met = PAIR.approach(
+                roll, np.full(roll.size, found.nominal[0, k]), driver=driver, flanks=forms, order=int(found.order[k]), start=0.02
+            )
+            on = np.isfinite(gap) & (met >= other.roll_f) & (met <= other.roll_a)
+            least.append(gap[on].min(initial=np.inf))
+        assert_allclose(found.gap[0, k], min(least), atol=3e-6)  # [mm]; the points are some um apart
+    assert (found.gap[0] < 0.05).sum() == 2
+
+
 def test_a_vanishing_rounding_is_the_sharp_corner():
     """Rows of hats on a rounded tip and at a sharp corner are found in different ways: 0.3 % at most between them."""
     phase = np.arange(32) / 32
