@@ -128,10 +128,11 @@ def _attempt(gear, cracks, sizes, refine, finer):
     if chains and not _inside(loop, np.hstack([line for _, line in chains] + [around])).all():
         return None  # a chord of the outline cuts the crack off: gmsh would not end
     points, triangles = triangulate([loop], chains, False, around.T)
-    if np.linalg.det(_arms(points, triangles)).sum() < 0:
-        triangles = triangles[[0, 2, 1]]
+    twice = _twice_areas(points, triangles)
+    if twice.sum() < 0:
+        triangles, twice = triangles[[0, 2, 1]], -twice
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
-    if (np.linalg.det(_arms(points, triangles)) <= 2 * FLAT * longest**2).any():
+    if (twice <= 2 * FLAT * longest**2).any():
         return None
     faces, doubles, at = [], {}, count
     for i, (start, line) in enumerate(chains):
@@ -147,8 +148,10 @@ def _attempt(gear, cracks, sizes, refine, finer):
         points, triangles, _bulges(pieces, first, doubles), vertices["left"], vertices["right"][::-1], vertices["held"],
         vertices["flank"][::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
-    jacobian = jacobians(points, triangles, made.edge_bulges(), CHECKED)
-    return made if np.linalg.det(jacobian.transpose(0, 3, 1, 2)).min() > 0 else None
+    bulges = made.edge_bulges()
+    bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
+    (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
+    return made if (xx * yy - xy * yx).min() > 0 else None
 
 
 def _inside(loop, points):
@@ -160,9 +163,11 @@ def _inside(loop, points):
     return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
 
 
-def _arms(points, triangles):
-    corners = points[:, triangles]
-    return (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1)
+def _twice_areas(points, triangles):
+    """Twice the areas of triangles, negative if their corners run clockwise."""
+    corner, one, two = points[:, triangles].transpose(1, 0, 2)
+    (x, y), (u, v) = one - corner, two - corner
+    return x * v - y * u
 
 
 def _pieces(gear, size, cracks):
