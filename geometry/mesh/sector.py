@@ -301,12 +301,12 @@ def _bulges(pieces, first, doubles):
     out, gauss = {}, leggauss(BULGE)[0]
     for k, (_, params, place) in enumerate(pieces):
         middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
-        ends = place(params)
+        points = place(np.append(params, middle[:, None] + reach[:, None] * gauss))
+        ends, curve = points[:, : params.size], points[:, params.size :].reshape(2, -1, BULGE)
         chord = (ends[:, :-1, None] * (1 - gauss) + ends[:, 1:, None] * (1 + gauss)) / 2
-        away = (place(middle[:, None] + reach[:, None] * gauss) - chord) / (1 - gauss**2)
-        for i in range(params.size - 1):
-            a, b = int(first[k] + i), int((first[k] + i + 1) % first[-1])
-            for p in {a, doubles.get(a, a)}:
-                for q in {b, doubles.get(b, b)}:
-                    out[p, q] = away[:, i]
+        away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
+        start = first[k] + np.arange(params.size - 1)
+        out |= zip(zip(start.tolist(), ((start + 1) % first[-1]).tolist(), strict=True), away, strict=True)
+    for (a, b), away in list(out.items()):
+        out |= {(p, q): away for p in {a, doubles.get(a, a)} for q in {b, doubles.get(b, b)}} if {a, b} & doubles.keys() else {}
     return out
