@@ -15,7 +15,7 @@ from geometry.tooth.modified import Flank
 
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
-from ..steps import part, steps
+from ..steps import part
 from ..threads import single
 from .curve import StiffnessCurve, joined
 from .inputs import (
@@ -37,7 +37,7 @@ from .plane import curve, section_solver, sum_solver, with_error
 from .plausible import check_load, check_plausible
 from .pose import check_pose, in_pose
 from .provenance import damage_of, provenance
-from .solid import wide_curve
+from .solid import wide_curves
 
 
 @overload
@@ -131,7 +131,8 @@ def mesh_stiffness(
     ----------
     pair : GearPair
     force : float or sequence of float
-        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list.
+        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list (in three
+        dimensions those within a factor 4 share the cells of their contact lines, too: k within 5e-4 of that of a call for each).
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
     torque : float or sequence of float, optional
@@ -185,7 +186,7 @@ def mesh_stiffness(
         Width of a herringbone pair's relief groove [mm], part of b.
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
-        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.wide_curve`).
+        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.wide_curves`).
     cache : bool
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
@@ -267,7 +268,8 @@ def mesh_stiffness(
         meta = provenance(pair, materials, row.name, written | said)
         options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
         options["flanks"] = forms
-        curves = [wide_curve(value, case, meta, **options) for value in steps(forces, lambda value: f"{row.name}, {value:g} N")]
+        with part(row.name, 0.0, 1.0):
+            curves = wide_curves(forces, case, meta, **options)
         return _answered(curves, pair, materials, force, torque)
     if row.kind == "sum":
         sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms}

@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact import cells as lines3d
+from gearfe.contact import pieces as lines3d
 from gearfe.contact.solid import pair_stiffness3d
+from geometry.pair.contacts import touching
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 
@@ -38,7 +39,7 @@ def test_the_corner_that_misses_the_start_of_the_path_meets_the_flank_further_ou
     assert away[0] > 0.1 * pair.p_bt
     assert gap[0] > 1e-3
     assert lines3d.beyond(pair, 0.5 * gap[0])[0] == 0.0
-    found = lines3d.touching(pair, pair.path[0] - np.array([0.5 * away[0], away[1]]))[2]
+    found = touching(pair, pair.path[0] - np.array([0.5 * away[0], away[1]]))[2]
     assert np.isfinite(found).tolist() == [False, True]
     assert_allclose(lines3d.beyond(pair, found[1])[0], away[1], rtol=1e-9)
 
