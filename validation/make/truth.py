@@ -284,8 +284,8 @@ def _contact_text():
     lines += [
         "",
         f"Why CalculiX is softer everywhere: its contact is a bed of springs, {PENALTY:g} E per mm of overlap, which Hertz's",
-        f"pressure presses in by 8 p0 / (3 pi) over that stiffness: {min(part):.3f} to {max(part):.3f} % of the approach. Without",
-        "that (fifth column) the differences have both signs. Where a tip corner carries, its pressure has no peak, and the",
+        f"pressure presses in by 8 p0 / (3 pi) over that stiffness: {min(part):.3f} to {max(part):.3f} % of the approach.",
+        "Without it (fifth column) differences have both signs. Where a tip corner carries, its pressure has no peak, and the",
         "column is empty.",
     ]
     return lines
