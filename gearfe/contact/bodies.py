@@ -135,7 +135,7 @@ def _add(out, body, rows, lines):
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+    """Faces of the cracks of all bodies, as `joined_lines.System` takes them; None without cracks.
 
     Returns
     -------
