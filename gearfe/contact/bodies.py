@@ -156,7 +156,7 @@ def mirrors_of(cells, bodies):
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+    """Faces of the cracks of all bodies, as `joined_lines.System` takes them; None without cracks.
 
     Returns
     -------

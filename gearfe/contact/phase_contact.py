@@ -13,10 +13,11 @@ from geometry.pair.modified import first_touch
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..steps import steps
 from .bodies import between, faces_of, mirrors_of
-from .cell_sharing import SharedLines, System
+from .cell_sharing import SharedLines
 from .cells import Cells, cells_of
 from .corner import CornerLaw
 from .hubs import given_way, hubs_of
+from .joined_lines import System
 from .pieces import beyond, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line

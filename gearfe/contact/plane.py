@@ -83,7 +83,7 @@ class PairContact:
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
-        self._find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
+        self.find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
         closed = []
         kinks = kink_rows(self, np.argwhere(kink), line_load)
         for i in np.flatnonzero(~done).tolist():
@@ -154,7 +154,7 @@ class PairContact:
                 corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def _find_gaps(self, rows):
+    def find_gaps(self, rows):
         """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
         teeth = {}
         for i, column, corner in rows:
@@ -235,7 +235,7 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
         roll = roll_at_arc(gears[tip], hats.arc)
-        self._find_gaps([(i, int(column), int(corner))])  # unless they are known
+        self.find_gaps([(i, int(column), int(corner))])  # unless they are known
         gap, met = self._gaps[i, int(column), int(corner)]
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
