@@ -145,9 +145,7 @@ def mirrored(cells, bodies):
         at = np.flatnonzero((cells.half == half) & (cells.order == order))
         for body, offset in bodies[half]:
             low, high = ((cells.depth[at] + offset + side * cells.width[at] / 2) / math.cos(body.gear.beta_b) for side in (-1, 1))
-            out[np.ix_(at, at)] += body.edge * mirrored_cells(
-                low, high, body.width / math.cos(body.gear.beta_b), STRIP * body.gear.m_n
-            )
+            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), STRIP * body.gear.m_n)
     return out
 
 
