@@ -86,6 +86,8 @@ def choose(method, pair, cracks, pits, face, teeth, flanks=None, supports=None):
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
+    if any(one.integral for one in supports or () if one):
+        return "fe3d", "a gear is one piece with its shaft"
     why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
     why = why or ("flanks change along the width" if any(form.wide for form in flanks or ()) else "")
     why = why or ("shafts tilt the gears" if any(one.tilts for one in supports or () if one) else "")

@@ -39,7 +39,7 @@ from .plausible import answered, as_asked, check_load
 from .pose import check_pose, in_pose
 from .provenance import damage_of, provenance
 from .solid import wide_curve
-from .supported import at_middle, supports_of
+from .supported import at_middle, check_integral, supports_of
 from .turns import over_turns
 
 
@@ -249,6 +249,7 @@ def mesh_stiffness(
         check_section(refine)
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
+    check_integral(pair, held, row.name, face)
     yields = None if row.kind == "solid" else at_middle(pair, held, row.name)
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
     same: dict[str, Any] = {"method": own or row.name, "damage": damage, "flanks": flanks, "misalignment": misalignment}

@@ -29,6 +29,22 @@ def supports_of(pair, supports):
     return found if any(found) else None
 
 
+def check_integral(pair, supports, method, face):
+    """ValueError for a gear that is one piece with its shaft where no method has it."""
+    for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), supports or (None, None), strict=True):
+        if held is None or not held.integral:
+            continue
+        if method != "fe3d":
+            raise ValueError(
+                f"the {name} is one piece with its shaft (integral), with method = {method!r}, which holds its bore: use "
+                "method = 'fe3d', or a shaft through the bore"
+            )
+        if gear.internal or face == "herringbone":
+            raise ValueError(
+                f"the {name} is one piece with its shaft (integral), but rings and herringbone gears cannot be: leave it out"
+            )
+
+
 def at_middle(pair, supports, method):
     """Approach by the supports per line load [mm per N/mm] of a section, which stands for the whole width; None of rigid ones.
 
