@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`, `units`, `steps`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`;
-`contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
+`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib

@@ -16,7 +16,7 @@ from scipy.interpolate import RectBivariateSpline
 from geometry.tooth.profile import arc_at
 
 from ..energy.ritz.plane import flexibility
-from ..energy.ritz.solid import plane_hats
+from ..energy.ritz.plane_strain import plane_hats
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears

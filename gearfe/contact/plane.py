@@ -69,6 +69,7 @@ class PairContact:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
         self._known, self._rows, self._gaps = {}, {}, {}
+        self._starts = {}  # line loads found last, by phase
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -90,7 +91,10 @@ class PairContact:
             near = np.flatnonzero(possible[i])
             rows = kinks if kink[i].any() else None
             contacts = _within(self.contacts_at(i, near, np.where(kink[i], KINK, corner[i])[near], rows), reach[i])
-            force, approach[i], tangent[i] = self._share(contacts, line_load)
+            near_by = self._starts.get(i) if i in self._starts else self._starts.get(i - 1)
+            start = near_by if near_by is not None and near_by.size == contacts["gap"].size else None
+            force, approach[i], tangent[i] = self._share(contacts, line_load, start=start)
+            self._starts[i] = force
             if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)
                 force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
@@ -103,11 +107,10 @@ class PairContact:
         unloaded = None if self.flanks is None else found.gap.min(axis=1)
         return Solved(found.order, approach, tangent, line, pressure, tuple(closed), unloaded)
 
-    def _share(self, contacts, line_load, weight=None):
+    def _share(self, contacts, line_load, weight=None, start=None):
         names = ("coefficient", "radius")
-        return line_contact(
-            contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus, weight
-        )
+        case = contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus
+        return line_contact(*case, weight, start)
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""

@@ -84,29 +84,29 @@ def longest_seen(machine, start, duration):
     return h
 
 
-def stretch(machine, duration):
-    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them.
+def stretch(machine, duration, begin=0.0):
+    """Start and length [s] of a stretch of a run from time `begin` on to tell the error on.
 
-    Of a speed that changes: where it is fastest.
+    `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
     """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
-        return 0.0, min(duration, 1000 * default_step(machine))
+        return begin, min(duration, 1000 * default_step(machine))
     length = min(duration, CYCLES / (min(rates) * machine.fastest))
     if machine.speed is not None:
-        times = np.linspace(0.0, duration - length, 1000)
+        times = begin + np.linspace(0.0, duration - length, 1000)
         return float(times[np.argmax(np.diff(machine.turned([times, times + length]), axis=0))]), length
-    worst, start = 0.0, 0.0
+    worst, start = 0.0, begin
     for mesh in machine.meshes:
-        for (_, _, change), times in zip(mesh.changes, mesh.entries(duration) if mesh.frequency else (), strict=False):
-            depth = np.abs(change.cells[:, 0]).max() / mesh.cycle.mean
+        for (_, _, change), times in zip(mesh.changes, mesh.entries(begin + duration) if mesh.frequency else (), strict=False):
+            depth, times = np.abs(change.cells[:, 0]).max() / mesh.cycle.mean, times[times >= begin]
             if times.size and depth > worst:
                 worst, before = depth, 0.5 if mesh.frequency > 0 else CYCLES - 0.5
                 start = times[0] - before / abs(mesh.frequency)
-    return max(0.0, min(start, duration - length)), length
+    return max(begin, min(start, begin + duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None, longest=math.inf):
+def chosen_step(machine, duration, initial=None, numba=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -119,6 +119,8 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
     initial : ndarray, shape (2n,), optional
         State from which the stretch starts; default: at rest.
     numba : bool, optional
+    begin : float
+        Time at which the run starts [s].
     adapt : bool
         Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
     watch : callable, optional
@@ -135,7 +137,7 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
 
     def error(h):
         try:
-            found = estimate(machine, duration, h, initial, numba, adapt=adapt)
+            found = estimate(machine, duration, h, initial, numba, begin=begin, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
@@ -144,7 +146,7 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
             watch(found.cost)
         return found
 
-    length = stretch(machine, duration)[1]
+    length = stretch(machine, duration, begin)[1]
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
     found = error(h)
@@ -178,9 +180,9 @@ class Estimate(NamedTuple):
     acceleration: float
 
 
-def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
+def estimate(machine, duration, h, initial=None, numba=None, *, begin=0.0, adapt=False):
     """`Estimate` of the step `h` on a `stretch`."""
-    start, length = stretch(machine, duration)
+    start, length = stretch(machine, duration, begin)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))

@@ -111,6 +111,8 @@ def check_method(method):
 def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     """Raise ValueError for what the method of a `row` of the table does not model."""
     method = f"method = {row.name!r}"
+    if not is_number(groove):
+        raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
     if face not in (None, *FACES):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
     if face not in (None, *row.faces):

@@ -99,7 +99,7 @@ ROWS = (
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
         "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="sloping", pits=True, faces=FACES, error=True,
-        extended=True, kept="disk",
+        extended=True, flanks=True, kept="disk",
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",

@@ -15,10 +15,12 @@ from ..contact.solid import Contact3D, pair_stiffness3d
 from ..material import Material
 from ..supports.shaft import Shaft
 from ..supports.support import Support
+from ..threads import single
 from .inputs import by_gear, forces_of, overlap, phase_array, two_materials
 from .supported import supports_of
 
 
+@single
 def contact_pattern(
     pair: GearPair,
     force: float,
