@@ -33,7 +33,7 @@ from .inputs import (
     said_of_face,
     two_materials,
 )
-from .limits import check_section, check_teeth, checked_refine, is_number, truth
+from .limits import check_section, check_teeth, checked_refine, truth
 from .own_flexibility import OwnFlexibility
 from .plane import curve, section_solver, sum_solver, with_error
 from .plausible import answered, as_asked, check_load
