@@ -29,7 +29,7 @@ def supports_of(pair, supports):
     return found if any(found) else None
 
 
-def _check_integral(pair, supports, method, face):
+def check_integral(pair, supports, method, face):
     """ValueError for a gear that is one piece with its shaft where no method has it."""
     for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), supports or (None, None), strict=True):
         if held is None or not held.integral:
@@ -59,7 +59,7 @@ def at_middle(pair, supports, row, face):
         If a force tilts a gear: no section has its load move to one end. If a gear is one piece with its shaft where no method
         has it.
     """
-    _check_integral(pair, supports, row.name, face)
+    check_integral(pair, supports, row.name, face)
     if supports is None or row.kind == "solid":
         return None
     out = 0.0

@@ -97,6 +97,8 @@ def test_only_hexahedra_have_them():
     for method in ("ritz", "ritz3d"):
         with pytest.raises(ValueError, match="the pinion is one piece with its shaft"):
             gf.mesh_stiffness(pair, 500.0, STEEL, method=method, supports={"pinion": shaft()})
+    with pytest.raises(ValueError, match="the pinion is one piece with its shaft"):
+        gf.contact_pattern(pair, 500.0, STEEL, supports={"pinion": shaft()})
     with pytest.raises(ValueError, match="give where torque leaves"):
         replace(shaft(), torque=None)
 
