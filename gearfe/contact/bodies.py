@@ -34,7 +34,7 @@ def seen_cracks(gear, cracks, seen, band):
     return tuple(crack for crack in found if crack is not None)
 
 
-def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
+def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None)):
     """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
     Parameters
@@ -49,14 +49,16 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
         As in `gearfe.contact.solid.pair_stiffness3d`.
     flexible : callable
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
+    shafts : (Shaft or None, Shaft or None)
+        Of gears that are one piece with them: ``flexible`` gets them as ``shaft``, seen from the end that touches first.
 
     Raises
     ------
     ValueError
         If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
-    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, strict=True))
-    for gear, (body, _), _, own in gears:
+    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, shafts, strict=True))
+    for gear, (body, _), _, own, _ in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
@@ -64,11 +66,15 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
             check_single(body, seen_cracks(gear, own, body, band))
     return [
         [
-            (flexible(body, material, seen_cracks(gear, own, body, band)), offset)
-            for gear, (body, offset), material, own in steps(gears)
+            (flexible(body, material, seen_cracks(gear, own, body, band), **_as_seen(shaft, band)), offset)
+            for gear, (body, offset), material, own, shaft in steps(gears)
         ]
         for band in steps(bands)
     ]
+
+
+def _as_seen(shaft, band):
+    return {} if shaft is None else {"shaft": shaft if band[0] < band[1] else shaft.turned()}
 
 
 def between(cells, bodies):

@@ -5,7 +5,7 @@ import numpy as np
 
 def hubs_of(supports):
     """`gearfe.supports.hub.Hub` of pinion and wheel, None where rigid; None if both are."""
-    if supports is None:
+    if not any(supports or ()):
         return None
     return [held and held.hub() for held in supports]
 

@@ -141,7 +141,9 @@ def pair_stiffness3d(
         check_pits(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
-    options |= {"flanks": flanks, "supports": supports}
+    shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies
+    hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
+    options |= {"flanks": flanks, "supports": hubs}
     groups = _groups(forces)
     contacts = [PhaseContact(pair, [forces[i] for i in group], materials, **options) for group in groups]
 
@@ -159,7 +161,7 @@ def pair_stiffness3d(
         @lru_cache(maxsize=8)
         def bodies(neighbours):
             flexible = partial(model, neighbours=neighbours)
-            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible)
+            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts)
 
         def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
             return bodies(max(orders, least))

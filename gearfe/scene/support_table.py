@@ -4,7 +4,7 @@ import math
 
 from ..supports.shaft import Shaft
 from ..supports.support import Support
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, known, placed
 
 SUPPORTS = {
     "support": {
@@ -27,6 +27,7 @@ SUPPORTS = {
         "gear_at_mm": (NUMBER, REQUIRED),
         "torque_at_mm": (NUMBER, None),
         "bearings_N_per_um": (TWO, None),
+        "integral": (TRUTH, False),
     },
 }
 PER_UM, PER_MRAD, KN = 1e3, 1e6, 1e9  # N/um to N/mm, Nm/mrad to N mm/rad, urad/kN to rad/N (by which is divided)
@@ -78,5 +79,6 @@ def _shaft(row, materials):
         gear=row["gear_at_mm"],
         material=materials[row["material"]],
         torque=row["torque_at_mm"],
+        integral=row["integral"],
         bearing_stiffness=math.inf if stiff is None else tuple(value * PER_UM for value in stiff),
     )

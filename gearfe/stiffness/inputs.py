@@ -86,6 +86,8 @@ def choose(method, pair, cracks, pits, face, teeth, flanks=None, supports=None):
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
+    if any(one.integral for one in supports or () if one):
+        return "fe3d", "a gear is one piece with its shaft"
     why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
     why = why or ("flanks change along the width" if any(form.wide for form in flanks or ()) else "")
     why = why or ("shafts tilt the gears" if any(one.tilts for one in supports or () if one) else "")
@@ -109,6 +111,8 @@ def check_method(method):
 def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     """Raise ValueError for what the method of a `row` of the table does not model."""
     method = f"method = {row.name!r}"
+    if not is_number(groove):
+        raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
     if face not in (None, *FACES):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
     if face not in (None, *row.faces):

@@ -17,7 +17,7 @@ from ..supports.shaft import Shaft
 from ..supports.support import Support
 from ..threads import single
 from .inputs import by_gear, forces_of, overlap, phase_array, two_materials
-from .supported import supports_of
+from .supported import check_integral, supports_of
 
 
 @single
@@ -77,4 +77,5 @@ def contact_pattern(
     phase = np.asarray(phase_array(phases, "cycle", pair, overlap(pair, face, groove)))
     options = {"pits": pits, "cracks": cracks, "flanks": forms, "face": face, "groove": groove}
     options["supports"] = supports_of(pair, supports)
+    check_integral(pair, options["supports"], "ritz3d", face)
     return pair_stiffness3d(pair, forces[0], two_materials(material), phase, **options)

@@ -33,7 +33,7 @@ from .inputs import (
     said_of_face,
     two_materials,
 )
-from .limits import check_section, check_teeth, checked_refine, is_number, truth
+from .limits import check_section, check_teeth, checked_refine, truth
 from .own_flexibility import OwnFlexibility
 from .plane import curve, section_solver, sum_solver, with_error
 from .plausible import answered, as_asked, check_load
@@ -174,9 +174,8 @@ def mesh_stiffness(
     misalignment : Misalignment, optional
         Axes that are not parallel, for the same. (A centre distance that is not the nominal one: the pair's `a`.)
     supports : dict, optional
-        Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; without them bores are rigid. In
-        ``ritz3d`` and ``fe3d`` hubs also tilt; the other methods take those that do not tilt under a force. The curve's
-        `lte_supports` is their part of the deflection.
+        Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; default: rigid bores. Hubs that
+        tilt need ``ritz3d`` or ``fe3d``. The curve's `lte_supports` is their part of the deflection.
     extended : bool
         Let tip corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -243,8 +242,6 @@ def mesh_stiffness(
     held = supports_of(pair, supports)
     method, why = choose(method, pair, cracks, pits, face, teeth, forms, held)
     row, own = row_of(method)
-    if not is_number(groove):
-        raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
     refuse(row, pair, cracks, pits, teeth, variants, face, groove, forms)
     refuse_numeric(row, refine=refine, order=order, error=error, state=state)
     said_of_face(pair, face)
@@ -252,12 +249,11 @@ def mesh_stiffness(
         check_section(refine)
     if row.kind == "solid" and face is None:
         face = "helical" if pair.gear_1.beta else "spur"
-    yields = None if row.kind == "solid" else at_middle(pair, held, row.name)
+    yields = at_middle(pair, held, row, face)
     phase = phase_array(phases, span, pair, overlap(pair, face, groove))
     same: dict[str, Any] = {"method": own or row.name, "damage": damage, "flanks": flanks, "misalignment": misalignment}
-    same |= {"supports": supports, "extended": extended, "state": state, "refine": refine}
-    same |= {"teeth": teeth, "variants": variants, "face": face, "groove": groove, "order": order}
-    same |= {"error": error, "cache": cache, "tell": tell}
+    same |= {"supports": supports, "extended": extended, "state": state, "refine": refine, "teeth": teeth, "variants": variants}
+    same |= {"face": face, "groove": groove, "order": order, "error": error, "cache": cache, "tell": tell}
     if span in ("revolution", "hunting"):
         more = same | {"pose": pose, "cache": solved}
         differs = [bool(cracks[i] or pits[i]) or (forms is not None and forms[i].differs) for i in (0, 1)]

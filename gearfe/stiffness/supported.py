@@ -29,19 +29,38 @@ def supports_of(pair, supports):
     return found if any(found) else None
 
 
-def at_middle(pair, supports, method):
-    """Approach by the supports per line load [mm per N/mm] of a section, which stands for the whole width; None of rigid ones.
+def check_integral(pair, supports, method, face):
+    """ValueError for a gear that is one piece with its shaft where no method has it."""
+    for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), supports or (None, None), strict=True):
+        if held is None or not held.integral:
+            continue
+        if method != "fe3d":
+            raise ValueError(
+                f"the {name} is one piece with its shaft (integral), with method = {method!r}, which holds its bore: use "
+                "method = 'fe3d', or a shaft through the bore"
+            )
+        if gear.internal or face == "herringbone":
+            raise ValueError(
+                f"the {name} is one piece with its shaft (integral), but rings and herringbone gears cannot be: leave it out"
+            )
 
-    Both hubs give way along the line of action and turn::
+
+def at_middle(pair, supports, row, face):
+    """Approach by the supports per line load [mm per N/mm] by the method of a `row` that knows no width.
+
+    None of rigid ones, and for methods in three dimensions, which have them in their contact. Both hubs give way along the line
+    of action and turn::
 
         b (1 / radial + r_b**2 / torsion)    of pinion and wheel
 
     Raises
     ------
     ValueError
-        If a force tilts a gear: no section has its load move to one end.
+        If a force tilts a gear: no section has its load move to one end. If a gear is one piece with its shaft where no method
+        has it.
     """
-    if supports is None:
+    check_integral(pair, supports, row.name, face)
+    if supports is None or row.kind == "solid":
         return None
     out = 0.0
     for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), supports, strict=True):
@@ -49,7 +68,7 @@ def at_middle(pair, supports, method):
             continue
         if held.tilts:
             raise ValueError(
-                f"the {name}'s support tilts it under a force, with method = {method!r}, which knows no width: use method = "
+                f"the {name}'s support tilts it under a force, with method = {row.name!r}, which knows no width: use method = "
                 "'ritz3d' or 'fe3d', or give a Support without coupling to leave the tilt out"
             )
         hub = held.hub()

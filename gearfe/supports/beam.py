@@ -51,21 +51,10 @@ def bending_flexibility(sections, material, bearings, stiffness, at):
     ndarray, shape (2 k, 2 k)
         Displacements first, then slopes.
     """
-    nodes, pieces = _cut(sections, [*bearings, *at])
+    nodes, pieces = pieces_between(sections, [*bearings, *at])
     total = np.zeros((2 * nodes.size,) * 2)
     for i, (length, section) in enumerate(pieces):
-        bending = material.E * section.second_moment
-        phi = 12 * bending / (section.shear_factor(material.nu) * material.shear_modulus * section.area * length**2)
-        own, cross = (4 + phi) * length**2, (2 - phi) * length**2
-        part = np.array(
-            [
-                [12, 6 * length, -12, 6 * length],
-                [6 * length, own, -6 * length, cross],
-                [-12, -6 * length, 12, -6 * length],
-                [6 * length, cross, -6 * length, own],
-            ]
-        )
-        total[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += bending / (length**3 * (1 + phi)) * part
+        total[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += beam_element(length, section, material)
     free = np.ones(2 * nodes.size, dtype=bool)
     for place, hold in zip(bearings, stiffness, strict=True):
         row = 2 * _nearest(nodes, place)
@@ -77,9 +66,25 @@ def bending_flexibility(sections, material, bearings, stiffness, at):
     return _flexibility(total, free, np.concatenate([wanted, wanted + 1]))
 
 
+def beam_element(length, section, material):
+    """Stiffness ``(4, 4)`` of a piece between displacement and slope of its left and its right end."""
+    bending = material.E * section.second_moment
+    phi = 12 * bending / (section.shear_factor(material.nu) * material.shear_modulus * section.area * length**2)
+    own, cross = (4 + phi) * length**2, (2 - phi) * length**2
+    part = np.array(
+        [
+            [12, 6 * length, -12, 6 * length],
+            [6 * length, own, -6 * length, cross],
+            [-12, -6 * length, 12, -6 * length],
+            [6 * length, cross, -6 * length, own],
+        ]
+    )
+    return bending / (length**3 * (1 + phi)) * part
+
+
 def twist_flexibility(sections, material, held, at):
     """Twist ``(k, k)`` [rad] at positions `at` [mm] by unit torques there [N mm], the shaft held at position `held`."""
-    nodes, pieces = _cut(sections, [held, *at])
+    nodes, pieces = pieces_between(sections, [held, *at])
     total = np.zeros((nodes.size,) * 2)
     for i, (length, section) in enumerate(pieces):
         stiff = material.shear_modulus * 2 * section.second_moment / length
@@ -88,7 +93,7 @@ def twist_flexibility(sections, material, held, at):
     return _flexibility(total, free, np.array([_nearest(nodes, place) for place in at]))
 
 
-def _cut(sections, places):
+def pieces_between(sections, places):
     """Positions of steps and places in rising order, and the piece between each and the next: its length and section."""
     ends = np.cumsum([0.0, *(one.length for one in sections)])
     nodes = np.unique(np.concatenate([ends, np.clip(places, 0.0, ends[-1])]))

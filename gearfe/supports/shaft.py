@@ -1,7 +1,7 @@
 """`Shaft`: a stepped shaft on two bearings, and the springs it puts under its gear."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from .support import Support
 if TYPE_CHECKING:
     from ..material import Material
 
+THICKEST = 100  # largest diameter of a shaft over its smallest: more is a slip, and too much for the rounding of the solve
 NONE = 1e-10  # of the largest coupling possible: rounding
 
 
@@ -39,6 +40,10 @@ class Shaft:
         is left out.
     bearing_stiffness : float or (float, float)
         Of each bearing across the axis [N/mm]; default rigid.
+    integral : bool
+        The gear is one piece with its shaft, as small pinions are, in ``fe3d``: its body is solid but for the centre hole
+        `r_bore`, which is free, and the shaft goes on at its end faces (`gearfe.elements.integral`). Needs `torque`; the first
+        bearing holds the shaft along its axis.
 
     Raises
     ------
@@ -61,10 +66,17 @@ class Shaft:
     material: "Material"
     torque: float | None = None
     bearing_stiffness: Any = math.inf
+    integral: bool = False
 
     def __post_init__(self) -> None:
         """Bring all into one form, and refuse what is no shaft."""
         object.__setattr__(self, "segments", tuple(_segment(i, one) for i, one in enumerate(_rows(self.segments))))
+        thick, thin = (pick(one.diameter for one in self.segments) for pick in (max, min))
+        if thick > THICKEST * thin:
+            raise ValueError(
+                f"shaft: diameters from {thin:g} to {thick:g} mm, but no shaft is {THICKEST} times thicker in one part than in "
+                "another: give diameters in mm"
+            )
         object.__setattr__(self, "bearings", _two("bearings", self.bearings, "positions [mm]"))
         stiff = self.bearing_stiffness
         both = (stiff, stiff) if isinstance(stiff, Real) else stiff
@@ -80,6 +92,10 @@ class Shaft:
                 raise ValueError(f"shaft: {name.strip()} = {value!r}, but the shaft reaches from 0 to {self.length:g} mm")
         if self.bearings[0] == self.bearings[1]:
             raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not hold it: give two positions")
+        if self.integral and self.torque is None:
+            raise ValueError(
+                "shaft: integral without torque, but a gear cut from its shaft is held by it: give where torque leaves"
+            )
 
     @property
     def length(self) -> float:
@@ -88,8 +104,22 @@ class Shaft:
 
     @property
     def tilts(self) -> bool:
-        """Whether a force in the middle of the gear tilts it."""
-        return self.support().tilts
+        """Whether a force in the middle of the gear tilts it, or bends it along its width."""
+        return self.integral or self.support().tilts
+
+    def turned(self) -> "Shaft":
+        """The same seen from its other end: right is left."""
+
+        def mirrored(place: float) -> float:
+            return self.length - place
+
+        return replace(
+            self,
+            segments=self.segments[::-1],
+            bearings=tuple(mirrored(place) for place in self.bearings),
+            gear=mirrored(self.gear),
+            torque=None if self.torque is None else mirrored(self.torque),
+        )
 
     def untilted(self) -> Support:
         """Its springs, of which a force only moves the gear and tilts it no more."""

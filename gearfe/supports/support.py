@@ -74,6 +74,11 @@ class Support:
             )
 
     @property
+    def integral(self) -> bool:
+        """Whether the gear is one piece with what holds it: never of springs."""
+        return False
+
+    @property
     def tilts(self) -> bool:
         """Whether a force in the middle of the gear tilts it."""
         return self.coupling != 0

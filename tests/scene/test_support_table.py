@@ -67,6 +67,7 @@ def test_units_are_those_of_the_keys(tmp_path):
     assert chosen.wide
     bored = loaded(tmp_path, HELD.replace("gear_at", "bores_mm = [8, 8]\ngear_at")).pair().supports["pinion"]
     assert bored.segments[1].bore == 8
+    assert loaded(tmp_path, HELD.replace("gear_at", "integral = true\ngear_at")).pair().supports["pinion"].integral
 
 
 def test_a_comparison_says_what_a_section_leaves_out(tmp_path):

@@ -83,6 +83,7 @@ def test_shear_factors_of_cowper():
     [
         ({"segments": []}, "give its parts"),
         ({"segments": [(100.0, 12.0, 12.0)]}, "part 1 is .* bore smaller than its diameter"),
+        ({"segments": [(50.0, 12.0), (50.0, 1e5)]}, "no shaft is 100 times thicker"),
         ({"segments": [(100.0,)]}, "give .length, diameter. or"),
         ({"bearings": (0.0, 120.0)}, "bearings = 120.0, but the shaft reaches from 0 to 100 mm"),
         ({"bearings": (30.0, 30.0)}, "both bearings at 30 mm"),
