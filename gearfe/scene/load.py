@@ -18,7 +18,7 @@ from ..material import Material
 from . import assumed, machine_table
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .references import Reference, read_references
-from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 from .toml_file import read_toml
 
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
@@ -62,7 +62,8 @@ DAMAGE = {
         "tooth": (WHOLE, 0),
         "pair": (TEXT, None),
         "width_mm": (TWO, None),
-        "ends": (TWO, [1.0, 1.0]),
+        "ends": (NUMBERS, [1.0, 1.0]),
+        "rounded": (TRUTH, False),
     },
     "pits": {
         "case": (TEXT, REQUIRED),
@@ -277,7 +278,9 @@ def _cases(file, damage, gears, name, pairs):
 
 def _crack(row):
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
-    return [Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends")})]
+    return [
+        Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})
+    ]
 
 
 def _pits(row):

@@ -11,6 +11,7 @@ from scipy.linalg.lapack import dpotrf
 from geometry.mesh.triangle import table
 
 from .axial import Axial
+from .bent import BentTriangles, products
 
 LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
@@ -78,6 +79,8 @@ class SectorBody:
         Which set of `axial` each number has.
     size : ndarray, shape (k,)
         How many unknowns each number stands for.
+    bent : BentTriangles or None
+        The triangles that move with a crack's front, whose `section` is not used.
     """
 
     numbers: np.ndarray
@@ -93,6 +96,7 @@ class SectorBody:
     axial: Axial
     kind: np.ndarray
     size: np.ndarray
+    bent: BentTriangles | None = None
 
 
 def all_nodes(numbers, count, order):
@@ -102,7 +106,7 @@ def all_nodes(numbers, count, order):
     return every, count + triangles * inside
 
 
-def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None):
+def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None, bent=None):
     """`SectorBody` of the triangles.
 
     Parameters
@@ -118,6 +122,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
     seams : sequence of (ndarray, ndarray)
     kinds : ndarray, shape (nodes + loads,), optional
         Default: all have the polynomials over the whole width.
+    bent : BentTriangles, optional
     """
     nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]
     owner = np.full(nodes, numbers.shape[1])
@@ -145,6 +150,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
         axial=axial,
         kind=kind,
         size=each * np.array([own.size for own in axial.sets])[kind],
+        bent=bent,
     )
 
 
@@ -232,12 +238,8 @@ def leaf(body, own, ids):
     """Matrix of a few triangles between `ids`: the section's is assembled first, then multiplied by the axial ones."""
     raw = np.unique(body.numbers[:, own])
     nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
-    index = np.full(body.first_load, -1)
-    index[raw] = np.arange(raw.size)
-    plane = np.zeros((3, 3 * raw.size, 3 * raw.size))
-    for triangle in own:
-        at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        plane[(slice(None), *np.ix_(at, at))] += body.section[:, triangle]
+    at = 3 * np.searchsorted(raw, body.numbers[:, own])[:, None] + np.arange(3)[:, None]
+    plane, factors = products(body.section, body.axial, body.bent, own, at.transpose(2, 0, 1).reshape(own.size, -1))
     here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
     turn = _seamed(body, raw, nodes)
     here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
@@ -247,7 +249,7 @@ def leaf(body, own, ids):
     else:
         turn = np.kron(turn, np.eye(3))
         plane = turn.T @ plane @ turn
-    return _times(body, plane, here, nodes, loads)
+    return _times(body, plane, factors, here, nodes, loads)
 
 
 def _seamed(body, raw, nodes):
@@ -263,7 +265,7 @@ def _seamed(body, raw, nodes):
     return out
 
 
-def _times(body, plane, here, nodes, loads):
+def _times(body, plane, factors, here, nodes, loads):
     """The section's matrices and loads multiplied by those of the functions along the width, set by set."""
     along, ids = body.axial, np.append(nodes, loads)
     start = np.cumsum(body.size[ids]) - body.size[ids]
@@ -279,8 +281,8 @@ def _times(body, plane, here, nodes, loads):
         for g, others, columns in groups.values():
             both = np.ix_(at, others)
             widths = np.ix_(f, g)
-            first = np.array([part[both].ravel() for part in (plane[0], plane[1], plane[1].T, plane[2])])
-            second = np.array([part[widths].ravel() for part in (along.mass, along.mixed, along.mixed.T, along.slope)])
+            first = np.array([part[both].ravel() for part in plane])
+            second = np.array([part[widths].ravel() for part in factors])
             block = (first.T @ second).reshape(at.size, others.size, f.size, g.size).transpose(0, 2, 1, 3)
             _put(out, rows, columns, block.reshape(rows.size, columns.size))
         for k, load in enumerate(loads.tolist()):
