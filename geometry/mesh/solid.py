@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..damage.crack import check_apart, check_single, open_part
-from ..damage.front import bends, whole
+from ..damage.front import bends, deepest, whole
 from ..tooth.gear import Gear
 from .front import follow
 from .outline import spaced
@@ -219,7 +219,8 @@ def _open(made, cut, part, cracks, fronts):
         if number in fronts:
             reach = sum((height > low) & (height < high) for low, high in fronts[number].open())
         else:
-            reach = open_part(cracks[number], made.gear.b, height)
+            crack = cracks[number]
+            reach = open_part(crack, made.gear.b, height) / (1.0 if bends(crack) else deepest(crack))
         opened |= own[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():
