@@ -7,7 +7,7 @@ opposite beta.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,6 +44,8 @@ class Solid:
     faces : dict of str to ndarray, shape (8, k)
         Faces by name: ``held``, ``flank 0`` (of each loaded tooth), ``crack 0 body`` and ``crack 0 tooth`` (facing each
         other, column by column). Corners counter-clockwise in (along the section's edge, z), then the middles of 01, 12, 23, 30.
+    fronts : dict of int to Front
+        By crack, where its depth changes along the width, the front that the elements follow.
     """
 
     gear: Gear
@@ -53,6 +55,7 @@ class Solid:
     section: QuadSection
     held: np.ndarray
     faces: dict
+    fronts: dict = field(default_factory=dict)
 
     def flank(self, tooth):
         """Faces ``(8, edges, layers)`` of a loaded flank, edges from root to tip."""
@@ -105,8 +108,9 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
     made = extrude(section, levels, gear.twist_rate, moves.values())
+    made = replace(made, fronts={k: front for k, (_, front) in moves.items()})
     for number, cut in enumerate(section.cuts):
-        made = _open(made, cut, number + 1, cracks, {k: front for k, (_, front) in moves.items()})
+        made = _open(made, cut, number + 1, cracks)
     return made
 
 
@@ -207,7 +211,7 @@ def _turned(points, heights, rate):
     return np.array([cos * x + sin * y, cos * y - sin * x, z]).reshape(3, -1)
 
 
-def _open(made, cut, part, cracks, fronts):
+def _open(made, cut, part, cracks):
     """Double the nodes of the open faces of one parting line; the cells of the tooth above get the new ones."""
     faces = dict(made.faces)
     walls = faces.pop(f"cut {part - 1}")
@@ -216,8 +220,8 @@ def _open(made, cut, part, cracks, fronts):
     for number in set(cut.crack.tolist()) - {-1}:
         own = cut.crack == number
         length = cut.depth[own].max()
-        if number in fronts:
-            reach = sum((height > low) & (height < high) for low, high in fronts[number].open())
+        if number in made.fronts:
+            reach = sum((height > low) & (height < high) for low, high in made.fronts[number].open())
         else:
             crack = cracks[number]
             reach = open_part(crack, made.gear.b, height) / (1.0 if bends(crack) else deepest(crack))
