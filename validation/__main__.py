@@ -25,6 +25,7 @@ PAGES = {
     "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
     "shortcomings": "what gearfe falls short of: the expected failures of its tests",
     "speed": "seconds against error of every method",
+    "threads": "seconds of a pair with one thread and with several",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
     "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",
@@ -40,8 +41,8 @@ PAGES = {
     "speed_three": "seconds and memory against error in three dimensions",
     "cost_three": "cost of the energy model in three dimensions over teeth, width, helix angle, order and phases",
     "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
-    "dynamics": "integrators: seconds against error on 55 degrees of freedom",
-    "hard_dynamics": "hard cases of the dynamics, each with its outcome",
+    "dynamics": "integrators: seconds against error, all machines at their own steps (resumable)",
+    "hard_dynamics": "hard cases of the dynamics, each with its outcome (resumable)",
     "install": "wheel and sdist in empty environments of every Python at hand",
     "own_model": "the example of a curve exported by MATLAB",
     "readme": "the table and the program output in the README",
@@ -63,6 +64,7 @@ TIMED = ("speed", "readme")  # they print seconds of the clock; other pages prin
 PARTS = {
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
 }  # each a job of its own
+ROWS = ("dynamics", "hard_dynamics")  # pages whose rows are kept: parts are beginnings of those computed anew
 SECONDS = places.TABLES / "seconds.csv"  # of the last run of everything
 
 
@@ -70,14 +72,19 @@ def main():
     """Run the page asked for, or all of them."""
     parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild the validation pages.")
     parser.add_argument("page", nargs="?", choices=list(PAGES), metavar="PAGE", help=f"default: all but {', '.join(LONG)}")
-    parser.add_argument("parts", nargs="*", metavar="PART", help="of slow: only these test files; of machines: only these pages")
+    parser.add_argument(
+        "parts",
+        nargs="*",
+        metavar="PART",
+        help="of slow: only these test files; of machines: only these pages; of dynamics, hard_dynamics: rows to compute anew",
+    )
     parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they took")
     parser.add_argument(
         "--reference", action="store_true", help="compute the three-dimensional finite elements that are not on file (resumable)"
     )
     arguments = parser.parse_args()
-    if arguments.parts and arguments.page not in ("slow", *PARTS):
-        parser.error(f"only slow and machines can be made in part; {arguments.page} is made as a whole")
+    if arguments.parts and arguments.page not in ("slow", *PARTS, *ROWS):
+        parser.error(f"only slow, machines, {', '.join(ROWS)} can be made in part; {arguments.page} is made as a whole")
     if arguments.list:
         print(listed())
     elif arguments.reference:

@@ -13,6 +13,7 @@ from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
 
 from ..material import Material
+from ..threads import single
 from .front_integral import front_intensity
 from .line_load import check_spread, contact_line, strip, under_line
 from .loaded_tooth import check_line_load, edge_lengths
@@ -46,6 +47,7 @@ class FrontIntensity:
     unknowns: int
 
 
+@single
 def stress_intensity_along_front(
     gear: Gear,
     crack: Crack,

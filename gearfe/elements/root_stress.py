@@ -10,6 +10,7 @@ from geometry.mesh.solid import Solid, solid
 from geometry.tooth.gear import Gear
 
 from ..material import Material
+from ..threads import single
 from .hexahedron import face_shapes
 from .line_load import check_spread, contact_line, strip, under_line
 from .loaded_tooth import _peak, check_line_load, edge_lengths
@@ -51,6 +52,7 @@ class RootStress:
         return float(self.z[self.stress.argmax()])
 
 
+@single
 def root_stress_along_width(
     gear: Gear,
     radius: float,

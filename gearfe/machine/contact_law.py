@@ -11,6 +11,7 @@ import numpy as np
 from ..flexibility.hertz import contact_modulus
 
 LAW = ("power", "damping", "beta", "per_depth", "backlash", "film", "push")  # in the order `contact_force` takes them
+STRAIGHT, HERTZ, BENT = range(3)  # exponents of all meshes: 1, 3/2, others
 
 
 def step(x, x0, h0, x1, h1):
@@ -72,9 +73,9 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
 def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push, bent, stepped, pushing):
     """Force of a mesh, of numbers or of arrays; see `force`.
 
-    Written so that numpy takes arrays through it and numba compiles it for numbers. `bent`, `stepped`, `pushing`: whether any
-    power is not 1, any damping grows with depth, any flank only pushes. Where the flanks are apart both depths are zero, and
-    with them the spring.
+    Written so that numpy takes arrays through it and numba compiles it for numbers. `bent`: `STRAIGHT` where all powers are 1,
+    `HERTZ` where all are 3/2, for which a square root is ten times faster, `BENT` otherwise; `stepped`, `pushing`: whether any
+    damping grows with depth, any flank only pushes. Where the flanks are apart both depths are zero, and with them the spring.
     """
     front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
     ahead, behind = front > 0, rear > 0
@@ -84,7 +85,12 @@ def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push
         u = np.minimum((front + rear) * per_depth, 1.0)
         full = u * u * (3 - 2 * u) + (per_depth == 0)
     share = film + inside * (full - film)
-    spring = front**power - rear**power if bent else front - rear
+    if bent == STRAIGHT:
+        spring = front - rear
+    elif bent == HERTZ:
+        spring = front * np.sqrt(front) - rear * np.sqrt(rear)
+    else:
+        spring = front**power - rear**power
     out = k * spring + (damping + beta * k) * share * v
     if pushing:
         return push * (ahead * np.maximum(out, 0.0) + behind * np.minimum(out, 0.0)) + (1 - push) * out
@@ -93,7 +99,9 @@ def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push
 
 def branches(law):
     """Which parts of `contact_force` a law needs: ``bent, stepped, pushing``."""
-    return bool((law["power"] != 1).any()), bool((law["per_depth"] != 0).any()), bool(law["push"].any())
+    power = law["power"]
+    bent = STRAIGHT if (power == 1).all() else HERTZ if (power == 1.5).all() else BENT
+    return bent, bool((law["per_depth"] != 0).any()), bool(law["push"].any())
 
 
 def force(x, v, k, law):

@@ -20,7 +20,7 @@ class Matrices(NamedTuple):
     """Those of the step by level, columns one after the other so that the loops over them run along memory.
 
     `PF` is ``P F`` below F: what the forces add to z, and to x at the end of the step. `add` and `push` are what constant loads
-    add to y and w, and to z and P z, level after level in one row.
+    add to y and w, and to z and P z, level after level in one row. `W` is of `gearfe.motion.propagator.Plan.told`.
     """
 
     E: np.ndarray
@@ -30,6 +30,7 @@ class Matrices(NamedTuple):
     PF: np.ndarray
     add: np.ndarray
     push: np.ndarray
+    W: np.ndarray
     P: np.ndarray
 
 
@@ -65,20 +66,20 @@ def is_ready():
 
 def _matrices(plan, kept, still):
     """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
-    wide = still.size
+    wide = max(still.size, 1)  # nothing acts
 
     def columns(matrix):
         index = wide * np.arange(matrix.shape[1] // wide)[:, None] + kept
         return matrix[:, index.ravel()].T
 
     parts = []
-    for E, Y, S, T, F in plan.levels:
+    for (E, Y, S, T, F), told in zip(plan.levels, plan.told, strict=True):
         PF = np.concatenate([F, plan.P @ F])
         add = np.concatenate([S @ still, T @ np.concatenate([still, still])])
         push = PF @ np.concatenate([still, 2 * still, still])
-        parts.append((E, Y.T, columns(S), columns(T), columns(PF), add, push))
-    E, Y, S, T, PF, add, push = (np.stack([np.ascontiguousarray(part) for part in one]) for one in zip(*parts, strict=True))
-    return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), plan.P)
+        parts.append((E, Y.T, columns(S), columns(T), columns(PF), add, push, columns(told)))
+    E, Y, S, T, PF, add, push, W = (np.stack([np.ascontiguousarray(part) for part in one]) for one in zip(*parts, strict=True))
+    return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), W, plan.P)
 
 
 @njit(cache=True, error_model="numpy")
@@ -132,15 +133,9 @@ def _losses(side, x, now, row, laws):
 
 
 @njit(cache=True, error_model="numpy")
-def _away(x, end, linear):
-    """How far the last stage and the end of a step are apart, as the largest mesh force of the linear part."""
-    m, most = linear.shape[1], 0.0
-    for i in range(m):
-        force = linear[0, i] * (end[i] - x[i])
-        if x.size > m:
-            force += linear[1, i] * (end[m + i] - x[m + i])
-        most = max(most, abs(force))
-    return most
+def _turned(first, middle, last):
+    """How far a stiffness turns off its straight line within a step, part of it."""
+    return (first - 2 * middle + last) / middle if middle > 0 else 0.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -160,11 +155,12 @@ def _propagate(new, E, level, z):
 @njit(cache=True, error_model="numpy")
 def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
-    E, Y, S, T, PF, add, push, P = matrices
+    E, Y, S, T, PF, add, push, W, P = matrices
     m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
     whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
     now = np.zeros((own + 3, 3 * m + f - m))
-    g = np.zeros(4 * f)  # forces of the stages 1, 3, 4, 2
+    g, last_g, apart = np.zeros(4 * f), np.zeros(f), np.zeros(f)  # forces of the stages 1, 3, 4, 2; at the end; it less stage 4
+    none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
     total, side, edge, level = np.zeros(m), np.zeros(m), 0, 0
     allowed, scale = local
@@ -203,7 +199,12 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
                 known = at + part
             stage(y, add, 2 * p * level, Y, level, z, 0)
-            _forces(g, 0, x0, now, row, laws, kind, linear, rub, total)
+            if fresh:
+                for j in range(m + rub.size, f):  # a load may jump here
+                    g[j] = now[row, 2 * m + j]
+            else:
+                _forces(g, 0, x0, now, row, laws, kind, linear, rub, total)
+            fresh = True
             stage(x, y, 0, S, level, g, 0)
             change = opens and _changed(side, x, now, row + 1, laws)
             _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total)
@@ -220,9 +221,20 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
             away = 0.0
             if held:
+                _forces(last_g, 0, end, now, row + 2, laws, kind, linear, rub, total)
+                for i in range(f):
+                    apart[i] = last_g[i] - g[2 * f + i]
+                stage(doubt, none, 0, W, level, apart, 0)
                 for i in range(m):
                     scale = max(scale, abs(total[i]))
-                away = _away(x, end, linear) / scale if scale > 0 else 0.0
+                    away = max(away, abs(doubt[i]))
+                    apart[i] = _turned(now[row, i], now[row + 1, i], now[row + 2, i]) * total[i]
+                for i in range(m, f):
+                    apart[i] = 0.0
+                stage(doubt, none, 0, W, level, apart, 0)
+                for i in range(m):
+                    away = max(away, abs(doubt[i]))
+                away = away / scale if scale > 0 else 0.0
             if level < last and (change or away > allowed or _changed(side, end, now, row + 2, laws)):
                 level += 1
                 counts[1] += 1
@@ -234,6 +246,10 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 z[i] = new[i]
             for i in range(p):
                 x0[i] = end[i]
+            fresh = held
+            if held:
+                for i in range(f):
+                    g[i] = last_g[i]
             at += part
             counts[0] += 1
             if not held or away <= GROW * allowed:

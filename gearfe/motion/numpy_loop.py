@@ -1,8 +1,8 @@
 """The fast path on arrays: one exponential step after the other, halved about changes of contact and bends of the loads.
 
 A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe.motion.propagator.LEVELS` times about it; under a
-law of contact that is not linear so is one whose last stage and end differ by more than `gearfe.motion.propagator.Plan.allowed`:
-flanks that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
+law of contact that is not linear so is one whose estimate (`gearfe.motion.propagator.Plan.told`) is above what is allowed: flanks
+that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from ..machine.contact_law import LAW, branches, contact_force
 from . import excitation
 from .exponential import UNSTABLE, Step
 
-GROW = 0.08  # of what is allowed: below it the next step is twice as long (the difference grows as its third power)
+GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
 CHUNK = 1024  # steps whose stiffnesses are looked up at once
 
 
@@ -80,7 +80,7 @@ class _Parts:
                 if level:
                     acting.at(np.array([low, (low + high) / 2, high]))
                 new = self.step(z, level, acting.fill, i)
-                away = self._away(new, acting)
+                away = self._away(new, level, acting, i + 2)
             e = () if broken else acting.e[i + 1 : i + 3]
             if broken or (level < last and (away > plan.allowed or self.sides.changed(side, self.step, new, *e))):
                 level += 1
@@ -95,15 +95,17 @@ class _Parts:
         self.level = level
         return z, side
 
-    def _away(self, new, forces):
-        """How far the last stage and the end of the step just taken are apart, part of the largest mesh force so far."""
+    def _away(self, new, level, forces, i):
+        """How far the step just taken is from one of lower order, as a mesh force over the largest so far."""
         if not self.local:
             return 0.0
-        plan, m = self.plan, len(self.plan.k)
+        end = np.empty(self.step.width)
+        forces.fill(self.plan.P @ new, end, i)
         self.scale = max(self.scale, np.abs(forces.total).max())
-        away = plan.P @ new - self.step.stages[2]
-        force = plan.k * away[:m] + (plan.c * away[m:] if len(away) > m else 0.0)
-        return np.abs(force).max() / self.scale if self.scale > 0 else 0.0
+        told, (first, middle, last) = self.plan.told[level], forces.k[i - 2 : i + 1]
+        turned = np.where(middle > 0, (first - 2 * middle + last) / np.where(middle > 0, middle, 1.0), 0.0) * forces.total
+        force = np.abs(np.concatenate([told @ (end - self.step.forces[3]), told[:, : turned.size] @ turned]))
+        return force.max() / self.scale if self.scale > 0 else 0.0
 
 
 class _Forces:

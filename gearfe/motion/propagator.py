@@ -8,8 +8,8 @@ from scipy.linalg import eig
 
 from ..machine.modes import modal, natural_frequencies
 
-LEVELS = 6  # a step is halved at most so often
-LOCAL = 1e-3  # of the largest mesh force, at the default step: what `Plan.allowed` is there
+LEVELS, DEEPER = 6, 8  # a step is halved at most so often: about changes of contact; and where it is adapted
+LOCAL = 1e-5  # of the largest mesh force, at the default step: what `Plan.allowed` is there
 STEPS = 80  # per mesh cycle, at first
 SHARE = 0.35  # of the period of the stiffest mesh, at first
 CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
@@ -35,8 +35,13 @@ class Plan:
     levels : list of tuple
         Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
         for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
+    told : list of ndarray, shape (m, width)
+        By level: what forces at the end of a step do to the mesh forces of the linear part there. Of the difference of the forces
+        at its end from those of its last stage it makes the difference to a step of lower order; of how far the stiffnesses turn
+        off their straight lines within the step, times the forces, that of Simpson's rule to the trapezoidal one. The larger of
+        both is the estimate of the step.
     allowed : float
-        How far the last stage and the end of a step may be apart, part of the largest mesh force so far; inf: they are not asked.
+        How large that may be, part of the largest mesh force so far; inf: it is not asked.
     scale : float
         That force at first, at rest [N].
     """
@@ -49,6 +54,7 @@ class Plan:
     c: np.ndarray
     h: float
     levels: list
+    told: list
     allowed: float
     scale: float
 
@@ -85,12 +91,17 @@ def plan(machine, h, x=None, adapt=False):
     affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
     rates = (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | film | (len(rub) > 0)
     P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
-    count = 1 + (LEVELS if (law["backlash"] > 0).any() or any(one.breaks.size > 1 for one in machine.loads) else 0)
+    opens = bool((law["backlash"] > 0).any())
+    local = adapt and opens and is_bent(machine)
+    count = 1 + (DEEPER if local else LEVELS if opens or any(one.breaks.size > 1 for one in machine.loads) else 0)
     levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
-    local = adapt and is_bent(machine) and count > 1
-    allowed = LOCAL * (h / default_step(machine)) ** 3 if local else math.inf
+    m, wide = len(machine.meshes), B.shape[1]
+    ends = [
+        P[:m] @ F[:, 2 * wide :] * k[:, None] + (P[m:] @ F[:, 2 * wide :] * c[:, None] if len(P) > m else 0.0) for *_, F in levels
+    ]
+    allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf
     scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
-    return Plan(basis, inverse, P, affine, k, c, h, levels, allowed, scale)
+    return Plan(basis, inverse, P, affine, k, c, h, levels, ends, allowed, scale)
 
 
 def is_bent(machine):

@@ -4,7 +4,8 @@ import math
 import time
 
 import numpy as np
-from scipy.integrate import solve_ivp
+import scipy.integrate
+from scipy.optimize import brentq
 
 from ..machine.contact_law import sides
 from . import excitation
@@ -12,6 +13,7 @@ from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
 EVENTS = 100_000  # in one run
+LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])  # parts of a step: a flight may be as short
 TOGETHER = 1e-12  # of a run: changes of contact closer in time than this are one
 
 
@@ -19,7 +21,7 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
     """Response of a machine by a method of scipy at `count` equal intervals.
 
     Every mesh is held on the flanks it touches, so that all is smooth, up to the time at which it leaves or reaches a flank;
-    there, at the root of the method's dense output, the integration begins anew with the flanks it then touches.
+    there, at a root of the method's dense output, the integration begins anew with the flanks it then touches.
 
     Parameters
     ----------
@@ -68,16 +70,15 @@ class _Run:
         self.scale = scale = np.concatenate([np.sqrt(machine.mass) * unit, np.sqrt(machine.mass)])
         rest = machine.rest()
         size = np.abs(scale * np.concatenate([rest, 0 * rest])).max() or np.abs(scale * state).max() or 1.0
-        self.options = {"method": method, "rtol": rtol, "atol": 1e-3 * rtol * size}
+        self.method, self.options = method, {"rtol": rtol, "atol": 1e-3 * rtol * size}
         self.options["max_step"] = 1 / (8 * highest) if highest else np.inf
         self.opens = np.flatnonzero(self.law["backlash"] > 0)
         self.tiny, self.calls, self.events, self.losses = TOGETHER * duration, 0, 0, 0
         self.side = sides(self.compression(start, scale * state), self.law)
 
     def compression(self, t, y):
-        """Of all meshes ``(m,)`` [m]."""
-        q = (y / self.scale)[: self.n]
-        return self.machine.G @ q - excitation.errors(self.flat, np.asarray(t))[0]
+        """Of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
+        return self.machine.G @ (y.T / self.scale).T[: self.n] - excitation.errors(self.flat, np.asarray(t))[0].T
 
     def rate(self, t, y):
         u = y / self.scale
@@ -88,29 +89,64 @@ class _Run:
         """State at `high`, and the states at the times `inside`, where no load bends."""
         found = []
         while low < high:
-            watched = [(self._event(i, *exit[:2]), i, exit[2]) for i in self.opens for exit in self._exits(i)]
-            wanted = inside[inside > low]
-            done = solve_ivp(
-                self.rate,
-                (low, high),
-                y,
-                t_eval=np.union1d(wanted, [high]),
-                events=[w[0] for w in watched] or None,
-                **self.options,
-            )
-            self.calls += done.nfev
-            if not done.success or not all(np.isfinite(part).all() for part in (done.y, *(done.y_events or ())) if np.size(part)):
-                reached = done.t[-1] if len(done.t) else low
-                raise RuntimeError(f"{self.options['method']} gave up at t = {reached:.4g} s: {done.message}")
-            kept = len(done.t) if done.status == 1 else wanted.size  # no array but a list where a change came before any output
-            if kept:
-                found.append((done.y[:, :kept] / self.scale[:, None]).T)
-            if done.status != 1:
-                return done.y[:, -1], found
-            hit = [j for j, times in enumerate(done.t_events) if times.size]
-            low, y = done.t_events[hit[0]][0], done.y_events[hit[0]][0]
-            self._change(low, y, {watched[j][1]: watched[j][2] for j in hit})
+            solver = getattr(scipy.integrate, self.method)(self.rate, low, y, high, **self.options)
+            low, hit = self._smooth(solver, inside, found)
+            y = solver.y if hit is None else solver.dense_output()(low)
+            self.calls += solver.nfev
+            if hit is not None:
+                self._change(low, y, hit)
         return y, found
+
+    def _smooth(self, solver, inside, found):
+        """Step until a contact changes or the end; its time and the flanks then touched. States at `inside` go to `found`."""
+        while True:
+            message = solver.step()
+            if solver.status == "failed" or not np.isfinite(solver.y).all():
+                raise RuntimeError(f"{self.method} gave up at t = {solver.t:.4g} s: {message or 'values that are not finite'}")
+            path = solver.dense_output()
+            end, hit = self._first_exit(path, solver.t_old, solver.t) if self.opens.size else (solver.t, None)
+            wanted = inside[(inside > solver.t_old) & (inside <= end)]
+            if wanted.size:
+                found.append((path(wanted) / self.scale[:, None]).T)
+            if hit is not None or solver.status == "finished":
+                return end, hit
+
+    def _first_exit(self, path, low, high):
+        """First time in a step at which a contact ends, and the flanks then touched by mesh; its end and None without one."""
+        first = high, None
+        exits = [(i, *one) for i in self.opens for one in self._exits(i)]
+        at, x = self._looks(path, low, high, {i for i, *_ in exits})
+        for i, place, direction, side in exits:
+            past = direction * (x[i] - place) > 0
+            if not past[1:].any():
+                continue
+            j = 1 + int(np.argmax(past[1:]))
+            time = at[j] if past[j - 1] else brentq(self._beyond(path, i, place), at[j - 1], at[j], xtol=1e-300, rtol=1e-15)
+            if time < first[0] or first[1] is None:
+                first = time, {i: side}
+        return first
+
+    def _looks(self, path, low, high, meshes):
+        """Times in a step, and the compressions there: a step may be longer than a flight, or than a short loss of contact.
+
+        `LOOKS`, and between them where parabolas through three of them turn back.
+        """
+        at = low + (high - low) * LOOKS
+        x = self.compression(at, path(at))
+        more = []
+        for i in meshes:
+            one, two = np.diff(x[i])[:-1], np.diff(x[i])[1:]
+            for j in np.flatnonzero(one * two < 0):
+                (left, middle), rise = np.diff(at[j : j + 3]), np.diff(x[i, j : j + 3])
+                slopes = rise / (left, middle)
+                more.append(at[j] + left / 2 - slopes[0] * (left + middle) / 2 / (slopes[1] - slopes[0]))
+        if not more:
+            return at, x
+        at = np.unique(np.concatenate([at, more]))
+        return at, self.compression(at, path(at))
+
+    def _beyond(self, path, i, place):
+        return lambda t: self.compression(t, path(t))[i] - place
 
     def _change(self, t, y, hit):
         """Change the flanks in touch of the meshes `hit`, and of those that would follow at once: halves of one gear do."""
@@ -137,10 +173,3 @@ class _Run:
         if side == 0:
             return (0.0, 1, 1), (-slack, -1, -1)
         return ((0.0 if side > 0 else -slack, -side, 0),)
-
-    def _event(self, i, place, direction):
-        def event(t, y):
-            return self.compression(t, y)[i] - place
-
-        event.terminal, event.direction = True, float(direction)
-        return event

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..elements.solver import free_memory
 from ..machine.tables import Machine
+from ..threads import single
 from .fixed_step import fixed_steps
 from .reference import SOLVERS, reference
 from .response import Response
@@ -38,6 +39,7 @@ LONGEST = 300.0  # s: a run without numba that would take longer is refused
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
+@single
 def simulate(
     machine: Machine,
     duration: float,
@@ -135,7 +137,7 @@ def simulate(
     _check_memory(machine, duration, count)
     if method != "fast":
         return reference(machine, duration, count, state, method, rtol, start)
-    own = state if initial is not None and not start else None
+    own = state if initial is not None else None
     run = _Runs(machine, duration, count, state, own, start, numba, progress)
     if step is None and dt is None:
         return run.controlled(error)
@@ -209,7 +211,7 @@ class _Runs:
             found = Estimate(max(difference(out, finer)), False, length, 0.0, acceleration_difference(out, finer))
         else:
             try:
-                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba)
+                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba, begin=self.start)
             except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
@@ -230,7 +232,7 @@ class _Runs:
             return replace(one, stats=one.stats | more | {"seconds": time.perf_counter() - started})
 
         longest = longest_seen(self.machine, self.start, self.duration)
-        options = {"adapt": True, "watch": self._watch, "longest": longest}
+        options = {"begin": self.start, "adapt": True, "watch": self._watch, "longest": longest}
         dt, found = chosen_step(self.machine, self.duration, self.own, self.numba, **options)
         every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
         out = self(every, adapt=True)

@@ -16,7 +16,7 @@ from .propagator import default_step, is_bent
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to half the step: of order four, and where local halving rules
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
 PROBES = 50_000  # times at which that is looked at
 TURNS = ("theta", "tilt_x", "tilt_y")
@@ -84,29 +84,29 @@ def longest_seen(machine, start, duration):
     return h
 
 
-def stretch(machine, duration):
-    """Start and length [s] of a stretch to tell the error on: `CYCLES` mesh cycles, with the worst damaged tooth among them.
+def stretch(machine, duration, begin=0.0):
+    """Start and length [s] of a stretch of a run from time `begin` on to tell the error on.
 
-    Of a speed that changes: where it is fastest.
+    `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
     """
     rates = [abs(m.frequency) for m in machine.meshes if m.frequency]
     if not rates:
-        return 0.0, min(duration, 1000 * default_step(machine))
+        return begin, min(duration, 1000 * default_step(machine))
     length = min(duration, CYCLES / (min(rates) * machine.fastest))
     if machine.speed is not None:
-        times = np.linspace(0.0, duration - length, 1000)
+        times = begin + np.linspace(0.0, duration - length, 1000)
         return float(times[np.argmax(np.diff(machine.turned([times, times + length]), axis=0))]), length
-    worst, start = 0.0, 0.0
+    worst, start = 0.0, begin
     for mesh in machine.meshes:
-        for (_, _, change), times in zip(mesh.changes, mesh.entries(duration) if mesh.frequency else (), strict=False):
-            depth = np.abs(change.cells[:, 0]).max() / mesh.cycle.mean
+        for (_, _, change), times in zip(mesh.changes, mesh.entries(begin + duration) if mesh.frequency else (), strict=False):
+            depth, times = np.abs(change.cells[:, 0]).max() / mesh.cycle.mean, times[times >= begin]
             if times.size and depth > worst:
                 worst, before = depth, 0.5 if mesh.frequency > 0 else CYCLES - 0.5
                 start = times[0] - before / abs(mesh.frequency)
-    return max(0.0, min(start, duration - length)), length
+    return max(begin, min(start, begin + duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, watch=None, longest=math.inf):
+def chosen_step(machine, duration, initial=None, numba=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -119,6 +119,8 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
     initial : ndarray, shape (2n,), optional
         State from which the stretch starts; default: at rest.
     numba : bool, optional
+    begin : float
+        Time at which the run starts [s].
     adapt : bool
         Of `gearfe.motion.fixed_step.fixed_steps`: the step is then the longest.
     watch : callable, optional
@@ -135,7 +137,7 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
 
     def error(h):
         try:
-            found = estimate(machine, duration, h, initial, numba, adapt=adapt)
+            found = estimate(machine, duration, h, initial, numba, begin=begin, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
@@ -144,7 +146,7 @@ def chosen_step(machine, duration, initial=None, numba=None, *, adapt=False, wat
             watch(found.cost)
         return found
 
-    length = stretch(machine, duration)[1]
+    length = stretch(machine, duration, begin)[1]
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
     found = error(h)
@@ -178,15 +180,22 @@ class Estimate(NamedTuple):
     acceleration: float
 
 
-def estimate(machine, duration, h, initial=None, numba=None, *, adapt=False):
-    """`Estimate` of the step `h` on a `stretch`."""
-    start, length = stretch(machine, duration)
+def estimate(machine, duration, h, initial=None, numba=None, *, begin=0.0, adapt=False):
+    """`Estimate` of the step `h` on a `stretch`.
+
+    Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
+    the run is then compared with a third of the step, and so is that of half the step.
+    """
+    start, length = stretch(machine, duration, begin)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"numba": numba, "start": start, "adapt": adapt}
-    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
-    cost = max(two.stats["seconds"] - one.stats["seconds"], 0.0) / length
-    more = ROUGH if adapt and is_bent(machine) else SMOOTH
-    acceleration = more * acceleration_difference(one, two)
-    return Estimate(more * max(difference(one, two)), two.stats["losses"] > 0, length, cost, acceleration)
+    rough = adapt and is_bent(machine)
+    runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
+    cost = max(runs[1].stats["seconds"] - runs[0].stats["seconds"], 0.0) / length
+    *coarse, fine = runs
+    more = ROUGH if rough else SMOOTH
+    error = more * max(max(difference(one, fine)) for one in coarse)
+    acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
+    return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)

@@ -9,10 +9,12 @@ from ..contact.solid import Contact3D
 from ..elements.line_load import check_spread
 from ..elements.root_stress import RootStress, stress_under_line
 from ..material import Material
+from ..threads import single
 
 SAMPLES = 2001  # heights at which the load is added up
 
 
+@single
 def root_stress_of_contact(
     pair: GearPair,
     contact: Contact3D,

@@ -12,17 +12,17 @@ from gearfe.motion.simulate import simulate
 MASS, STIFF, FORCE, SPEED = 1.0, 1e8, 2000.0, 0.3
 
 
-def bouncing(t):
+def bouncing(t, speed=SPEED):
     """Compression of a mass under a constant force that bounces on a spring without damping; it leaves at time 0."""
     omega, deep = math.sqrt(STIFF / MASS), FORCE / STIFF
-    flight = 2 * SPEED * MASS / FORCE
-    phase = math.atan2(deep, SPEED / omega)  # of x = deep - amplitude cos(omega (t - middle)) at first touch
-    touch = 2 * (math.pi - math.atan2(SPEED / omega, deep)) / omega
+    flight = 2 * speed * MASS / FORCE
+    phase = math.atan2(deep, speed / omega)  # of x = deep - amplitude cos(omega (t - middle)) at first touch
+    touch = 2 * (math.pi - math.atan2(speed / omega, deep)) / omega
     assert phase > 0
     t = np.mod(t, flight + touch)
     own = t - flight
-    pressed = deep + SPEED / omega * np.sin(omega * own) - deep * np.cos(omega * own)
-    return np.where(t < flight, -SPEED * t + FORCE / MASS * t**2 / 2, pressed)
+    pressed = deep + speed / omega * np.sin(omega * own) - deep * np.cos(omega * own)
+    return np.where(t < flight, -speed * t + FORCE / MASS * t**2 / 2, pressed)
 
 
 @pytest.mark.parametrize("method", ["RK45", "DOP853"])
@@ -39,6 +39,16 @@ def test_bounces_follow_the_closed_form(method):
         errors.append(np.abs(got["compression mesh"] - want).max() / np.ptp(want))
     assert errors[0] < 5e-4
     assert errors[1] < errors[0] / 30
+
+
+@pytest.mark.parametrize("method", ["RK45", "DOP853"])
+def test_flights_far_shorter_than_a_step(method):
+    """2 us, where the method would go on for 100 us: it both leaves and returns within one of its steps."""
+    machine = gf.single_mesh(MASS, STIFF, 1.0, force=FORCE, backlash=1e-3)
+    got = simulate(machine, 0.006, dt=2e-5, method=method, rtol=1e-7, initial=(np.zeros(1), np.array([-0.002])))
+    want = bouncing(got.time, 0.002)
+    assert got.stats["losses"] == 9
+    np.testing.assert_allclose(got["compression mesh"], want, atol=1e-4 * np.ptp(want))
 
 
 def test_outputs_farther_apart_than_bounces():

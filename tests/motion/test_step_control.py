@@ -11,6 +11,7 @@ from scipy.linalg import expm
 import gearfe as gf
 from gearfe.machine.gear_mesh import ToothDamage
 from gearfe.machine.pitted_planetary import pitted_planetary
+from gearfe.machine.tables import Spring
 from gearfe.motion import simulate as dynamics
 from gearfe.motion.propagator import _phi
 from gearfe.motion.simulate import simulate
@@ -157,3 +158,17 @@ def test_steep_ramps_are_followed_by_shorter_steps():
         assert max(difference(got, runs[0])) < 1e-9
     fixed = simulate(machine, 0.02, rate=2e4, step=runs[0].stats["dt"], error=False)
     assert max(difference(fixed, want)) > max(difference(runs[0], want))
+
+
+def test_a_stretch_lies_within_a_run_that_begins_later():
+    """The damaged tooth is in mesh at 0 s and again at 0.046 s."""
+    machine = two_masses(teeth=(23, 40), damage=(ToothDamage(0, 0, tooth(WAVE, 0.3, 1.5)),))
+    assert_allclose(stretch(machine, 0.1, 0.03), (0.045, 0.007))
+    assert_allclose(stretch(machine, 0.01, 0.03), (0.03, 0.007))
+
+
+@pytest.mark.parametrize("numba", RUNS)
+def test_a_machine_without_meshes_and_loads_vibrates_freely(numba):
+    machine = gf.Machine(("disc.x",), np.array([2.0]), (Spring("bearing", np.array([1.0]), 8e4),), (), ())
+    got = simulate(machine, 0.1, rate=1e4, initial=(np.array([1e-3]), np.zeros(1)), numba=numba)
+    assert_allclose(got["disc.x"], 1e-3 * np.cos(200 * got.time), atol=1e-12)

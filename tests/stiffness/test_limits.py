@@ -15,7 +15,6 @@ from gearfe.cli import main
 from gearfe.elements import solver
 from gearfe.files import read
 from gearfe.stiffness import limits
-from gearfe.stiffness.solid import thin_doubt, warn_of_thin
 
 
 def test_a_torque_on_the_pinion_is_a_force_on_its_base_circle(pair, steel):
@@ -145,17 +144,3 @@ def test_the_command_line_refuses_the_heaviest_load_in_three_dimensions(capsys):
     said = capsys.readouterr().err
     assert said.startswith("gearfe: force = 5e+06 N on 20 mm")
     assert len(said.splitlines()) == 1
-
-
-def test_spur_gears_thinner_than_their_patches_are_warned_of(steel):
-    """And the estimate has a bound: measured against plane stress 2.5 % at half a module and 4.2 % at a fifth."""
-    rack = {"m_n": 2.0, "alpha_n": math.radians(20)}
-    for b, measured in ((1.0, 0.025), (0.4, 0.042)):
-        pair = gf.GearPair(gf.Gear(z=18, r_bore=9.0, b=b, **rack), gf.Gear(z=27, r_bore=12.0, b=b, **rack))
-        with pytest.warns(UserWarning, match="thinner than 1.6 mm"):
-            warn_of_thin(pair)
-        k = gf.mesh_stiffness(pair, 100.0 * b, steel, state="plane stress", phases=[0.1, 0.5]).k
-        assert (thin_doubt(pair, (steel, steel), k) > measured).all()
-    wide = gf.GearPair(gf.Gear(z=18, r_bore=9.0, b=2.0, **rack), gf.Gear(z=27, r_bore=12.0, b=2.0, **rack))
-    warn_of_thin(wide)
-    assert thin_doubt(wide, (steel, steel), np.ones(1)) == 0

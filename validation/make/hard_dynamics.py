@@ -3,6 +3,7 @@
 import math
 import time
 from dataclasses import replace
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -21,6 +22,7 @@ from gearfe.motion.steady import steady_state
 from gearfe.motion.step_control import chosen_step, difference
 
 from ..shared import machine
+from ..shared.kept_rows import kept
 from ..shared.places import PAGES
 
 PAGE = PAGES / "hard_dynamics.md"
@@ -167,12 +169,14 @@ def long_run():
     return f"{text} | {100 * got.stats['error']:.2g} % | {100 * away:.2g} % (shooting) | {seconds}"
 
 
-def run():
-    """Run all cases, write `hard_dynamics.md`, print it."""
+def run(parts=()):
+    """Write `hard_dynamics.md`, print it; `parts`: beginnings of the cases that are run anew (``all``: every one)."""
+    again = ("",) if "all" in parts else tuple(parts)
     lines = [
         "# Hard cases of the dynamics",
         "",
-        f"Made by `python -m validation hard_dynamics` on {machine.describe()}.",
+        f"Made by `python -m validation hard_dynamics` on {machine.describe()}, from",
+        "`tables/hard_dynamics.jsonl`: a row is computed once; `python -m validation hard_dynamics CASE ...` runs those anew.",
         "Sun and planet of `planetary_pitting` as a pair (6 degrees of freedom, curve by `ritz`, 100 N m, 1000 rpm), or the",
         "stage (18 degrees of freedom), at the step that `simulate` chooses.",
         'Estimate: `stats["error"]`, on a stretch of 3.5 mesh cycles, or of the whole run where contact is lost. Reference: the',
@@ -185,9 +189,11 @@ def run():
         "|---|---|---|---|---|",
     ]
     for name, build, duration, options in cases():
-        lines.append(f"| {name} | {outcome(build, duration, options)} |")
-        print(lines[-1], flush=True)
-    lines.append(f"| 100 000 steps, pair | {long_run()} |")
-    print(lines[-1])
+        case = partial(outcome, build, duration, options)
+        lines.append(f"| {name} | {kept('hard_dynamics', name, lambda case=case: {'cells': case()}, again)['cells']} |")
+    lines.append(
+        f"| 100 000 steps, pair | {kept('hard_dynamics', '100 000 steps', lambda: {'cells': long_run()}, again)['cells']} |"
+    )
+    print("\n".join(lines))
     with written(PAGE) as name:
         Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -59,6 +59,21 @@ class BentTriangles:
     along: np.ndarray
     along_mixed: np.ndarray
 
+    @property
+    def terms(self):
+        """How many products there are."""
+        return len(self.even) + 2 * len(self.mixed)
+
+    def matrices(self, triangle):
+        """Of the section, of one triangle: ``(terms, 3 n, 3 n)``."""
+        k = self.index[triangle]
+        return np.concatenate([self.even[:, k], self.mixed[:, k], self.mixed[:, k].transpose(0, 2, 1)])
+
+    def factors(self, one, other):
+        """Their factors between two sets of functions along the width: ``(terms, f, g)``."""
+        every = (self.along, self.along_mixed, self.along_mixed.transpose(0, 2, 1))
+        return np.concatenate([part[(slice(None), *np.ix_(one, other))] for part in every])
+
 
 def bent_triangles(sector, shift, front, along, section):
     """`BentTriangles` of a sector.
@@ -97,41 +112,3 @@ def bent_triangles(sector, shift, front, along, section):
     return BentTriangles(
         index, np.concatenate(parts[[0, 1, 2, 5]]), np.concatenate(parts[[3, 4]]), np.concatenate(even), np.concatenate(mixed)
     )
-
-
-def products(section, axial, bent, own, at):
-    """Terms of the matrix of a few triangles: it is the sum of those of the section times their factors along the width.
-
-    Parameters
-    ----------
-    section : ndarray, shape (3, m, 3 n, 3 n)
-        ``K00, K01, K11`` of all triangles.
-    axial : Axial
-    bent : BentTriangles or None
-    own : ndarray, shape (k,)
-        Triangles.
-    at : ndarray, shape (k, 3 n)
-        Places of their unknowns.
-
-    Returns
-    -------
-    ndarray, shape (t, unknowns, unknowns)
-    list of ndarray, shape (n, n)
-    """
-    still = np.arange(own.size) if bent is None else np.flatnonzero(bent.index[own] < 0)
-    plane = _added(section[:, own[still]], at[still], at.max() + 1)
-    terms, factors = [plane, plane[1:2].transpose(0, 2, 1)], [axial.mass, axial.mixed, axial.slope, axial.mixed.T]
-    if still.size < own.size:
-        moved = np.flatnonzero(bent.index[own] >= 0)
-        even, mixed = (_added(part[:, bent.index[own[moved]]], at[moved], at.max() + 1) for part in (bent.even, bent.mixed))
-        terms += [even, mixed, mixed.transpose(0, 2, 1)]
-        factors += [*bent.along, *bent.along_mixed, *bent.along_mixed.transpose(0, 2, 1)]
-    return np.concatenate(terms), factors
-
-
-def _added(parts, at, size):
-    """Matrices ``(t, k, n, n)`` of k triangles added up at their places ``(k, n)``: ``(t, size, size)``."""
-    out = np.zeros((parts.shape[0], size, size))
-    for own, place in zip(parts.transpose(1, 0, 2, 3), at, strict=True):
-        out[(slice(None), *np.ix_(place, place))] += own
-    return out

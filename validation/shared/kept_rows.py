@@ -1,0 +1,31 @@
+"""Rows of a page that are computed once: one JSON object a line in `pages/tables`, so that a stop loses one row at most."""
+
+import json
+from pathlib import Path
+
+from gearfe.files import written
+
+from .places import TABLES
+
+
+def stored(name):
+    """All rows on file, dicts by their keys."""
+    file = TABLES / f"{name}.jsonl"
+    lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
+    return {row["row"]: row for row in map(json.loads, lines)}
+
+
+def kept(name, key, make, again=()):
+    """Row `key` of table `name`: the one on file, or ``make()``, a dict, which is then put on file.
+
+    `again`: beginnings of the keys of rows that are made anew.
+    """
+    known = stored(name)
+    if key in known and not any(key.startswith(part) for part in again):
+        return known[key]
+    known[key] = {"row": key} | make()
+    TABLES.mkdir(exist_ok=True)
+    with written(TABLES / f"{name}.jsonl") as target:
+        Path(target).write_text("".join(f"{json.dumps(row)}\n" for row in known.values()), encoding="utf-8")
+    print(f"{name}: {key}", flush=True)
+    return known[key]
