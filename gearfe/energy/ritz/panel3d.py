@@ -22,7 +22,8 @@ from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .axial import axial
 from .depth import degrees
-from .elimination import all_nodes, body_of, dissect, front, places
+from .dissection import dissect
+from .elimination import all_nodes, body_of, front, places
 from .panel import Panel, numbering
 from .short_edges import ORDER, bind, quadratic_edges
 
@@ -49,7 +50,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tr
     parts : tuple
         Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
     tree : tuple, optional
-        Of `elimination.dissect`.
+        Of `dissection.dissect`.
 
     Returns
     -------
