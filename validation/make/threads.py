@@ -15,7 +15,7 @@ from gearfe.threads import CHOSEN
 from ..shared import machine
 from ..shared.places import PAGES, ROOT
 
-METHODS = {"ritz": 10, "fe": 3, "ritz3d": 1}  # and how often
+METHODS = {"ritz": 5, "fe": 2, "ritz3d": 1}  # and how often
 
 
 def pair():
