@@ -1,6 +1,5 @@
 """Elimination of a sector's unknowns, triangles by nested halves, with a set of functions along the width at every node."""
 
-import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -11,40 +10,6 @@ from scipy.linalg.lapack import dpotrf
 from geometry.mesh.triangle import table
 
 from .bent import BentTriangles
-
-LEAF = 2  # triangles eliminated together first
-CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
-
-
-def dissect(sector):
-    """Nested halves of the triangles: ``(triangles, first half, second half)``, the halves empty where few are left."""
-    centre = sector.points[:, sector.triangles].mean(axis=1)
-
-    def parted(own):
-        if own.size <= LEAF:
-            return own, (), ()
-        one, two = _halves(sector.triangles, centre, own)
-        return own, parted(one), parted(two)
-
-    return parted(np.arange(sector.triangles.shape[1]))
-
-
-def _halves(triangles, centre, own):
-    """Two parts of a set of triangles, on both sides of the straight cut through the fewest vertices."""
-    turn = np.arange(CUTS) * math.pi / CUTS
-    order = np.argsort(np.array([np.cos(turn), np.sin(turn)]).T @ centre[:, own], axis=1, kind="stable")
-    rank = np.empty_like(order)
-    np.put_along_axis(rank, order, np.arange(own.size)[None, :], axis=1)
-    corners = triangles[:, own].ravel()
-    by_vertex = np.argsort(corners, kind="stable")
-    starts = np.flatnonzero(np.diff(corners[by_vertex], prepend=-1))
-    rank = np.tile(rank, 3)[:, by_vertex]  # (directions, corners), those of a vertex side by side
-    first, last = np.minimum.reduceat(rank, starts, axis=1), np.maximum.reduceat(rank, starts, axis=1)
-    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])[:, None]
-    shared = ((first[:, None] < cuts) & (last[:, None] >= cuts)).sum(axis=2)
-    k, cut = np.unravel_index(shared.argmin(), shared.shape)
-    own = own[order[k]]
-    return own[: cuts[cut, 0]], own[cuts[cut, 0] :]
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,12 +134,19 @@ def front(body, tree):
     Triangles are divided until few are left; what only the set touches is eliminated. The loads are carried along as
     unknowns that stay: at the end their block is minus the displacements under each other. Unknowns of a set are in the order in
     which they go, so that lower triangles add up to lower triangles; those to be eliminated, the coupling and the rest are arrays
-    of their own, in which everything happens in place.
+    of their own, in which everything happens in place. The arrays of one set after the other lie in the same memory.
     """
     turn = np.full(body.size.size, body.size.size)
     plan = _planned(body, tree, turn, [0])
-    ids, lower = _eliminated(body, plan, turn)
+    ids, lower = _eliminated(body, plan, turn, np.empty(_room(body, plan)))
     return ids, np.tril(lower) + np.tril(lower, -1).T
+
+
+def _room(body, plan):
+    """Numbers that `_eliminated` needs room for."""
+    _, gone, rest, parts = plan
+    first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
+    return first**2 + first * left + left**2 + max((_room(body, part) for part in parts), default=0)
 
 
 def _planned(body, tree, turn, count):
@@ -196,20 +168,19 @@ def _planned(body, tree, turn, count):
     return own, ids[gone], ids[~gone], parts
 
 
-def _eliminated(body, plan, turn):
-    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them."""
+def _eliminated(body, plan, turn, room):
+    """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them in `room`."""
     own, gone, rest, parts = plan
     gone, rest = (some[np.lexsort((some, body.kind[some], some >= body.first_load, turn[some]))] for some in (gone, rest))
-    first = int(body.size[gone].sum())
+    first, left = int(body.size[gone].sum()), int(body.size[rest].sum())
+    blocks, room = _blocks(room, first, left)
     if parts:
-        left = int(body.size[rest].sum())
-        blocks = [np.zeros(shape, order="F") for shape in ((first, first), (left, first), (left, left))]
         ids = np.append(gone, rest)
         for part in parts:
-            others, matrix = _eliminated(body, part, turn)
+            others, matrix = _eliminated(body, part, turn, room)
             _add(blocks, matrix, places(body, ids, others), first)
     else:
-        blocks = leaf(body, own, gone, rest)
+        leaf(body, own, gone, rest, blocks)
     inside, across, matrix = blocks
     if first:
         lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
@@ -219,6 +190,16 @@ def _eliminated(body, plan, turn):
             across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
             matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
     return rest, matrix
+
+
+def _blocks(room, first, left):
+    """Zeros ``(first, first), (left, first), (left, left)`` in `room`, and what is left of it."""
+    out = []
+    for rows, columns in ((first, first), (left, first), (left, left)):
+        out.append(room[: rows * columns].reshape((rows, columns), order="F"))
+        out[-1][:] = 0.0
+        room = room[rows * columns :]
+    return out, room
 
 
 def _add(blocks, part, at, first):
@@ -242,8 +223,8 @@ def places(body, ids, wanted):
     return np.repeat(start[wanted] - np.cumsum(size) + size, size) + np.arange(size.sum())
 
 
-def leaf(body, own, gone, rest):
-    """Matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
+def leaf(body, own, gone, rest, blocks):
+    """Write the matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
 
     The section's is assembled first, then multiplied by those of the functions along the width.
     """
@@ -270,7 +251,7 @@ def leaf(body, own, gone, rest):
     else:
         turn = np.kron(turn, np.eye(3))
         plane = turn.T @ plane @ turn
-    return _times(body, plane, here, gone.size, ids)
+    _times(body, plane, here, ids, gone.size, [block.T for block in blocks])
 
 
 def _seamed(body, raw, nodes):
@@ -286,19 +267,16 @@ def _seamed(body, raw, nodes):
     return out
 
 
-def _times(body, plane, here, gone, ids):
+def _times(body, plane, here, ids, gone, blocks):
     """The section's matrices ``(4 or more, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
 
-    Numbers in a row with the same functions are taken together. What is written is the upper triangle in rows, which is the
-    lower one in columns.
+    Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """
     nodes, kind, size = here.shape[0] // 3, body.kind[ids], body.size[ids]
     place, first = np.cumsum(size) - size, int(size[:gone].sum())
     place[gone:] -= first
     cuts = np.unique(np.concatenate([[0, gone, nodes, ids.size], 1 + np.flatnonzero(np.diff(kind))]))
     runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
-    left = int(size[gone:].sum())
-    blocks = [np.zeros(shape) for shape in ((first, first), (first, left), (left, left))]
     for k, (own, one, rows) in enumerate(runs):
         if own.start >= nodes:
             break  # loads have nothing to do with each other
@@ -311,7 +289,6 @@ def _times(body, plane, here, gone, ids):
             block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
             target = blocks[(own.start >= gone) + (others.start >= gone)]
             target[rows, columns].reshape(block.shape)[:] = block
-    return [block.T for block in blocks]
 
 
 def _three(nodes):

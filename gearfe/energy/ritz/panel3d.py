@@ -24,7 +24,8 @@ from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 from .axial import axial
 from .bent import bent_triangles
 from .depth import degrees
-from .elimination import all_nodes, body_of, dissect, front, places
+from .dissection import dissect
+from .elimination import all_nodes, body_of, front, places
 from .panel import Panel, numbering
 from .short_edges import ORDER, bind, quadratic_edges
 
@@ -53,7 +54,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     bends : tuple of None or (ndarray, Front)
         How the section follows their fronts (`bent.bent`), at most one of them; default: all are parallel to the teeth.
     tree : tuple, optional
-        Of `elimination.dissect`.
+        Of `dissection.dissect`.
 
     Returns
     -------

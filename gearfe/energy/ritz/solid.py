@@ -18,7 +18,7 @@ from geometry.mesh.sector import sector
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
 from ...flexibility.solved import solved_gears
 from .bent import bent
-from .elimination import dissect
+from .dissection import dissect
 from .join import join
 from .panel3d import panel3d
 from .plane_strain import missing
