@@ -137,8 +137,8 @@ def _kinks():
     lines = [
         "",
         "Only even loads along the width (plane strain), 100 mm wide, 64 phases: three dimensions against the section. Where a",
-        "kink of a linear relief lies in the contact, the section resolves it hat by hat; three dimensions take its local law from",
-        "there (`gearfe.contact.kink_law`; without it linear reliefs are off by 0.7 to 6.0 % at those phases).",
+        "kink of a linear relief lies in the contact, the section resolves it hat by hat; three dimensions take its local law",
+        "from there (`gearfe.contact.kink_law`; without it linear reliefs are off by 0.7 to 6.0 % at those phases).",
         "",
         "| relief on both gears | load | largest difference of the error, of the deflection | median |",
         "|---|---|---|---|",
