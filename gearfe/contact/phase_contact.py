@@ -18,6 +18,7 @@ from .cells import Cells, cells_of
 from .corner import CornerLaw
 from .hubs import given_way, hubs_of
 from .joined_lines import System
+from .kink_law import KinkLaw
 from .pieces import beyond, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
@@ -95,6 +96,11 @@ class PhaseContact:
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
         self.reach = self._guess(self.force)
         self.laws = [None if not extended else self._law(materials, force, cache) for force in self.forces]
+
+        kinked = flanks is not None and any(form.kinks for form in flanks)
+        self.kinks = [
+            KinkLaw(pair, materials, force / self.width, flanks, cache=cache) if kinked else None for force in self.forces
+        ]
 
     def _guess(self, force):
         """First guess of the approach [mm]: the half-plane's logarithm over the size of a tooth, and as much for the tooth."""
@@ -250,16 +256,7 @@ class PhaseContact:
 
     def _shared(self, batch, number, which=None, start=None):
         """`Carried` of the phases of a batch under one of the forces, and what `SharedLines.solve` gave."""
-        cos, law, local = math.cos(self.beta_b), self.laws[number], None
-        if law is not None:
-            at = law.ends(self.pair, batch.all)
-            for end, form in enumerate((self.flanks or ())[::-1]):
-                at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
-            if (at >= 0).any():
-
-                def local(line_load):
-                    return law(at, batch.all.nominal, line_load)
-
+        cos, local = math.cos(self.beta_b), self._local(batch.all, number)
         load = self.forces[number] / cos / np.where(batch.alike, 2, 1)
         shared = batch.lines.solve(load, local, which, start)
         carried = [
@@ -267,6 +264,20 @@ class PhaseContact:
             for k, one in enumerate(shared)
         ]
         return carried, shared
+
+    def _local(self, cells, number):
+        """Local law of the cells under one of the forces, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
+        law, kinks = self.laws[number], self.kinks[number]
+        at = np.full(cells.z.size, -1) if law is None else law.ends(self.pair, cells)
+        for end, form in enumerate((self.flanks or ())[::-1]):
+            at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
+        corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
+
+        def local(line_load):
+            out = law(at, cells.nominal, line_load) if corner else np.zeros(at.size)
+            return out + kinks(at < 0, cells.nominal, line_load) if bent else out
+
+        return local if corner or bent else None
 
     def _told(self, cells, solved, shared, alike, yields):
         """`Carried` of one phase."""
