@@ -14,10 +14,7 @@ from scipy.linalg import block_diag
 
 from geometry.damage.crack import check_single, crack_in_band
 
-from ..flexibility.end_faces import mirrored_cells
 from ..steps import steps
-
-STRIP = 0.01  # modules: of `halfspace.strip` where a load meets its image, whatever the load; half of it changes k by 1e-4
 
 
 def seen_gears(pair, face, groove):
@@ -37,7 +34,7 @@ def seen_cracks(gear, cracks, seen, band):
     return tuple(crack for crack in found if crack is not None)
 
 
-def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
+def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None)):
     """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
     Parameters
@@ -52,14 +49,16 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
         As in `gearfe.contact.solid.pair_stiffness3d`.
     flexible : callable
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
+    shafts : (Shaft or None, Shaft or None)
+        Of gears that are one piece with them: ``flexible`` gets them as ``shaft``, seen from the end that touches first.
 
     Raises
     ------
     ValueError
         If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
-    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, strict=True))
-    for gear, (body, _), _, own in gears:
+    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, shafts, strict=True))
+    for gear, (body, _), _, own, _ in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
@@ -67,11 +66,15 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
             check_single(body, seen_cracks(gear, own, body, band))
     return [
         [
-            (flexible(body, material, seen_cracks(gear, own, body, band)), offset)
-            for gear, (body, offset), material, own in steps(gears)
+            (flexible(body, material, seen_cracks(gear, own, body, band), **_as_seen(shaft, band)), offset)
+            for gear, (body, offset), material, own, shaft in steps(gears)
         ]
         for band in steps(bands)
     ]
+
+
+def _as_seen(shaft, band):
+    return {} if shaft is None else {"shaft": shaft if band[0] < band[1] else shaft.turned()}
 
 
 def between(cells, bodies):
@@ -138,19 +141,28 @@ def _add(out, body, rows, lines):
                 out[one.phase][two.own, one.own] += part.T
 
 
-def mirrored(cells, bodies):
-    """What the images of the cells' loads in the free end faces of both bodies add to `between`, line by line ``(n, n)`` [mm/N]."""
-    out = np.zeros((cells.z.size,) * 2)
-    for half, order in sorted(set(zip(cells.half.tolist(), cells.order.tolist(), strict=True))):
-        at = np.flatnonzero((cells.half == half) & (cells.order == order))
-        for body, offset in bodies[half]:
-            low, high = ((cells.depth[at] + offset + side * cells.width[at] / 2) / math.cos(body.gear.beta_b) for side in (-1, 1))
-            out[np.ix_(at, at)] += body.edge * mirrored_cells(low, high, body.width / math.cos(body.gear.beta_b), STRIP * body.gear.m_n)
-    return out
+def mirrors_of(cells, bodies):
+    """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
+
+    Returns
+    -------
+    list of (float, ndarray (n,), ndarray (n,))
+        Nearer ends first.
+    """
+    faces = {}
+    for side, other in ((False, False), (False, True), (True, False), (True, True)):
+        low, high, weight = np.zeros(cells.z.size), np.zeros(cells.z.size), 0.0
+        for half in np.unique(cells.half).tolist():
+            at, (body, offset) = cells.half == half, bodies[half][side]
+            ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
+            low[at], high[at] = (np.array(ends) if not other else body.width - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (other, offset, body.width)  # faces of equally wide gears are flush
+        faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
+    return list(faces.values())
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+    """Faces of the cracks of all bodies, as `joined_lines.System` takes them; None without cracks.
 
     Returns
     -------

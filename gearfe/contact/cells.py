@@ -11,6 +11,7 @@ from geometry.pair.contacts import touching
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import first_touch
 
+BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
 BEYOND = 8  # cells at least on the part of a line that is beyond the path of contact
@@ -50,14 +51,17 @@ class Cells:
         return Cells(**{name: value[which] for name, value in found.items() if value is not None})
 
     def at_ends(self, pair: GearPair) -> list[tuple[float, float]]:
-        """Where a contact line carries the most at an end face of the common width: (z, roll length of the pinion) [mm]."""
+        """Edge contact, where a line carries the most beside an end face: (z, roll length of the pinion) [mm].
+
+        A free end gives way, so the load per width falls towards it in the last tenths of a module even there.
+        """
         out, width = [], min(pair.gear_1.b, pair.gear_2.b)
         for order, half in sorted(set(zip(self.order.tolist(), self.half.tolist(), strict=True))):
             at = np.flatnonzero((self.order == order) & (self.half == half) & (self.load > 0))
             if not at.size:
                 continue
             most = at[np.argmax(self.load[at] / self.width[at])]
-            z, reach = float(self.z[most]), float(self.width[most]) / 2
+            z, reach = float(self.z[most]), float(self.width[most]) / 2 + BESIDE * pair.gear_1.m_n
             out += [(end, float(self.roll_1[most])) for end in (0.0, width) if abs(z - end) < reach * (1 + 1e-6)]
         return out
 

@@ -12,10 +12,12 @@ from geometry.pair.modified import first_touch
 
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..steps import steps
-from .bodies import between, faces_of, mirrored
-from .cell_sharing import SharedLines, System
+from .bodies import between, faces_of, mirrors_of
+from .cell_sharing import SharedLines
 from .cells import Cells, cells_of
 from .corner import CornerLaw
+from .hubs import given_way, hubs_of
+from .joined_lines import System
 from .pieces import beyond, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
@@ -29,20 +31,23 @@ TOGETHER = 16  # phases that are solved at once
 class Carried(NamedTuple):
     """One phase under one force: `Cells` with loads, and in the transverse section approach [mm] and tangent stiffness [N/mm].
 
-    `closed` says whether faces of a crack touched.
+    `closed` says whether faces of a crack touched. What the supports of the hubs give way is in the approach: `given` the mean
+    over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm].
     """
 
     cells: Cells
     approach: float
     tangent: float
     closed: bool
+    given: float
+    least: float
 
 
 class Batch(NamedTuple):
     """Cells of some phases made ready for any force.
 
     `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
-    half; `lines` their contact problems; `all` their cells joined.
+    half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None.
     """
 
     cells: list
@@ -50,6 +55,7 @@ class Batch(NamedTuple):
     alike: np.ndarray
     lines: SharedLines
     all: Cells
+    yields: list
 
 
 class PhaseContact:
@@ -71,11 +77,13 @@ class PhaseContact:
         Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
         As in `gearfe.contact.corner.CornerLaw`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
     """
 
-    def __init__(self, pair, forces, materials, *, pits, face, groove, step, extended, flanks=None, cache=True):
+    def __init__(self, pair, forces, materials, *, pits, face, groove, step, extended, flanks=None, cache=True, supports=None):
         self.pair, self.pits, self.step, self.extended = pair, pits, step, extended
-        self.forces, self.force = list(forces), max(forces)
+        self.forces, self.force, self.hubs = list(forces), max(forces), hubs_of(supports)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -128,7 +136,7 @@ class PhaseContact:
             own = self._part(part, bodies, reach)
             for whole, more in zip(found, own, strict=True):
                 whole.extend(more)
-            most = max(one.approach for carried in own for one in carried)
+            most = max(one.approach - one.least for carried in own for one in carried)
             reach = self.least + REACH * (most - self.least)
         return found
 
@@ -146,12 +154,13 @@ class PhaseContact:
                 carried, shared = self._shared(batch, largest)
                 done = []
                 for k, (i, one) in enumerate(zip((i for i, _ in some), carried, strict=True)):
-                    normal = one.approach * math.cos(self.beta_b)
+                    closes = one.approach - one.least  # what of it teeth can close gaps by
+                    normal = closes * math.cos(self.beta_b)
                     if any(closings[i] < depth < normal for depth in self.floors):
                         closings[i] = normal  # shallow pits: solved again with their floors, which can only make it stiffer
                         again.append(i)
-                    elif self.extended and one.approach > reaches[i] and reaches[i] - self.least <= self.furthest:
-                        reaches[i] = self.least + REACH * (one.approach - self.least)
+                    elif self.extended and closes > reaches[i] and reaches[i] - self.least <= self.furthest:
+                        reaches[i] = self.least + REACH * (closes - self.least)
                         again.append(i)
                     else:
                         found[largest][i] = one
@@ -220,26 +229,32 @@ class PhaseContact:
     def _batch(self, cells, bodies):
         """`Batch` of phases; two halves that are alike are solved once."""
         cos, found = math.cos(self.beta_b), bodies(max(int(np.ptp(own.order)) for own in cells))
-        double = len(found) > 1 and _same(*found)
+        double = len(found) > 1 and self.hubs is None and _same(*found)
         alike = np.array([double and _alike(own, own.half == 0) for own in cells])
         solved = [own.some(own.half == 0) if half else own for own, half in zip(cells, alike.tolist(), strict=True)]
-        systems = []
+        systems, yields = [], []
         for own, matrix in zip(solved, between(solved, found), strict=True):
             ends = tuple((own.depth + side * own.width / 2) / cos for side in (-1, 1))
             line = np.cumsum(np.append(0, (np.diff(own.half) != 0) | (np.diff(own.order) != 0)))
-            faces = faces_of(own, found)
-            matrix = matrix + mirrored(own, found)
-            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), own.half, faces, own.floor))
+            faces, mirrors, block = faces_of(own, found), mirrors_of(own, found), own.half
+            yields.append(None)
+            if self.hubs is not None:  # both halves of a herringbone gear are on one hub
+                yields[-1] = given_way(own, self.pair, self.hubs, self.bands, self.beta_b)
+                matrix, block = matrix + yields[-1], np.zeros(own.z.size, dtype=int)
+                faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
+            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), block, faces, own.floor, mirrors))
         lines = SharedLines(systems, sum(body.kernel for body, _ in found[0]), self.modulus)
         names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
         whole = Cells(*(np.concatenate([getattr(own, name) for own in solved]) for name in names))
-        return Batch(cells, solved, alike, lines, whole)
+        return Batch(cells, solved, alike, lines, whole, yields)
 
     def _shared(self, batch, number, which=None, start=None):
         """`Carried` of the phases of a batch under one of the forces, and what `SharedLines.solve` gave."""
         cos, law, local = math.cos(self.beta_b), self.laws[number], None
         if law is not None:
             at = law.ends(self.pair, batch.all)
+            for end, form in enumerate((self.flanks or ())[::-1]):
+                at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
             if (at >= 0).any():
 
                 def local(line_load):
@@ -248,21 +263,23 @@ class PhaseContact:
         load = self.forces[number] / cos / np.where(batch.alike, 2, 1)
         shared = batch.lines.solve(load, local, which, start)
         carried = [
-            None if one is None else self._told(batch.cells[k], batch.solved[k], one, bool(batch.alike[k]), cos)
+            None if one is None else self._told(batch.cells[k], batch.solved[k], one, bool(batch.alike[k]), batch.yields[k])
             for k, one in enumerate(shared)
         ]
         return carried, shared
 
-    def _told(self, cells, solved, shared, alike, cos):
+    def _told(self, cells, solved, shared, alike, yields):
         """`Carried` of one phase."""
-        n = solved.z.size
+        n, cos = solved.z.size, math.cos(self.beta_b)
         load, closed = shared.force[:n], bool(shared.force[n:].any())
         radius = self._radius(solved)
         pressure = peak_pressure(load * cos / solved.width, radius, self.modulus)
         pressure[(solved.corner > 0) & (load > 0)] = np.nan
         times = 2 if alike else 1
         told = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
-        return Carried(told, shared.approach / cos, times * shared.tangent * cos**2, closed)
+        way = np.zeros(n) if yields is None else yields @ load / cos
+        given = float(load @ way / load.sum()), float(way.min())
+        return Carried(told, shared.approach / cos, times * shared.tangent * cos**2, closed, *given)
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""

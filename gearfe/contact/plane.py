@@ -60,7 +60,10 @@ class PairContact:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        self.radius = found.radius
+        self.radius = self.flat_radius = found.radius
+        if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
+            beside = pair.relative_radius(found.roll_1, found.roll_2)
+            self.flat_radius = np.where(beside > 0, np.maximum(beside, found.radius), found.radius)
         self.opening = self._opening(found.roll_1, found.roll_2, found.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
@@ -80,7 +83,7 @@ class PairContact:
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
-        self._find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
+        self.find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
         closed = []
         kinks = kink_rows(self, np.argwhere(kink), line_load)
         for i in np.flatnonzero(~done).tolist():
@@ -145,11 +148,13 @@ class PairContact:
         if not self.extended:
             return corner
         reach = CORNER * half_width(line_load, self.radius, self.modulus)
+        sharp = [self.flanks is None or form.edge is None for form in self.flanks or (None, None)]
         for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
-            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
+            if sharp[number - 1]:
+                corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def _find_gaps(self, rows):
+    def find_gaps(self, rows):
         """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
         teeth = {}
         for i, column, corner in rows:
@@ -230,7 +235,7 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
         roll = roll_at_arc(gears[tip], hats.arc)
-        self._find_gaps([(i, int(column), int(corner))])  # unless they are known
+        self.find_gaps([(i, int(column), int(corner))])  # unless they are known
         gap, met = self._gaps[i, int(column), int(corner)]
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)

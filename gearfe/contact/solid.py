@@ -35,7 +35,8 @@ class Contact3D:
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
     `error` (phases,) difference of k from that of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach``
-    of what pushes at this force [N/m].
+    of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports of the hubs give way
+    [mm], the mean over the loads.
     """
 
     phase: NDArray[np.float64]
@@ -49,6 +50,7 @@ class Contact3D:
     error: NDArray[np.float64] | None = None
     unloaded: NDArray[np.float64] | None = None
     k_tangent: NDArray[np.float64] | None = None
+    supports: NDArray[np.float64] | None = None
 
 
 def pair_stiffness3d(
@@ -70,6 +72,7 @@ def pair_stiffness3d(
     error=False,
     model=None,
     cache=True,
+    supports=None,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -112,6 +115,8 @@ def pair_stiffness3d(
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
 
     Returns
     -------
@@ -136,7 +141,9 @@ def pair_stiffness3d(
         check_pits(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
-    options["flanks"] = flanks
+    shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies
+    hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
+    options |= {"flanks": flanks, "supports": hubs}
     groups = _groups(forces)
     contacts = [PhaseContact(pair, [forces[i] for i in group], materials, **options) for group in groups]
 
@@ -154,7 +161,7 @@ def pair_stiffness3d(
         @lru_cache(maxsize=8)
         def bodies(neighbours):
             flexible = partial(model, neighbours=neighbours)
-            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible)
+            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts)
 
         def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
             return bodies(max(orders, least))
@@ -199,6 +206,7 @@ def _solved(contact, phase, bodies):
         closed = tuple(i for i, one in enumerate(own) if one.closed)
         unloaded = found[0].unloaded if found else contact.unloaded(cells)
         k = 1e3 * force / (approach - unloaded)
-        more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent}
+        given = None if contact.hubs is None else np.array([one.given for one in own])
+        more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
         found.append(Contact3D(phase, k, approach, orders, load, cells, dofs, **more))
     return found

@@ -62,29 +62,3 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     first = (distance @ overlap.reshape(q.size, -1)).reshape(n, n, degree + 1, degree + 1)
     sign = (-1.0) ** np.arange(degree + 1)
     return (first * (1 + np.outer(sign, sign))).transpose(0, 2, 1, 3)  # the other face: the same with z turned round
-
-
-def mirrored_cells(start, stop, length, x):
-    """Mean of ``1 / sqrt(q**2 + x**2)`` over pairs of a cell of one contact line and an image, q apart ``(n, n)`` [1/mm].
-
-    The images are those of all cells in both end faces.
-
-    Parameters
-    ----------
-    start, stop : ndarray, shape (n,)
-        Ends of the cells along the line, from where it meets the first end face [mm].
-    length : float
-        Where it meets the second [mm].
-    x : float
-        As of `halfspace.strip`: it matters where a cell is nearer to its image [mm].
-    """
-
-    def twice(one, other):
-        apart = one[:, None] + other
-        return apart * np.arcsinh(apart / x) - np.hypot(apart, x)
-
-    out = 0.0
-    for low, high in ((start, stop), (length - stop, length - start)):
-        across = twice(high, low)
-        out = out + twice(high, high) - across - across.T + twice(low, low)
-    return out / np.outer(stop - start, stop - start)

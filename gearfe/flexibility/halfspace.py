@@ -148,22 +148,22 @@ def line_kernel(start, stop, x):
     return kernel / np.outer(stop - start, stop - start)
 
 
-def pair_kernel(ends, i, j, x):
-    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]."""
-    start, stop = ends
+def pair_kernel(ends, i, j, x, other=None):
+    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]; cells j are those between `other`, if given."""
+    (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
 
     def twice(apart):
         return apart * np.arcsinh(apart / least) - np.hypot(apart, least)
 
-    kernel = twice(stop[i] - start[j]) + twice(stop[j] - start[i]) - twice(start[i] - start[j]) - twice(stop[i] - stop[j])
-    return kernel / ((stop[i] - start[i]) * (stop[j] - start[j]))
+    kernel = twice(stop[i] - low[j]) + twice(high[j] - start[i]) - twice(start[i] - low[j]) - twice(stop[i] - high[j])
+    return kernel / ((stop[i] - start[i]) * (high[j] - low[j]))
 
 
-def pair_slope(ends, i, j, x):
+def pair_slope(ends, i, j, x, other=None):
     """``dK / dx_i / x_i``, the same as ``dK / dx_j / x_j``, of `pair_kernel` K with the other x held ``(n,)`` [1/mm**3]."""
-    start, stop = ends
+    (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
-    away = (stop[i] - start[j], stop[j] - start[i], start[i] - start[j], stop[i] - stop[j])
+    away = (stop[i] - low[j], high[j] - start[i], start[i] - low[j], stop[i] - high[j])
     one, two, three, four = (np.hypot(apart, least) for apart in away)
-    return (three + four - one - two) / (2 * least**2) / ((stop[i] - start[i]) * (stop[j] - start[j]))
+    return (three + four - one - two) / (2 * least**2) / ((stop[i] - start[i]) * (high[j] - low[j]))

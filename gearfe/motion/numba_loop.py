@@ -133,6 +133,12 @@ def _losses(side, x, now, row, laws):
 
 
 @njit(cache=True, error_model="numpy")
+def _turned(first, middle, last):
+    """How far a stiffness turns off its straight line within a step, part of it."""
+    return (first - 2 * middle + last) / middle if middle > 0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
 def _propagate(new, E, level, z):
     """``new[:n] += E[level] z`` of blocks along a diagonal."""
     if E.shape[2] == 2:
@@ -221,6 +227,12 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 stage(doubt, none, 0, W, level, apart, 0)
                 for i in range(m):
                     scale = max(scale, abs(total[i]))
+                    away = max(away, abs(doubt[i]))
+                    apart[i] = _turned(now[row, i], now[row + 1, i], now[row + 2, i]) * total[i]
+                for i in range(m, f):
+                    apart[i] = 0.0
+                stage(doubt, none, 0, W, level, apart, 0)
+                for i in range(m):
                     away = max(away, abs(doubt[i]))
                 away = away / scale if scale > 0 else 0.0
             if level < last and (change or away > allowed or _changed(side, end, now, row + 2, laws)):

@@ -102,8 +102,10 @@ class _Parts:
         end = np.empty(self.step.width)
         forces.fill(self.plan.P @ new, end, i)
         self.scale = max(self.scale, np.abs(forces.total).max())
-        force = self.plan.told[level] @ (end - self.step.forces[3])
-        return np.abs(force).max() / self.scale if self.scale > 0 else 0.0
+        told, (first, middle, last) = self.plan.told[level], forces.k[i - 2 : i + 1]
+        turned = np.where(middle > 0, (first - 2 * middle + last) / np.where(middle > 0, middle, 1.0), 0.0) * forces.total
+        force = np.abs(np.concatenate([told @ (end - self.step.forces[3]), told[:, : turned.size] @ turned]))
+        return force.max() / self.scale if self.scale > 0 else 0.0
 
 
 class _Forces:

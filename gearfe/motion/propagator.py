@@ -36,8 +36,10 @@ class Plan:
         Of each step ``h / 2**level``: E in blocks ``(blocks, size, size)``; Y = (P exp(A h/2); P exp(A h)); S; T = (R - S, 2 S),
         for f1 and f3; F = (F1, F2, F3), for f1, f2 + f3 and f4. Columns are those of the meshes, friction rows, and loads.
     told : list of ndarray, shape (m, width)
-        By level: what a difference of the forces at the end of a step from those of its last stage would do to the mesh forces
-        of the linear part there. It is the difference of the step to one of lower order, its error estimate.
+        By level: what forces at the end of a step do to the mesh forces of the linear part there. Of the difference of the forces
+        at its end from those of its last stage it makes the difference to a step of lower order; of how far the stiffnesses turn
+        off their straight lines within the step, times the forces, that of Simpson's rule to the trapezoidal one. The larger of
+        both is the estimate of the step.
     allowed : float
         How large that may be, part of the largest mesh force so far; inf: it is not asked.
     scale : float

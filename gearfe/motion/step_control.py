@@ -16,7 +16,7 @@ from .propagator import default_step, is_bent
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to half the step: of order four, and where local halving rules
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
 PROBES = 50_000  # times at which that is looked at
 TURNS = ("theta", "tilt_x", "tilt_y")
@@ -181,14 +181,21 @@ class Estimate(NamedTuple):
 
 
 def estimate(machine, duration, h, initial=None, numba=None, *, begin=0.0, adapt=False):
-    """`Estimate` of the step `h` on a `stretch`."""
+    """`Estimate` of the step `h` on a `stretch`.
+
+    Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
+    the run is then compared with a third of the step, and so is that of half the step.
+    """
     start, length = stretch(machine, duration, begin)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"numba": numba, "start": start, "adapt": adapt}
-    one, two = (fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in (1, 2))
-    cost = max(two.stats["seconds"] - one.stats["seconds"], 0.0) / length
-    more = ROUGH if adapt and is_bent(machine) else SMOOTH
-    acceleration = more * acceleration_difference(one, two)
-    return Estimate(more * max(difference(one, two)), two.stats["losses"] > 0, length, cost, acceleration)
+    rough = adapt and is_bent(machine)
+    runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
+    cost = max(runs[1].stats["seconds"] - runs[0].stats["seconds"], 0.0) / length
+    *coarse, fine = runs
+    more = ROUGH if rough else SMOOTH
+    error = more * max(max(difference(one, fine)) for one in coarse)
+    acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
+    return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)

@@ -17,7 +17,21 @@ LESS = 2  # axial degrees less in it
 
 
 def wide_curves(
-    forces, case, meta, *, brute, face, groove, refine, extended, order, error=False, flanks=None, cache=True, tell=None
+    forces,
+    case,
+    meta,
+    *,
+    brute,
+    face,
+    groove,
+    refine,
+    extended,
+    order,
+    error=False,
+    flanks=None,
+    supports=None,
+    cache=True,
+    tell=None,
 ):
     """`StiffnessCurve` of a pair in three dimensions under each force, by the energy model or by finite elements.
 
@@ -43,6 +57,8 @@ def wide_curves(
         their limit at least with the second power of the edges, so the difference is an upper bound.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        Of the hubs of pinion and wheel.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     tell
@@ -57,7 +73,7 @@ def wide_curves(
     cache = solved_gears(cache)
     pair, materials, phase, cracks, pits = case
     options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
-    options["flanks"] = flanks
+    options |= {"flanks": flanks, "supports": supports}
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
@@ -98,13 +114,14 @@ def _curve(found, doubt, meta, modified):
         pressure=1e6 * pressure[:, used],
         error=doubt,
         unloaded=1e-3 * found.unloaded if modified else None,
+        lte_supports=None if found.supports is None else 1e-3 * found.supports,
         meta=meta,
     )
 
 
 def _doubt(case, phase, found, options, brute):
     """Estimated error of k at `phase` [N/m], see `wide_curves`, and the part of the resolution it is estimated with."""
-    turns = any(form.flank.pitch for form in options["flanks"] or ())
+    turns = any(form.differs for form in options["flanks"] or ())
     healthy = not (any(options["cracks"]) or any(options["pits"]) or turns)
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]

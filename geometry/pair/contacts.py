@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..tooth.profile import cartesian, flank
 
 if TYPE_CHECKING:
-    from ..tooth.modified import FlankForm
+    from ..tooth.flank_form import FlankForm
     from .gear_pair import GearPair
 
 STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
@@ -152,7 +152,7 @@ def approach(
     back: NDArray[np.float64] | float = 0.0
     mate = None
     if flanks is not None:
-        own, mate = flanks if driver else flanks[::-1]
+        own, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))
         back, behind = own.removed(roll) + own.shift(order), mate.shift(order)
     for _ in range(STEPS):
         distance, met, arm = distances(sense * (gap / 2 - back))

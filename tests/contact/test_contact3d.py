@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact import bodies as bodies3d
-from gearfe.contact.cell_sharing import SharedLines, System
+from gearfe.contact.cell_sharing import SharedLines
 from gearfe.contact.cells import cells_of
+from gearfe.contact.joined_lines import System
 from gearfe.contact.pieces import pieces_of
 from gearfe.contact.sharing import share
 from gearfe.contact.solid import pair_stiffness3d
@@ -146,8 +147,8 @@ def test_loads_satisfy_the_contact_conditions():
         ends = edge[:-1], edge[1:]
         both = SharedLines([System(matrix, gap, ends, line, radius)], k, modulus)
         force, approach, _ = both.solve(np.array([load]))[0]
-        mean = np.maximum(both._smoother(np.array([load])) @ force, 1e-9 * load / np.diff(edge))
-        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), both.widest)
+        mean = np.maximum(both.joined.smoother(np.array([load])) @ force, 1e-9 * load / np.diff(edge))
+        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), both.joined.widest)
         total = matrix + k * np.where(line[:, None] == line, halfspace.line_kernel(*ends, x), 0.0)
         closed = total @ force + gap
         close = (

@@ -8,8 +8,8 @@ from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.flexibility.end_faces import edge_factor, mirrored_cells, mirrored_patches
-from gearfe.flexibility.halfspace import hat_distance, modes
+from gearfe.flexibility.end_faces import edge_factor, mirrored_patches
+from gearfe.flexibility.halfspace import hat_distance, modes, pair_kernel
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 PHASES = [0.05, 0.2, 0.5, 0.8]
@@ -34,16 +34,15 @@ def test_mirrored_patches_are_their_integral():
     assert_allclose(mirrored_patches(knots, width, 3, stretch), want, rtol=1e-6, atol=1e-7)
 
 
-def test_mirrored_cells_are_their_integral():
-    edge, length, x = np.array([0.0, 0.1, 0.4, 1.0]), 1.3, 0.02
-    got = mirrored_cells(edge[:-1], edge[1:], length, x)
+def test_a_cell_and_an_image_are_their_integral():
+    edge, x = np.array([0.0, 0.1, 0.4, 1.0]), 0.02
+    low, high = edge[:-1], edge[1:]
+    i, j = (part.ravel() for part in np.indices((3, 3)))
+    got = pair_kernel((low, high), i, j, np.full(3, x), (-high, -low))
     at, weight = squared(1.0, 40, 2)
-    for i in range(3):
-        for j in range(3):
-            one, two = edge[i] + at * (edge[i + 1] - edge[i]), edge[j] + at * (edge[j + 1] - edge[j])
-            q = one[:, None] + two
-            mean = (weight[:, None] * weight * (1 / np.hypot(q, x) + 1 / np.hypot(2 * length - q, x))).sum()
-            assert got[i, j] == pytest.approx(mean, rel=1e-4)
+    for one, two, value in zip(i, j, got, strict=True):
+        q = (low[one] + at * (high - low)[one])[:, None] + low[two] + at * (high - low)[two]
+        assert value == pytest.approx((weight[:, None] * weight / np.hypot(q, x)).sum(), rel=1e-4)
 
 
 @pytest.mark.parametrize("b", [1.0, 6.0])

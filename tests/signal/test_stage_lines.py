@@ -27,9 +27,10 @@ def stage(sun, ring, n, damaged=None, heavy=1.0):
 
     def mesh(kind, i):
         teeth = {"sun_planet": (sun, planet), "planet_ring": (planet, ring)}[kind]
-        hurt = damaged if damaged and kind == "sun_planet" and (damaged == "sun" or i == 0) else None
-        curve = ToothDamage(int(damaged == "planet"), 0, tooth(curves["sun_planet"], 0.3, 1.5)) if hurt else None
-        phase = -sun * i / n + 0.5 * (kind == "planet_ring")
+        where = {"sun": "sun_planet", "planet": "sun_planet", "ring": "planet_ring"}.get(damaged or "")
+        hurt = kind == where and (damaged != "planet" or i == 0)
+        curve = ToothDamage(int(damaged != "sun"), 0, tooth(curves[kind], 0.3, 1.5)) if hurt else None
+        phase = -sun * i / n if kind == "sun_planet" else ring * i / n + 0.5
         return {"frequency": MESH, "phase": phase, "teeth": teeth, "zeta": 0.05, "damage": (curve,) if curve else ()}
 
     return gf.planetary(members["sun"], planets, members["ring"], carrier, n_planets=n, alpha=(ANGLE, ANGLE), stiffness=curves,
@@ -63,6 +64,21 @@ def test_a_simulated_stage_has_these_lines_and_no_others(sun, ring, damaged):
     sizes = np.interp(list(wanted.values()), frequency, size)
     assert (sizes > 1e-7 * size[1:].max()).all(), sizes / size[1:].max()
     assert len(wanted) >= (10 if damaged else 2)
+
+
+def test_a_damaged_ring_tooth_has_lines_a_carrier_turn_apart():
+    """Every planet meets it once a turn of the carrier: multiples of N f_c about the mesh lines, and no others."""
+    sun, ring = 21, 81
+    frequency, size = heard(stage(sun, ring, 3, "ring"), ring, ring)
+    low = (frequency > 0) & (frequency < 1.3 * MESH)
+    found = frequency[(size > 1e-6 * size[1:].max()) & low]
+    lines = gf.stage_lines(sun, ring, 3, MESH / ring, damaged="ring", harmonics=1, turns=27)
+    named = np.array(sorted(lines.values()))
+    assert np.abs(found[:, None] - named).min(axis=1).max() < 1e-6 * MESH
+    sizes = np.interp(named[named < 1.3 * MESH], frequency, size)
+    assert (sizes > 1e-6 * size[1:].max()).all(), sizes / size[1:].max()
+    healthy = np.interp(found, *heard(stage(sun, ring, 3), ring, 1))
+    assert np.median(healthy) < 1e-6 * size[1:].max(), "lines of the damage, not of the stage"
 
 
 def test_unequal_planets_bring_the_lines_that_cancelled():
