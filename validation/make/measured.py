@@ -155,7 +155,7 @@ def phm_angle():
 
 
 def phm_stiffness():
-    """Mean stiffness over width [N/(mm um)] of both meshes of the train by what is not printed: module, bore over pitch radius."""
+    """Mean stiffness over width [N/(mm um)] of both meshes of the train by what is not printed: module, bore by pitch radius."""
     out = {}
     pairs = gf.load_scene(SOURCES / "phm_2009.toml").pairs
     for (name, one), module, part in product(pairs.items(), PHM_MODULES, PHM_BORES):
