@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`, `units`, `steps`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`, `energy`; `contact`;
-`stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
+`material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
+`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
 """
 
 import importlib
@@ -28,10 +28,12 @@ _HOME = {
     "Response": "gearfe.motion.response",
     "RootStress": "gearfe.elements.root_stress",
     "Samples": "gearfe.machine.gear_mesh",
+    "Shaft": "gearfe.supports.shaft",
     "Signal": "gearfe.signal.series",
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",
+    "Support": "gearfe.supports.support",
     "Surrogate": "gearfe.surrogates.surrogate",
     "ToothDamage": "gearfe.machine.gear_mesh",
     "batch": "gearfe.studies.batches",

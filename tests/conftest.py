@@ -11,7 +11,8 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 ROOT = Path(__file__).parents[1]  # of the repository
 QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose failure says that the room is broken
     "geometry": ("geometry/tooth/test_gear.py", "geometry/pair/test_pair.py", "geometry/damage/test_pit.py"),
-    "flexibility": ("flexibility/test_hertz.py", "flexibility/test_halfspace.py"),
+    "flexibility": ("flexibility/test_condense.py", "flexibility/test_hertz.py", "flexibility/test_halfspace.py"),
+    "supports": ("supports/test_beam.py",),
     "elements": ("elements/test_elasticity.py", "elements/test_fe3d.py::test_plane_strain_is_the_two_dimensional_fe"),
     "energy": (
         "energy/test_energy.py",

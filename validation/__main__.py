@@ -25,6 +25,7 @@ PAGES = {
     "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
     "shortcomings": "what gearfe falls short of: the expected failures of its tests",
     "speed": "seconds against error of every method",
+    "threads": "seconds of a pair with one thread and with several",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
     "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",

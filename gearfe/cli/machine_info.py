@@ -6,7 +6,7 @@ import os
 import platform
 import shutil
 
-LIBRARIES = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "rich")
+LIBRARIES = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "rich", "threadpoolctl")
 EXTRAS = {  # package: (module, extra, what it is good for)
     "numba": ("numba", "fast", "vibration under impact laws in seconds instead of an hour"),
     "pypardiso": ("pypardiso", "solvers", "a faster solver for fe3d than SuperLU"),
@@ -32,7 +32,7 @@ def lines():
     yield from (f"{name} {found}" for name in EXTRAS if (found := version(name)))
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS; more help fe3d only)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
-    yield f"solvers: sections SuperLU (scipy); three dimensions, the best first: {', '.join(available())}"
+    yield f"solvers: sections dense Cholesky and SuperLU (scipy); three dimensions, the best first: {', '.join(available())}"
     yield mesher()
     yield renderer()
     yield f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}"

@@ -4,7 +4,10 @@ Heights count from the end that touches first: the pinion's roll length falls wi
 its own frame, is the opposite one; also a ring's, whose frame is mirrored.
 """
 
+import math
 from dataclasses import replace
+from itertools import groupby, product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -31,7 +34,7 @@ def seen_cracks(gear, cracks, seen, band):
     return tuple(crack for crack in found if crack is not None)
 
 
-def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
+def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None)):
     """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
     Parameters
@@ -46,14 +49,16 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
         As in `gearfe.contact.solid.pair_stiffness3d`.
     flexible : callable
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
+    shafts : (Shaft or None, Shaft or None)
+        Of gears that are one piece with them: ``flexible`` gets them as ``shaft``, seen from the end that touches first.
 
     Raises
     ------
     ValueError
         If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
-    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, strict=True))
-    for gear, (body, _), _, own in gears:
+    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, shafts, strict=True))
+    for gear, (body, _), _, own, _ in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
@@ -61,25 +66,103 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible):
             check_single(body, seen_cracks(gear, own, body, band))
     return [
         [
-            (flexible(body, material, seen_cracks(gear, own, body, band)), offset)
-            for gear, (body, offset), material, own in steps(gears)
+            (flexible(body, material, seen_cracks(gear, own, body, band), **_as_seen(shaft, band)), offset)
+            for gear, (body, offset), material, own, shaft in steps(gears)
         ]
         for band in steps(bands)
     ]
 
 
+def _as_seen(shaft, band):
+    return {} if shaft is None else {"shaft": shaft if band[0] < band[1] else shaft.turned()}
+
+
 def between(cells, bodies):
-    """Approach ``(n, n)`` of `Cells` per unit normal force on each, half-space left out [mm/N]."""
-    out = np.zeros((cells.z.size,) * 2)
-    for half in np.unique(cells.half):
-        at = np.flatnonzero(cells.half == half)
-        for (body, offset), sense, roll in zip(bodies[half], (1, -1), (cells.roll_1, cells.roll_2), strict=True):
-            out[np.ix_(at, at)] += body.matrix(sense * cells.order[at], roll[at], cells.depth[at] + offset)
-    return (out + out.T) / 2
+    """Approach ``(n, n)`` per unit normal force on each of the cells of a phase, half-space left out [mm/N].
+
+    Parameters
+    ----------
+    cells : list of Cells
+        Of each phase.
+    bodies : list
+        Both gears by half, each with where contact begins on it [mm].
+
+    Returns
+    -------
+    list of ndarray
+    """
+    out = [np.zeros((own.z.size,) * 2) for own in cells]
+    order, half, depth, *rolls = (
+        np.concatenate([getattr(own, name) for own in cells]) for name in ("order", "half", "depth", "roll_1", "roll_2")
+    )
+    start = np.cumsum([0, *(own.z.size for own in cells)])
+    phase = np.repeat(np.arange(len(cells)), np.diff(start))
+    new = np.append(True, (np.diff(half) != 0) | (np.diff(order) != 0) | (np.diff(phase) != 0))
+    ends = np.append(np.flatnonzero(new), new.size).tolist()
+    for number, gears in enumerate(bodies):
+        own = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if half[a] == number]
+        for (body, offset), sense, roll in zip(gears, (1, -1), rolls, strict=True):
+            lines = [_Line(int(phase[a]), sense * int(order[a]), slice(a, b), int(start[phase[a]])) for a, b in own]
+            _add(out, body, body.basis(roll, depth + offset), lines)
+    return [(matrix + matrix.T) / 2 for matrix in out]
+
+
+class _Line(NamedTuple):
+    """Cells `at` of one tooth in one phase, whose first cell is number `start` of all."""
+
+    phase: int
+    tooth: int
+    at: slice
+    start: int
+
+    @property
+    def own(self):
+        """The cells as numbered in their phase."""
+        return slice(self.at.start - self.start, self.at.stop - self.start)
+
+
+def _add(out, body, rows, lines):
+    """Add what one body gives, from its basis `rows` at all cells: the products with its kernels for all phases at once."""
+    pairs = {}
+    for _, group in groupby(lines, lambda line: line.phase):
+        for one, two in product(list(group), repeat=2):
+            if one.tooth <= two.tooth:
+                pairs.setdefault((one.tooth, two.tooth), []).append((one, two))
+    for (first, second), found in pairs.items():
+        kernel = body.between(first, second)
+        if kernel is None:
+            continue
+        left = np.concatenate([rows[one.at] for one, _ in found]) @ kernel
+        ends = np.cumsum([one.at.stop - one.at.start for one, _ in found])[:-1]
+        for (one, two), mine in zip(found, np.split(left, ends), strict=True):
+            part = mine @ rows[two.at].T
+            out[one.phase][one.own, two.own] += part
+            if first != second:
+                out[one.phase][two.own, one.own] += part.T
+
+
+def mirrors_of(cells, bodies):
+    """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
+
+    Returns
+    -------
+    list of (float, ndarray (n,), ndarray (n,))
+        Nearer ends first.
+    """
+    faces = {}
+    for side, other in ((False, False), (False, True), (True, False), (True, True)):
+        low, high, weight = np.zeros(cells.z.size), np.zeros(cells.z.size), 0.0
+        for half in np.unique(cells.half).tolist():
+            at, (body, offset) = cells.half == half, bodies[half][side]
+            ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
+            low[at], high[at] = (np.array(ends) if not other else body.width - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (other, offset, body.width)  # faces of equally wide gears are flush
+        faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
+    return list(faces.values())
 
 
 def faces_of(cells, bodies):
-    """Faces of the cracks of all bodies, as `cell_sharing.line_cells` takes them; None without cracks.
+    """Faces of the cracks of all bodies, as `joined_lines.System` takes them; None without cracks.
 
     Returns
     -------

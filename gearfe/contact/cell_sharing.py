@@ -1,23 +1,35 @@
-"""Load sharing over the cells of contact lines: cells push, do not pull, and each is a strip of Hertz's pressure."""
+"""Load sharing over the cells of contact lines: cells push, do not pull, and each is a strip of Hertz's pressure.
+
+Many contact problems, one for each phase, are solved at once: what is done cell by cell is done for all of them in one array.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_factor, cho_solve
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dpotrf, dpotrs
 
-from ..flexibility.halfspace import line_kernel, pair_kernel, strip
-from ..flexibility.hertz import half_width
+from .joined_lines import FLOOR, JoinedLines
 from .plane import OVERLAP
 from .sharing import share
 
 MOST = 60  # steps, the second half of them with exact contact problems
 WIDTHS = 20  # steps in which the strips' widths follow the loads, half of their change in the second half
-SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
 SETTLED = 1e-7  # change of a cell's load in the last step, of the whole load
-FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
-NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
+SLOW = 0.2  # of the change of the step before: a step that changes more asks for a new factor
+SLOPE = 1e-4  # relative change of the line load by which the slope of the local law is found
 
 
-def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=None, local=None, faces=None, floor=None):
-    """Share a load over cells of contact lines that can push but not pull.
+class Shared(NamedTuple):
+    """Forces on the cells, then on the faces [N]; approach [mm]; tangent stiffness d load / d approach [N/mm]."""
+
+    force: NDArray[np.float64]
+    approach: float
+    tangent: float
+
+
+class SharedLines:
+    """Cells of contact lines that can push but not pull, in many contact problems at once; solves them for any loads.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
     (`halfspace.line_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the
@@ -26,147 +38,158 @@ def line_cells(matrix, gap, load, kernel, ends, line, radius, modulus, *, block=
 
     Parameters
     ----------
-    matrix : ndarray, shape (n, n)
-        Approach per unit force, symmetric, half-space left out [mm/N].
-    gap : ndarray, shape (n,)
-        Unloaded distance [mm]; inf for cells that cannot touch.
-    load : float
-        [N].
+    systems : list of System
     kernel : float
         k of both bodies' half-spaces together [mm**2/N].
-    ends : (ndarray, ndarray)
-        Ends of the cells along their lines [mm].
-    line : ndarray, shape (n,)
-        Number of each cell's line; cells of a line are neighbours, in the order along it.
-    radius : ndarray, shape (n,)
-        Relative radius of curvature [mm].
     modulus : float
         Contact modulus E* [MPa].
-    block : ndarray, shape (n,), optional
-        Number of the bodies each cell is on: `matrix` is zero between different ones.
-    local : callable, optional
-        From line loads ``(n,)`` [N/mm] to what each cell's ``ln(2 / a) + 1/2`` is more than Hertz's ``(n,)``.
-    faces : (ndarray (m, n), ndarray (m, m), ndarray (m,)), optional
-        Faces of cracks that must not pass through each other: their opening by the cells' forces and by unit forces that push
-        them apart [mm/N], and the block of each.
-
-    Returns
-    -------
-    force : ndarray, shape (n + m,)
-        Of the cells, then of the faces [N].
-    approach : float
-        [mm].
-
-    Raises
-    ------
-    RuntimeError
-        If no cell can touch, or the load sharing does not settle.
     """
-    able = np.flatnonzero(np.isfinite(gap))
-    if able.size == 0:
-        raise RuntimeError("no cell can touch: every gap is infinite")
-    if able.size < gap.size:
-        few = matrix[np.ix_(able, able)], gap[able], load, kernel, [end[able] for end in ends], line[able], radius[able], modulus
-        options = {
-            "block": None if block is None else block[able],
-            "local": None if local is None else lambda along: local(_spread(along, able, gap.size, along.mean()))[able],
-            "faces": None if faces is None else (faces[0][:, able], *faces[1:]),
-            "floor": None if floor is None else floor[able],
-        }
-        found, approach = line_cells(*few, **options)
-        return np.append(_spread(found[: able.size], able, gap.size), found[able.size :]), approach
-    n, length = gap.size, ends[1] - ends[0]
-    force = load * length / length.sum()
-    flat, part = np.ones(n, dtype=bool), line
-    if floor is not None and (floor > 0).any():
-        flat = floor == floor.min()
-        part = np.unique(np.array([line, floor]), axis=1, return_inverse=True)[1].ravel()
-    mean = smoother(ends, part, SMOOTH * half_width(load / length[flat].sum(), radius[flat].mean(), modulus))
-    widest = pieces(ends, part) / 2  # a piece shorter than it is wide acts as one as wide as it is long
-    number = np.zeros(n, dtype=int) if block is None else block
-    if faces is not None:
-        matrix = np.block([[matrix, faces[0].T], [faces[0], faces[1]]])
-        gap, number = np.append(gap, np.zeros(faces[2].size)), np.append(number, faces[2])
-    force, weight = np.append(force, np.zeros(gap.size - n)), (np.arange(gap.size) < n).astype(float)
-    blocks = [np.flatnonzero(number == k) for k in np.unique(number)]
-    active, x, total, near = weight > 0, np.ones(n), None, None
-    for attempt in range(MOST):
-        if attempt < WIDTHS:
-            along = np.maximum(mean @ force[:n], FLOOR * load / length)
-            wide = strip(half_width(along, radius, modulus))
-            if local is not None:
-                wide = wide * np.exp(-local(along))
-            wide = np.minimum(wide, widest)
-            x = wide if attempt < WIDTHS // 2 else np.sqrt(x * wide)
-        if total is None:
-            total, near = _whole(matrix, kernel, ends, line, x)
-        else:
-            i, j = near
-            total[i, j] = matrix[i, j] + kernel * pair_kernel(ends, i, j, x)
-        if attempt < MOST // 2:
-            new, approach = _free(total, gap, load, active, blocks, weight)
-            rests = total @ np.maximum(new, 0.0) + gap - approach * weight
-            let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, OVERLAP * np.abs(rests[n:]).max(initial=0.0)))
-            wanted = np.where(active, new > 0, rests < -let)
-        else:
+
+    def __init__(self, systems, kernel, modulus):
+        self.joined, self._factors = JoinedLines(systems, kernel, modulus), [None] * len(systems)
+
+    def solve(self, load, local=None, which=None, start=None):
+        """Share loads.
+
+        Parameters
+        ----------
+        load : ndarray, shape (problems,)
+            Sum of the cells' forces in each problem [N].
+        local : callable, optional
+            From line loads ``(n,)`` [N/mm] of the cells of all problems to what each one's ``ln(2 / a) + 1/2`` is more than
+            Hertz's ``(n,)``.
+        which : sequence of int, optional
+            The problems to solve; default: all.
+        start : list of Shared, optional
+            What other loads of the same problems came to, for the strips and active sets to start from.
+
+        Returns
+        -------
+        list of Shared
+            None for problems that were not asked for.
+
+        Raises
+        ------
+        RuntimeError
+            If the load sharing does not settle, or the flexibility is not positive definite.
+        """
+        one = self.joined
+        which = list(range(len(one.systems)) if which is None else which)
+        load = np.asarray(load, dtype=float)
+        forces, actives = self._started(load, start)
+        mean, x, open_ = one.smoother(load), None, list(which)
+        approaches, changes, slow = np.zeros(load.size), np.full(load.size, np.inf), np.full(load.size, start is None)
+        for attempt in range(MOST):
+            if attempt < WIDTHS:
+                wide = one.wide(one.along(mean, forces, load), local)
+                x = wide if attempt < WIDTHS // 2 else np.sqrt(x * wide)
+                if one.near is None:
+                    one.begin(x)
+                one.widen(x)
+            still = []
+            for p in open_:
+                free, before = attempt < MOST // 2, None if slow[p] else forces[p]
+                new, approaches[p], wanted = self._step(p, load[p], actives[p], before, free)
+                change = float(np.abs(new - forces[p]).max())
+                settled = change < SETTLED * load[p] and (not free or bool((wanted == actives[p]).all()))
+                changes[p], slow[p] = change, change > SLOW * changes[p]
+                actives[p], forces[p] = wanted, np.maximum(new, 0.0)
+                if not settled:
+                    still.append(p)
+                    n = one.systems[p].gap.size
+                    if not wanted[:n].any():
+                        actives[p][:n] = True
+            open_ = still
+            if not open_:
+                tangents, found = self._tangents(which, forces, load, x, local), [None] * load.size
+                for p in which:
+                    found[p] = Shared(forces[p], float(approaches[p]), tangents[p])
+                return found
+        raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
+
+    def _started(self, load, start):
+        """First forces of each problem and what of it pushes: evenly all cells, or as in `start`."""
+        one, forces, actives = self.joined, [], []
+        length = np.bincount(one.problem, one.width)
+        for p, system in enumerate(one.systems):
+            before = None if start is None else start[p]
+            if before is None:
+                even = load[p] * one.width[one.slices[p]] / length[p]
+                forces.append(np.append(even, np.zeros(one.gaps[p].size - even.size)))
+                actives.append(one.weights[p] > 0)
+            else:
+                forces.append(before.force * load[p] / before.force[: system.gap.size].sum())
+                actives.append(before.force > 0)
+        return forces, actives
+
+    def _step(self, p, load, active, before, free):
+        """Forces and approach of a problem, and which of its cells and faces should push; `before`: the last step's forces."""
+        one = self.joined
+        total, gap, weight, n = one.totals[p], one.gaps[p], one.weights[p], one.systems[p].gap.size
+        if not free:
             new, approach = share(total, gap, load, weight)
-            wanted = active = new > 0
-        settled = (wanted == active).all() and np.abs(new - force).max() < SETTLED * load
-        active, force = wanted, np.maximum(new, 0.0)
-        if settled:
-            return force, float(approach)
-        if not active[:n].any():
-            active[:n] = True
-    raise RuntimeError(f"load sharing along the contact lines did not settle at {load:g} N")
+            return new, approach, new > 0
+        new, approach = self._free(p, load, active, before)
+        rests = total @ np.maximum(new, 0.0) + gap - approach * weight
+        let = np.append(np.full(n, 1e-12 * approach), np.full(gap.size - n, OVERLAP * np.abs(rests[n:]).max(initial=0.0)))
+        return new, approach, np.where(active, new > 0, rests < -let)
 
+    def _free(self, p, load, active, before):
+        """Forces of the active cells of a problem and their common approach, whatever their signs.
 
-def _spread(values, places, size, others=0.0):
-    """Values at their places among `size`, and what `others` have."""
-    out = np.full(size, float(others))
-    out[places] = values
-    return out
+        Those of the last step are corrected with a factor that is known, of the same cells with other strips: it differs little.
+        Without them, or if other cells are active, a new factor is made.
+        """
+        one, known = self.joined, self._factors[p]
+        total, gap, weight = one.totals[p], one.gaps[p], one.weights[p]
+        fresh = before is None or known is None or (known[0] != active).any()
+        if fresh:
+            parts = [self._factor(p, at) for block in one.blocks[p] if (at := block[active[block]]).size]
+            known = self._factors[p] = active.copy(), parts
+        kept = np.zeros(gap.size) if fresh else np.where(active, before, 0.0)
+        rests = gap if fresh else gap + total @ kept
+        ones, moved = np.zeros(gap.size), np.zeros(gap.size)
+        for at, factor, own in known[1]:
+            ones[at], moved[at] = own, dpotrs(factor, rests[at])[0]
+        approach = (load - weight @ kept + weight @ moved) / (weight @ ones)
+        return kept + approach * ones - moved, approach
 
+    def _factor(self, p, at):
+        """Cells, the Cholesky factor of their flexibility, and their forces at an approach of 1."""
+        total = self.joined.totals[p]
+        part = total.copy() if at.size == len(total) else total[np.ix_(at, at)]
+        factor, fault = dpotrf(part.T, overwrite_a=1, clean=0)
+        if fault:
+            raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine")
+        return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
-def _whole(matrix, kernel, ends, line, x):
-    """Flexibility with the half-space, and the pairs ``(i, j)`` of cells in which it depends on the strips' widths."""
-    total = matrix.copy()
-    rows, columns = [], []
-    for number in np.unique(line):
-        at = np.flatnonzero(line == number)
-        total[np.ix_(at, at)] += kernel * line_kernel(ends[0][at], ends[1][at], x[at])
-        apart = np.maximum(ends[0][at][:, None] - ends[1][at], ends[0][at] - ends[1][at][:, None])
-        i, j = np.nonzero(apart < NEAR * x[at].max())
-        rows.append(at[i])
-        columns.append(at[j])
-    return total, (np.concatenate(rows), np.concatenate(columns))
+    def _tangents(self, which, forces, load, x, local):
+        """Stiffness of each problem to a little more load, its active set kept [N/mm].
 
+        With T the flexibility of what pushes, and the strips' distances x following forces and load, the forces P of a further
+        approach d solve the linearisation of what was solved::
 
-def pieces(ends, line):
-    """Length of the unbroken piece of contact each cell belongs to ``(n,)`` [mm]."""
-    apart = (np.diff(line) != 0) | (np.abs(ends[0][1:] - ends[1][:-1]) > 1e-9 * (ends[1] - ends[0])[1:])
-    number = np.concatenate([[0], np.cumsum(apart)])
-    return np.bincount(number, weights=ends[1] - ends[0])[number]
-
-
-def smoother(ends, line, reach):
-    """Matrix ``(n, n)`` from the cells' forces to mean line loads over `reach` [mm] on either side, within their lines."""
-    middle = (ends[0] + ends[1]) / 2
-    over = np.minimum(ends[1], middle[:, None] + reach) - np.maximum(ends[0], middle[:, None] - reach)
-    over = np.where(line[:, None] == line, np.maximum(over, 0.0), 0.0)
-    return over / over.sum(axis=1, keepdims=True) / (ends[1] - ends[0])
-
-
-def _free(total, offset, load, active, blocks, weight):
-    """Forces ``(n,)`` of the active cells and their common approach, whatever their signs."""
-    ones, gaps = np.zeros(offset.size), np.zeros(offset.size)
-    for block in blocks:
-        at = block[active[block]]
-        if at.size:
-            part = total if at.size == offset.size else total[np.ix_(at, at)]
-            try:
-                solved = cho_solve(cho_factor(part), np.column_stack([weight[at], offset[at]]))
-            except LinAlgError as error:
-                raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine") from error
-            ones[at], gaps[at] = solved.T
-    approach = (load + weight @ gaps) / (weight @ ones)
-    return approach * ones - gaps, approach
+            (T + d(T P)/dx dx/dP) dP + d(T P)/dx dx/dload dload = dd,    sum(dP) = dload
+        """
+        one = self.joined
+        mean, more = one.smoother(load), one.smoother(load * (1 + SLOPE))
+        along, further = (one.along(matrix, forces, load) for matrix in (mean, more))
+        rate = np.full(along.size, 0.5)
+        if local is not None:
+            rate = rate - (local(along * (1 + SLOPE)) - local(along)) / np.log1p(SLOPE)
+        free = (one.wide(along, local) < one.widest) & (along > FLOOR * load[one.problem] / one.width)
+        rate = np.where(free, rate * x / along, 0.0)  # of x over the mean line load
+        change = one.change(forces, x) * rate
+        slope = (change @ mean).tocoo()
+        jacobian = one.flat.copy()
+        jacobian[one.places(slope.row, slope.col)] += slope.data
+        by_load = change @ (further - along) / SLOPE / load[one.problem]
+        out = {}
+        for p in which:
+            n, at = one.sizes[p], np.flatnonzero(forces[p] > 0)
+            whole = jacobian[one.base[p] : one.base[p] + n * n].reshape(n, n)
+            moved = np.append(by_load[one.slices[p]], np.zeros(n - one.systems[p].gap.size))[at]
+            weight = one.weights[p][at]
+            ones, moved = np.linalg.solve(whole[np.ix_(at, at)], np.array([weight, moved]).T).T
+            out[p] = float(weight @ ones / (1 + weight @ moved))
+        return out

@@ -16,7 +16,7 @@ from scipy.interpolate import RectBivariateSpline
 from geometry.tooth.profile import arc_at
 
 from ..energy.ritz.plane import flexibility
-from ..energy.ritz.solid import plane_hats
+from ..energy.ritz.plane_strain import plane_hats
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
@@ -114,6 +114,7 @@ def _table(pair, materials, line_load, corner, span, cache):
     loads = loads[loads >= least]
     out = np.zeros((loads.size, away.size))
     there = np.isfinite(mesh.found.gap[:, column])
+    mesh.find_gaps([(i, column, corner) for i in np.flatnonzero(there).tolist()])
     for i in np.flatnonzero(there).tolist():
         at = mesh.contacts_at(i, np.array([column]), np.array([corner]))
         if not at["gap"].size:  # no point near the corner has a flank before it
@@ -121,9 +122,11 @@ def _table(pair, materials, line_load, corner, span, cache):
             continue
         rolls = mesh.found.roll_1[i, column], mesh.found.roll_2[i, column]
         smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
-        radius = mesh.radius[i, column]
+        radius, start = mesh.radius[i, column], None
         for j, load in enumerate(loads.tolist()):
-            closing = share(at["flexibility"], at["gap"], load)[1] - mesh.found.gap[i, column]
+            force, approach = share(at["flexibility"], at["gap"], load, start=start)
+            start = force > 0
+            closing = approach - mesh.found.gap[i, column]
             out[j, i] = (closing / load - smooth) / c - np.log(2 / half_width(load, radius, modulus)) - 0.5
     away, out = away[there], out[:, there]
     if away.size < 2:

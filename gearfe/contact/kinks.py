@@ -20,7 +20,7 @@ def near_kink(contact, line_load):
     out = np.zeros(found.gap.shape, dtype=bool)
     if contact.flanks is None:
         return out
-    reach = REACH * half_width(line_load, contact.radius, contact.modulus)
+    reach = REACH * half_width(line_load, contact.flat_radius, contact.modulus)
     for form, roll in zip(contact.flanks, (found.roll_1, found.roll_2), strict=True):
         for kink, _ in form.kinks:
             out |= np.abs(arc_at(form.gear, roll) - arc_at(form.gear, kink)) < reach
@@ -52,7 +52,7 @@ def kink_rows(contact, where, line_load):
     i, column = where.T
     gear, found = contact.pair.gear_1, contact.found
     middle = arc_at(gear, found.roll_1[i, column])
-    width = half_width(line_load, contact.radius[i, column], contact.modulus)
+    width = half_width(line_load, contact.flat_radius[i, column], contact.modulus)
     arcs, slopes = _kinks(contact)
     nearest = np.argmin(np.abs(arcs - middle[:, None]), axis=1)
     kink, slope = arcs[nearest], slopes[nearest]

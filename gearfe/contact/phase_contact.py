@@ -1,33 +1,73 @@
-"""Contact of a pair of finite width at one phase: cells as far beyond the path as the approach reaches, and their loads."""
+"""Contact of a pair of finite width at many phases: cells as far beyond the path as the approach reaches, and their loads."""
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
+from geometry.pair.contacts import touching
 from geometry.pair.lines import bands_of
 from geometry.pair.modified import first_touch
 
 from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
-from .bodies import between, faces_of
-from .cell_sharing import line_cells
-from .cells import Cells, beyond, cells_of, gaps, pieces_of, touching
+from ..steps import steps
+from .bodies import between, faces_of, mirrors_of
+from .cell_sharing import SharedLines
+from .cells import Cells, cells_of
 from .corner import CornerLaw
+from .hubs import given_way, hubs_of
+from .joined_lines import System
+from .pieces import beyond, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
 DEEPEST = 0.01  # modules: the floor of a pit that covers a whole line is looked for so deep
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
-REACH = 1.3  # initial search radius for gaps, in approaches of the phase before
+REACH = 1.3  # search radius for gaps, in approaches found before: fewer cells approach more
+TOGETHER = 16  # phases that are solved at once
+
+
+class Carried(NamedTuple):
+    """One phase under one force: `Cells` with loads, and in the transverse section approach [mm] and tangent stiffness [N/mm].
+
+    `closed` says whether faces of a crack touched. What the supports of the hubs give way is in the approach: `given` the mean
+    over the loads, so that it adds up to the approach with the rest, `least` at the cell where it is least [mm].
+    """
+
+    cells: Cells
+    approach: float
+    tangent: float
+    closed: bool
+    given: float
+    least: float
+
+
+class Batch(NamedTuple):
+    """Cells of some phases made ready for any force.
+
+    `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
+    half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None.
+    """
+
+    cells: list
+    solved: list
+    alike: np.ndarray
+    lines: SharedLines
+    all: Cells
+    yields: list
 
 
 class PhaseContact:
-    """The contact lines of a pair, with pits, under a force.
+    """The contact lines of a pair, with pits, under forces.
+
+    What does not depend on the force is shared by all of them: cells, gaps, flexibilities. They are those of the largest force,
+    which reaches furthest beyond the path of contact.
 
     Parameters
     ----------
     pair : GearPair
-    force : float
+    forces : sequence of float
         In the transverse section [N].
     materials : (Material, Material)
     pits : (sequence of Pit, sequence of Pit)
@@ -37,10 +77,13 @@ class PhaseContact:
         Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
         As in `gearfe.contact.corner.CornerLaw`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
     """
 
-    def __init__(self, pair, force, materials, *, pits, face, groove, step, extended, flanks=None, cache=True):
-        self.pair, self.force, self.pits, self.step, self.extended = pair, force, pits, step, extended
+    def __init__(self, pair, forces, materials, *, pits, face, groove, step, extended, flanks=None, cache=True, supports=None):
+        self.pair, self.pits, self.step, self.extended = pair, pits, step, extended
+        self.forces, self.force, self.hubs = list(forces), max(forces), hubs_of(supports)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -49,11 +92,17 @@ class PhaseContact:
         self.beta_b = abs(pair.gear_1.beta_b)
         radius = pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)) / math.cos(self.beta_b)
         self.radius, self.modulus = abs(float(radius)), contact_modulus(materials)
-        # first guess of the approach: the half-plane's logarithm over the size of a tooth, and as much for the tooth
-        self.reach = 40 / (math.pi * self.modulus) * force / self.width
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
-        case = (pair, materials, force / self.width, self._further(self.least + 2 * self.reach))
-        self.law = CornerLaw(*case, cache=cache) if extended else None
+        self.reach = self._guess(self.force)
+        self.laws = [None if not extended else self._law(materials, force, cache) for force in self.forces]
+
+    def _guess(self, force):
+        """First guess of the approach [mm]: the half-plane's logarithm over the size of a tooth, and as much for the tooth."""
+        return 40 / (math.pi * self.modulus) * force / self.width
+
+    def _law(self, materials, force, cache):
+        further = self._further(self.least + 2 * self._guess(force))
+        return CornerLaw(self.pair, materials, force / self.width, further, cache=cache)
 
     @property
     def neighbours(self):
@@ -65,40 +114,79 @@ class PhaseContact:
         """How far beyond the path [mm] gaps are below `reach`; flanks with less material have larger ones by `least` or more."""
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
-    def solve(self, phase, bodies, reach=None):
-        """`Cells` with their loads, the approach in the transverse section [mm], and whether faces of a crack touched.
+    def solve(self, phases, bodies):
+        """`Carried` of each force at each phase: a list of lists.
 
         Parameters
         ----------
-        phase : float
+        phases : list of float
         bodies : callable
             ``bodies(n)`` gives ``[((Flexibility3D, offset), (Flexibility3D, offset)), ...]``: both gears by half, with where
             their contact begins on them [mm]; at least n teeth after each loaded one are coupled to it.
-        reach : float, optional
-            Gap [mm] to look at first.
 
         Raises
         ------
         RuntimeError
             If there is no contact; the message says at which phase.
         """
-        reach, closing = self.least + self.reach if reach is None else reach, 0.0
-        while True:
-            cells = self._cells(phase, reach, closing)
-            if cells is not None:
-                cells, approach, closed = self._carried(cells, bodies(int(np.ptp(cells.order))))
-                normal = approach * math.cos(self.beta_b)
-                if any(closing < depth < normal for depth in self.floors):
-                    closing = normal  # shallow pits: solved again with their floors, which can only make it stiffer
-                    continue
-                if not self.extended or approach <= reach or reach - self.least > self.furthest:
-                    return cells, approach, closed
-            if reach - self.least > self.furthest:
-                if cells is None and any(closing < depth <= self.deepest for depth in self.floors):
-                    closing = self.deepest
-                    continue
-                raise RuntimeError(f"no contact at phase {phase:g}: pits cover it all, or the pair has left its path of contact")
-            reach = 2 * reach if cells is None else approach  # fewer cells approach more: enough
+        found = [[] for _ in self.forces]
+        reach = self.least + self.reach
+        parts = [phases[:1], *(phases[k : k + TOGETHER] for k in range(1, len(phases), TOGETHER))]
+        for part in steps(parts, weights=[len(part) for part in parts]):
+            own = self._part(part, bodies, reach)
+            for whole, more in zip(found, own, strict=True):
+                whole.extend(more)
+            most = max(one.approach - one.least for carried in own for one in carried)
+            reach = self.least + REACH * (most - self.least)
+        return found
+
+    def _part(self, phases, bodies, reach):
+        """`solve` of phases that are solved at once; gaps up to `reach` [mm] are looked at first."""
+        found = [[None] * len(phases) for _ in self.forces]
+        reaches, closings, open_ = np.full(len(phases), reach), np.zeros(len(phases)), list(range(len(phases)))
+        largest = self.forces.index(self.force)
+        while open_:
+            cells = self._cells([phases[i] for i in open_], reaches[open_], closings[open_])
+            again, some = [], [(i, own) for i, own in zip(open_, cells, strict=True) if own is not None]
+            empty = [i for i, own in zip(open_, cells, strict=True) if own is None]
+            if some:
+                batch = self._batch([own for _, own in some], bodies)
+                carried, shared = self._shared(batch, largest)
+                done = []
+                for k, (i, one) in enumerate(zip((i for i, _ in some), carried, strict=True)):
+                    closes = one.approach - one.least  # what of it teeth can close gaps by
+                    normal = closes * math.cos(self.beta_b)
+                    if any(closings[i] < depth < normal for depth in self.floors):
+                        closings[i] = normal  # shallow pits: solved again with their floors, which can only make it stiffer
+                        again.append(i)
+                    elif self.extended and closes > reaches[i] and reaches[i] - self.least <= self.furthest:
+                        reaches[i] = self.least + REACH * (closes - self.least)
+                        again.append(i)
+                    else:
+                        found[largest][i] = one
+                        done.append(k)
+                self._others(found, batch, shared, done, [i for i, _ in some], largest)
+            for i in empty:
+                if reaches[i] - self.least <= self.furthest:
+                    reaches[i] *= 2
+                elif any(closings[i] < depth <= self.deepest for depth in self.floors):
+                    closings[i] = self.deepest
+                else:
+                    raise RuntimeError(
+                        f"no contact at phase {phases[i]:g}: pits cover it all, or the pair has left its path of contact"
+                    )
+            open_ = sorted([*again, *empty])
+        return found
+
+    def _others(self, found, batch, shared, done, names, largest):
+        """The other forces, each from what the next larger one came to."""
+        order = np.argsort(self.forces, kind="stable")[::-1].tolist()
+        for number in order if done else []:
+            if number == largest:
+                continue
+            carried, shared = self._shared(batch, number, done, shared)
+            for k in done:
+                found[number][names[k]] = carried[k]
 
     def unloaded(self, found):
         """Approach at which the flanks first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
@@ -121,42 +209,83 @@ class PhaseContact:
             low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
         return gap.min(axis=1) + floor / math.cos(self.beta_b)
 
-    def _cells(self, phase, reach, closing):
-        pieces = pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, self._further(reach), closing)
-        if not pieces:
-            return None
-        length = sum(piece.last - piece.first for piece in pieces if not piece.floor or all(one.floor for one in pieces))
-        finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus))
-        cells = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), max(self.step, finest), self.flanks)
-        return cells if cells.z.size else None
+    def _cells(self, phases, reaches, closings):
+        """`Cells` of each phase, None where there are none."""
+        pieces = []
+        for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
+            further = self._further(reach)
+            pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, further, closing))
+        longest = []
+        for own in pieces:
+            length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
+            finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus)) if own else 0.0
+            longest.append(max(self.step, finest))
+        if not any(pieces):
+            return [None] * len(phases)
+        whole, number = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), longest, self.flanks)
+        ends = np.searchsorted(number, np.arange(len(phases) + 1)).tolist()
+        return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
-    def _carried(self, cells, bodies):
-        """What `solve` gives, under the whole force; two halves alike are solved once."""
-        first = cells.half == 0
-        if len(bodies) == 1 or not _same(*bodies) or not _alike(cells, first):
-            return self._shared(cells, bodies, self.force)
-        half, approach, closed = self._shared(_some(cells, first), bodies[:1], self.force / 2)
-        return replace(cells, load=np.tile(half.load, 2), pressure=np.tile(half.pressure, 2)), approach, closed
+    def _batch(self, cells, bodies):
+        """`Batch` of phases; two halves that are alike are solved once."""
+        cos, found = math.cos(self.beta_b), bodies(max(int(np.ptp(own.order)) for own in cells))
+        double = len(found) > 1 and self.hubs is None and _same(*found)
+        alike = np.array([double and _alike(own, own.half == 0) for own in cells])
+        solved = [own.some(own.half == 0) if half else own for own, half in zip(cells, alike.tolist(), strict=True)]
+        systems, yields = [], []
+        for own, matrix in zip(solved, between(solved, found), strict=True):
+            ends = tuple((own.depth + side * own.width / 2) / cos for side in (-1, 1))
+            line = np.cumsum(np.append(0, (np.diff(own.half) != 0) | (np.diff(own.order) != 0)))
+            faces, mirrors, block = faces_of(own, found), mirrors_of(own, found), own.half
+            yields.append(None)
+            if self.hubs is not None:  # both halves of a herringbone gear are on one hub
+                yields[-1] = given_way(own, self.pair, self.hubs, self.bands, self.beta_b)
+                matrix, block = matrix + yields[-1], np.zeros(own.z.size, dtype=int)
+                faces = None if faces is None else (*faces[:2], np.zeros_like(faces[2]))
+            systems.append(System(matrix, cos * own.gap, ends, line, self._radius(own), block, faces, own.floor, mirrors))
+        lines = SharedLines(systems, sum(body.kernel for body, _ in found[0]), self.modulus)
+        names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
+        whole = Cells(*(np.concatenate([getattr(own, name) for own in solved]) for name in names))
+        return Batch(cells, solved, alike, lines, whole, yields)
 
-    def _shared(self, cells, bodies, force):
-        cos = math.cos(self.beta_b)
+    def _shared(self, batch, number, which=None, start=None):
+        """`Carried` of the phases of a batch under one of the forces, and what `SharedLines.solve` gave."""
+        cos, law, local = math.cos(self.beta_b), self.laws[number], None
+        if law is not None:
+            at = law.ends(self.pair, batch.all)
+            for end, form in enumerate((self.flanks or ())[::-1]):
+                at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
+            if (at >= 0).any():
+
+                def local(line_load):
+                    return law(at, batch.all.nominal, line_load)
+
+        load = self.forces[number] / cos / np.where(batch.alike, 2, 1)
+        shared = batch.lines.solve(load, local, which, start)
+        carried = [
+            None if one is None else self._told(batch.cells[k], batch.solved[k], one, bool(batch.alike[k]), batch.yields[k])
+            for k, one in enumerate(shared)
+        ]
+        return carried, shared
+
+    def _told(self, cells, solved, shared, alike, yields):
+        """`Carried` of one phase."""
+        n, cos = solved.z.size, math.cos(self.beta_b)
+        load, closed = shared.force[:n], bool(shared.force[n:].any())
+        radius = self._radius(solved)
+        pressure = peak_pressure(load * cos / solved.width, radius, self.modulus)
+        pressure[(solved.corner > 0) & (load > 0)] = np.nan
+        times = 2 if alike else 1
+        told = replace(cells, load=np.tile(load, times), pressure=np.tile(pressure, times))
+        way = np.zeros(n) if yields is None else yields @ load / cos
+        given = float(load @ way / load.sum()), float(way.min())
+        return Carried(told, shared.approach / cos, times * shared.tangent * cos**2, closed, *given)
+
+    def _radius(self, cells):
+        """Relative radii of curvature of cells at right angles to the flanks [mm]."""
         radius = self.pair.relative_radius(cells.roll_1, cells.roll_2)
         radius = np.where(radius > 0, radius, self.radius)
-        radius = np.where(cells.radius > 0, cells.radius, radius) / cos
-        ends = [(cells.depth + side * cells.width / 2) / cos for side in (-1, 1)]
-        line = np.unique(np.array([cells.half, cells.order]), axis=1, return_inverse=True)[1].ravel()
-        kernel = sum(body.kernel for body, _ in bodies[0])
-        local = None
-        if self.law is not None:
-            at = self.law.ends(self.pair, cells)
-            local = (lambda line_load: self.law(at, cells.nominal, line_load)) if (at >= 0).any() else None
-        case = (between(cells, bodies), cos * cells.gap, force / cos, kernel, ends, line, radius, self.modulus)
-        options = {"block": cells.half, "local": local, "faces": faces_of(cells, bodies), "floor": cells.floor}
-        load, approach = line_cells(*case, **options)
-        load, closed = load[: line.size], bool(load[line.size :].any())
-        pressure = peak_pressure(load / (ends[1] - ends[0]), radius, self.modulus)
-        pressure[(cells.corner > 0) & (load > 0)] = np.nan
-        return replace(cells, load=load, pressure=pressure), approach / cos, closed
+        return np.where(cells.radius > 0, cells.radius, radius) / math.cos(self.beta_b)
 
 
 def _same(one, two):
@@ -164,13 +293,8 @@ def _same(one, two):
 
 
 def _alike(cells, first):
-    one, two = _some(cells, first), _some(cells, ~first)
+    one, two = cells.some(first), cells.some(~first)
     if one.z.size != two.z.size:
         return False
     names = ("order", "width", "depth", "nominal", "gap")
     return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=ALIKE) for name in names)
-
-
-def _some(cells, which):
-    names = ("half", "order", "z", "width", "depth", "nominal", "roll_1", "roll_2", "gap", "corner", "floor", "radius")
-    return Cells(*(getattr(cells, name)[which] for name in names))

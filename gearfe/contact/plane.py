@@ -60,12 +60,16 @@ class PairContact:
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
-        self.radius = found.radius
+        self.radius = self.flat_radius = found.radius
+        if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
+            beside = pair.relative_radius(found.roll_1, found.roll_2)
+            self.flat_radius = np.where(beside > 0, np.maximum(beside, found.radius), found.radius)
         self.opening = self._opening(found.roll_1, found.roll_2, found.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
         self._known, self._rows, self._gaps = {}, {}, {}
+        self._starts = {}  # line loads found last, by phase
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -79,7 +83,7 @@ class PairContact:
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
-        self._find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
+        self.find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
         closed = []
         kinks = kink_rows(self, np.argwhere(kink), line_load)
         for i in np.flatnonzero(~done).tolist():
@@ -87,7 +91,10 @@ class PairContact:
             near = np.flatnonzero(possible[i])
             rows = kinks if kink[i].any() else None
             contacts = _within(self.contacts_at(i, near, np.where(kink[i], KINK, corner[i])[near], rows), reach[i])
-            force, approach[i], tangent[i] = self._share(contacts, line_load)
+            near_by = self._starts.get(i) if i in self._starts else self._starts.get(i - 1)
+            start = near_by if near_by is not None and near_by.size == contacts["gap"].size else None
+            force, approach[i], tangent[i] = self._share(contacts, line_load, start=start)
+            self._starts[i] = force
             if self.opening is not None and _closing(force @ contacts["opening"]):
                 closed.append(i)
                 force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
@@ -100,11 +107,10 @@ class PairContact:
         unloaded = None if self.flanks is None else found.gap.min(axis=1)
         return Solved(found.order, approach, tangent, line, pressure, tuple(closed), unloaded)
 
-    def _share(self, contacts, line_load, weight=None):
+    def _share(self, contacts, line_load, weight=None, start=None):
         names = ("coefficient", "radius")
-        return line_contact(
-            contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus, weight
-        )
+        case = contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus
+        return line_contact(*case, weight, start)
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
@@ -142,11 +148,13 @@ class PairContact:
         if not self.extended:
             return corner
         reach = CORNER * half_width(line_load, self.radius, self.modulus)
+        sharp = [self.flanks is None or form.edge is None for form in self.flanks or (None, None)]
         for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
-            corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
+            if sharp[number - 1]:
+                corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def _find_gaps(self, rows):
+    def find_gaps(self, rows):
         """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
         teeth = {}
         for i, column, corner in rows:
@@ -227,7 +235,7 @@ class PairContact:
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
         roll = roll_at_arc(gears[tip], hats.arc)
-        self._find_gaps([(i, int(column), int(corner))])  # unless they are known
+        self.find_gaps([(i, int(column), int(corner))])  # unless they are known
         gap, met = self._gaps[i, int(column), int(corner)]
         there = np.isfinite(met)
         there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)

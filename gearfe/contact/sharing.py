@@ -2,12 +2,16 @@
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg.lapack import dposv
 from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
+STEPS = 20  # of the active set before non-negative least squares
+ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
 
-def share(flexibility, gap, load, weight=None):
+
+def share(flexibility, gap, load, weight=None, start=None):
     """Split a load over elastic contacts that can push but not pull.
 
     Contacts in touch close by the same approach; the others stay open::
@@ -15,8 +19,9 @@ def share(flexibility, gap, load, weight=None):
         flexibility @ force + gap  = approach   where force > 0
         flexibility @ force + gap >= approach   where force = 0
 
-    This is the point of least energy over ``force >= 0, sum(force) = load``; with the Cholesky factor of the flexibility it
-    is the point of a simplex nearest to the origin, which non-negative least squares finds in finitely many steps.
+    Contacts that would pull are left out, those that would overlap are taken in, until none is; usually that settles in a few
+    steps. Where it does not: the point of least energy over ``force >= 0, sum(force) = load`` is, with the Cholesky factor of the
+    flexibility, the point of a simplex nearest to the origin, which non-negative least squares finds in finitely many steps.
 
     Parameters
     ----------
@@ -28,6 +33,8 @@ def share(flexibility, gap, load, weight=None):
         Sum of the contact forces [N].
     weight : ndarray, shape (n,), optional
         1 for contacts that carry the load, 0 for others (crack faces): those close by no approach, only by `gap`.
+    start : ndarray of bool, shape (n,), optional
+        Contacts that are in touch at nearly the same load; default: all.
 
     Returns
     -------
@@ -60,6 +67,9 @@ def share(flexibility, gap, load, weight=None):
     weight = np.ones(gap.size) if weight is None else weight
     if gap.size == 1:
         return np.array([load]), float(flexibility[0, 0] * load + gap[0])
+    found = _settled(flexibility, gap, load, weight, np.ones(gap.size, dtype=bool) if start is None else start)
+    if found is not None:
+        return found
     try:
         upper = cholesky(flexibility)
     except np.linalg.LinAlgError as error:
@@ -73,7 +83,28 @@ def share(flexibility, gap, load, weight=None):
     return force, float(force * weight @ closing / load)
 
 
-def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None):
+def _settled(flexibility, gap, load, weight, active):
+    """Forces and approach by an active set, None if it does not settle."""
+    for _ in range(STEPS):
+        at = np.flatnonzero(active)
+        if not weight[at].any():
+            return None
+        _, solved, fault = dposv(flexibility[np.ix_(at, at)].T, np.array([weight[at], gap[at]]).T, overwrite_a=1, overwrite_b=1)
+        if fault:
+            return None
+        ones, gaps = solved.T
+        approach = (load + weight[at] @ gaps) / (weight[at] @ ones)
+        force = np.zeros(gap.size)
+        force[at] = approach * ones - gaps
+        rests = flexibility[:, at] @ force[at] + gap - approach * weight
+        wanted = np.where(active, force > 0, rests < -ROUNDING * np.abs(rests).max())
+        if (wanted == active).all():
+            return force, float(approach)
+        active = wanted
+    return None
+
+
+def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None, start=None):
     """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
@@ -96,6 +127,8 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
         Contact modulus E* [MPa].
     weight : ndarray, shape (n,), optional
         As in `share`.
+    start : ndarray, shape (n,), optional
+        Line loads at nearly the same place and load, in any unit.
 
     Returns
     -------
@@ -103,20 +136,20 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
         Line loads [N/mm], approach [mm], and stiffness d load / d approach of the contacts in touch [N/mm per mm].
     """
     weight = np.ones(gap.size) if weight is None else weight
-    force = np.full(gap.size, load / gap.size)
-    floor = 1e-9 * load
+    force = np.full(gap.size, load / gap.size) if start is None else start * load / (weight @ start)
+    floor, touch = 1e-9 * load, None if start is None else start > 0
     for _ in range(60):
         width = half_width(np.maximum(force, floor), radius, modulus)
         slope = coefficient * np.log(2 / width)
         total = flexibility + np.diag(slope)
-        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight)
+        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight, touch)
+        touch = new > floor
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
         if settled or not np.any(coefficient):
             break
     else:
         raise RuntimeError(f"load sharing did not settle at line load {load} N/mm; reduce the load or refine the mesh")
-    touch = force > floor
     tangent = weight[touch] @ np.linalg.solve(total[np.ix_(touch, touch)], weight[touch])
     return force, approach, float(tangent)
 

@@ -19,9 +19,10 @@ from ..flexibility.solved import solved_gears
 from ..steps import part, steps
 from .bodies import bodies_of
 from .cells import Cells
-from .phase_contact import REACH, PhaseContact
+from .phase_contact import PhaseContact
 
 STEP = 0.4  # longest cell along the width [mm]
+SPREAD = 4.0  # forces that share cells, over each other
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +34,9 @@ class Contact3D:
     without load [mm], 0 of involutes; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
-    `error` (phases,) difference of k from that of coarser bodies [N/m], or None.
+    `error` (phases,) difference of k from that of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach``
+    of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports of the hubs give way
+    [mm], the mean over the loads.
     """
 
     phase: NDArray[np.float64]
@@ -46,6 +49,8 @@ class Contact3D:
     closed: tuple[int, ...] = ()
     error: NDArray[np.float64] | None = None
     unloaded: NDArray[np.float64] | None = None
+    k_tangent: NDArray[np.float64] | None = None
+    supports: NDArray[np.float64] | None = None
 
 
 def pair_stiffness3d(
@@ -67,6 +72,7 @@ def pair_stiffness3d(
     error=False,
     model=None,
     cache=True,
+    supports=None,
 ):
     """Mesh stiffness of a pair of finite width.
 
@@ -78,8 +84,9 @@ def pair_stiffness3d(
     ----------
     pair : GearPair
         The faces, if of different width, lie centred on each other.
-    force : float
-        [N].
+    force : float or sequence of float
+        [N]. Several forces share the gears, and those within a factor `SPREAD` the cells of the largest one, gaps and
+        flexibilities: their k differs from that of a call of their own by up to 5e-4, as much as the cells err themselves.
     material : Material or (Material, Material)
     phases : int or ndarray
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
@@ -108,10 +115,12 @@ def pair_stiffness3d(
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        What holds the hubs of pinion and wheel; None: rigid.
 
     Returns
     -------
-    Contact3D
+    Contact3D, or a list of them if `force` is a sequence
 
     Raises
     ------
@@ -120,8 +129,10 @@ def pair_stiffness3d(
     RuntimeError
         If pits leave no contact at some phase, or the contact was not found.
     """
-    if not (math.isfinite(force) and force > 0):
-        raise ValueError(f"force = {force} N, but a mesh is pressed together: give a finite force > 0")
+    forces = [float(value) for value in np.atleast_1d(force)]
+    for value in forces:
+        if not (math.isfinite(value) and value > 0):
+            raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
@@ -130,8 +141,11 @@ def pair_stiffness3d(
         check_pits(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
-    options["flanks"] = flanks
-    contact = PhaseContact(pair, force, materials, **options)
+    shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies
+    hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
+    options |= {"flanks": flanks, "supports": hubs}
+    groups = _groups(forces)
+    contacts = [PhaseContact(pair, [forces[i] for i in group], materials, **options) for group in groups]
 
     def energy(order, less):
         def flexible(gear, own, found, neighbours):
@@ -141,38 +155,58 @@ def pair_stiffness3d(
 
         return flexible
 
+    least = max(contact.neighbours for contact in contacts)
+
     def solve(model):
         @lru_cache(maxsize=8)
         def bodies(neighbours):
             flexible = partial(model, neighbours=neighbours)
-            return bodies_of(pair, materials, cracks, contact.bands, face, groove, flexible)
+            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts)
 
         def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
-            return bodies(max(orders, contact.neighbours))
+            return bodies(max(orders, least))
 
         with part("", 0.0, 0.5):
             within(0)
+        found = {}
         with part("", 0.5, 1.0):
-            return _solved(contact, phase, within)
+            for group, contact in zip(groups, steps(contacts), strict=True):
+                found |= zip(group, _solved(contact, phase, within), strict=True)
+        return [found[i] for i in range(len(forces))]
 
     solved = solve(model or energy(order, 0))
     if error:
-        solved = replace(solved, error=np.abs(solve(energy(order - 1, 2)).k - solved.k))
-    return solved
+        coarse = solve(energy(order - 1, 2))
+        solved = [replace(one, error=np.abs(less.k - one.k)) for one, less in zip(solved, coarse, strict=True)]
+    return solved if np.ndim(force) else solved[0]
+
+
+def _groups(forces):
+    """Numbers of the forces that share cells: those down to a `SPREAD`-th of the largest, and so on with the rest."""
+    groups = []
+    for i in sorted(range(len(forces)), key=lambda i: -forces[i]):
+        if groups and forces[groups[-1][0]] <= SPREAD * forces[i]:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return groups
 
 
 def _solved(contact, phase, bodies):
-    cells, approach, reach, closed = [], np.zeros(phase.size), None, []
-    for i, at in enumerate(steps(phase.tolist())):
-        own, approach[i], shut = contact.solve(at, bodies, reach)
-        closed += [i] if shut else []
-        cells.append(own)
-        reach = contact.least + REACH * (approach[i] - contact.least)
-    orders = np.array(sorted({order for own in cells for order in own.order.tolist()}))
-    load = np.zeros((phase.size, orders.size))
-    for i, own in enumerate(cells):
-        np.add.at(load[i], np.searchsorted(orders, own.order), own.load * math.cos(contact.beta_b))
+    """`Contact3D` of each force."""
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
-    unloaded = contact.unloaded(cells)
-    k = 1e3 * contact.force / (approach - unloaded)
-    return Contact3D(phase, k, approach, orders, load, tuple(cells), dofs, tuple(closed), unloaded=unloaded)
+    found, carried = [], contact.solve(phase.tolist(), bodies)
+    for force, own in zip(contact.forces, carried, strict=True):
+        cells = tuple(one.cells for one in own)
+        approach, tangent = np.array([one.approach for one in own]), 1e3 * np.array([one.tangent for one in own])
+        orders = np.array(sorted({order for one in cells for order in one.order.tolist()}))
+        load = np.zeros((phase.size, orders.size))
+        for i, one in enumerate(cells):
+            np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))
+        closed = tuple(i for i, one in enumerate(own) if one.closed)
+        unloaded = found[0].unloaded if found else contact.unloaded(cells)
+        k = 1e3 * force / (approach - unloaded)
+        given = None if contact.hubs is None else np.array([one.given for one in own])
+        more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
+        found.append(Contact3D(phase, k, approach, orders, load, cells, dofs, **more))
+    return found

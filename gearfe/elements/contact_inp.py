@@ -7,6 +7,7 @@ from typing import Any
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
 
@@ -31,6 +32,7 @@ def write_contact_inp(
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
     pose: str = "mean",
     flanks: Mapping[str, Flank] | None = None,
+    misalignment: Misalignment | None = None,
     per_width: float | None = None,
     layers: int = 3,
     penalty: float = 500.0,
@@ -67,8 +69,10 @@ def write_contact_inp(
     pose : {"mean", "pinion", "wheel"}
         Whether both gears turn by half the approach, or one of them against the held other.
     flanks : dict, optional
-        Modifications, as of `mesh_stiffness`, of the section: the mesh carries them (`geometry.mesh.relieved`); `approach` is the
-        transmission error under load, its unloaded part included.
+        Modifications, as of `mesh_stiffness`: the mesh carries them (`geometry.mesh.relieved`, with `face`
+        `geometry.mesh.relieved_solid`); `approach` is the transmission error under load, its unloaded part included.
+    misalignment : Misalignment, optional
+        With `face`: of the axes, as of `mesh_stiffness`; the flanks lie askew, the axes stay.
     per_width : float, optional
         Edges per Hertz half width in the contact zones; default 8, in three dimensions 1.5.
     layers : int
@@ -96,16 +100,19 @@ def write_contact_inp(
     if face is None:
         if damage:
             raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")
+        if any(form.wide for form in flank_forms(pair, flanks, misalignment) or ()):
+            raise ValueError(
+                "flanks that change along the width, or misalignment, of a section, which knows no width: give face = 'spur' "
+                "or 'helical' for three dimensions"
+            )
         return write_contact_section(
             path, pair, phase, approach, line_load, materials, flanks=flanks, per_width=per_width or SECTION, **rest
         )
     if face not in ("spur", "helical") or (face == "spur") == bool(pair.gear_1.beta):
         raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
-    if flanks:
-        raise ValueError("flanks with face: only the section's mesh carries modifications; leave one of them out")
-    own = damage_by_gear(damage)
+    rest |= {"damage": damage_by_gear(damage), "forms": flank_forms(pair, flanks, misalignment)}
     return write_contact_solid(
-        path, pair, phase, approach, line_load, materials, damage=own, per_width=per_width or SOLID, layers=layers, **rest
+        path, pair, phase, approach, line_load, materials, per_width=per_width or SOLID, layers=layers, **rest
     )
 
 

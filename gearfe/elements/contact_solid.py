@@ -12,9 +12,13 @@ from numpy.typing import NDArray
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
 from geometry.mesh.holes import holed_sector
+from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
+from geometry.pair.contacts import Contacts
 from geometry.pair.gear_pair import GearPair
+from geometry.pair.modified import first_touch
 from geometry.tooth.gear import Gear
+from geometry.tooth.modified import FlankForm
 from geometry.tooth.profile import arc_at, cartesian, flank
 
 from ..files import written
@@ -66,10 +70,12 @@ def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> 
     return pair.path[0] + phase * pair.p_bt + slope * (np.asarray(z) - origin)
 
 
-def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials) -> Touching:
+def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials, forms=None) -> Touching:
     """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
     heights = np.linspace(0.0, min(pair.gear_1.b, pair.gear_2.b), SECTIONS)
     found = pair.contacts((nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
+    if forms is not None:
+        found = _modified(pair, found, heights, forms)
     out = Touching([], [], ([], []), [], [])
     for k, order in enumerate(found.order.tolist()):
         near = found.gap[:, k] < REACH * approach
@@ -86,6 +92,17 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
     return out
 
 
+def _modified(pair, found, heights, forms):
+    """Contacts of the sections at `heights`, with the flanks as they are there."""
+    own = (found.roll_1, found.roll_2, found.gap, found.radius)
+    out = Contacts(found.order, found.nominal, *(value.copy() for value in own))
+    for k, order in enumerate(found.order.tolist()):
+        numbers = np.full(heights.size, order)
+        touch = first_touch(pair, forms, found.nominal[:, k], numbers, found.gap[:, k], heights)
+        out.roll_1[:, k], out.roll_2[:, k], out.gap[:, k], out.radius[:, k] = touch[:4]
+    return out
+
+
 def write_contact_solid(
     path: str | os.PathLike[str],
     pair: GearPair,
@@ -95,15 +112,19 @@ def write_contact_solid(
     materials: tuple[Material, Material],
     *,
     damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
+    forms: tuple[FlankForm, FlankForm] | None = None,
     pose: str = "mean",
     per_width: float = 1.0,
     layers: int = 3,
     penalty: float = 500.0,
     refine: float = 1.0,
 ) -> SolidDeck:
-    """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame."""
+    """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame.
+
+    `forms` are the modified flanks of both, which the nodes lie on (`geometry.mesh.relieved_solid`); axes askew are among them.
+    """
     common = min(pair.gear_1.b, pair.gear_2.b)
-    found = touching(pair, phase, approach, line_load, materials)
+    found = touching(pair, phase, approach, line_load, materials, forms)
     parts = []
     for number, own in enumerate(damage):
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
@@ -117,6 +138,8 @@ def write_contact_solid(
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
             options = {"layer": gear.b / layers, "loaded": teeth, "patches": patches, "fine": fine}
             body = part_of(solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options))
+        if forms is not None:
+            body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
         mirror = (1, pair.outward)[number]
         x, y = _posed(body.points[:2], turn, mirror)

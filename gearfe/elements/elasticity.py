@@ -1,16 +1,22 @@
 """Plane elasticity on a second-order triangle mesh: assemble, factor once, solve many, recover stress."""
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix, csc_matrix, spmatrix
+from scipy.sparse import coo_array, coo_matrix, csc_matrix, spmatrix
 from scipy.sparse.linalg import splu
 from skfem import Basis, ElementTriP2, MeshTri2
+from skfem.quadrature import get_quadrature
 
+from ..flexibility.condense import condense
+from ..flexibility.plane_elements import bent_stiffness, stiffness
 from ..material import Material
 
 GAUSS_3 = (np.array([-np.sqrt(0.6), 0.0, np.sqrt(0.6)]), np.array([5.0, 8.0, 5.0]) / 9)
+STRAIGHT = 1e-12  # edges whose middle is closer to that of their chord, by the size of the mesh
+LEAF = 24  # triangles that `Body.between` puts together at once, and up to twice as many
 
 
 class Body:
@@ -35,36 +41,54 @@ class Body:
     ) -> None:
         if held not in (mesh.boundaries or {}):
             raise ValueError(f"no boundary {held!r}; this mesh has {', '.join(mesh.boundaries or {})}")
-        self.mesh, self.material, self.state = mesh, material, state
-        self.basis = Basis(mesh, ElementTriP2(), intorder=order)
-        self.nodes = _node_of_dof(self.basis)
+        self.mesh, self.material, self.state, self.order = mesh, material, state, order
+        self.nodes = np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])  # (6, triangles): vertices, then edges 01, 12, 02
         fixed = np.concatenate([mesh.facets[:, mesh.boundaries[held]].ravel(), mesh.nvertices + mesh.boundaries[held]])
         free = np.ones(2 * mesh.doflocs.shape[1], dtype=bool)
         free[2 * fixed] = free[2 * fixed + 1] = False
-        self.free = np.flatnonzero(free)
+        self.free, self.held = np.flatnonzero(free), np.flatnonzero(~free)
         self._factor: Any = None
+
+    @cached_property
+    def basis(self) -> Basis:
+        """Shape functions at the quadrature points."""
+        return Basis(self.mesh, ElementTriP2(), intorder=self.order)
+
+    def local(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Stiffness matrices of the triangles ``(m, 12, 12)`` [N/mm per mm of width] and their unknowns ``(m, 12)``."""
+        shapes = ElementTriP2()
+        points, weight = get_quadrature(shapes, self.order)
+        slope = np.array([shapes.lbasis(points, i)[1] for i in range(6)]).transpose(1, 0, 2)
+        lame = self.material.lame(self.state)
+        place = self.mesh.doflocs[:, self.nodes]
+        corners, middles = place[:, :3], place[:, 3:]
+        local = stiffness(slope, weight, (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1), *lame)
+        away = np.abs(middles - (corners[:, [0, 1, 0]] + corners[:, [1, 2, 2]]) / 2).max(axis=(0, 1))
+        bent = np.flatnonzero(away > STRAIGHT * np.ptp(self.mesh.doflocs))
+        local[bent] = bent_stiffness(slope, weight, np.einsum("dim,eiq->mdeq", place[:, :, bent], slope, optimize=True), *lame)
+        return local, (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(-1, 12)
 
     def stiffness(self) -> csc_matrix:
         """Stiffness matrix (sparse, 2 nodes square) [N/mm per mm of width].
 
-        The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``; the triangle matrices are one batched product of
-        the shape gradients with themselves.
+        The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``.
         """
-        lam, mu = self.material.lame(self.state)
-        grads = np.array([self.basis.basis[i][0].grad for i in range(6)])  # shape function, direction, triangle, point
-        n_tri, n_pt = grads.shape[2:]
-        rows = np.ascontiguousarray(grads.transpose(2, 0, 1, 3)).reshape(n_tri, 12, n_pt)
-        product = (rows * self.basis.dx[:, None, :]) @ rows.transpose(0, 2, 1)
-        product = product.reshape(n_tri, 6, 2, 6, 2)  # int d_a N_i d_b N_j
-        trace = product[:, :, 0, :, 0] + product[:, :, 1, :, 1]
-        local = lam * product + mu * product.transpose(0, 1, 4, 3, 2)
-        local[:, :, 0, :, 0] += mu * trace
-        local[:, :, 1, :, 1] += mu * trace
-        dofs = (2 * self.nodes.T[:, :, None] + np.arange(2)).reshape(n_tri, 12)
+        local, dofs = self.local()
         size = 2 * self.mesh.doflocs.shape[1]
         i = np.repeat(dofs, 12, axis=1).ravel()
         j = np.tile(dofs, (1, 12)).ravel()
-        return coo_matrix((local.reshape(n_tri, 144).ravel(), (i, j)), shape=(size, size)).tocsc()
+        return coo_matrix((local.ravel(), (i, j)), shape=(size, size)).tocsc()
+
+    def between(self, load: spmatrix) -> NDArray[np.float64]:
+        """Displacements of the columns of `load` (sparse, ``(2 nodes, n)``) under each other: ``load' K^-1 load`` ``(n, n)``.
+
+        Three times as fast as `solve`, since no displacement is computed.
+        """
+        local, dofs = self.local()
+        corners = self.mesh.doflocs[:, self.mesh.t[:3]].mean(axis=1)
+        radius = np.hypot(*corners)
+        around = np.array([np.arctan2(*corners) * radius.mean(), radius])  # a cut of a ring is short in these coordinates
+        return -condense(local, dofs, around, coo_array(load), np.arange(0), self.held, leaf=LEAF)
 
     def solve(self, load: NDArray[np.float64] | spmatrix) -> NDArray[np.float64]:
         """Displacements for the columns of `load` (dense or sparse, ``(2 nodes, n)``) [N/mm]."""
@@ -100,17 +124,13 @@ class Body:
         return np.array([np.bincount(flat, part.ravel(), minlength=count.size) for part in parts]) / count
 
 
-def _node_of_dof(basis):
-    """Node number of each local shape function ``(6, triangles)``: vertices, then edges."""
-    mesh = basis.mesh
-    return np.vstack([mesh.t[:3], mesh.nvertices + mesh.t2f])
-
-
 def edge_nodes(mesh, vertices):
     """Nodes ``(3, n - 1)`` of the edges along a chain of `vertices`: start, end, middle."""
-    lookup = {(a, b): i for i, (a, b) in enumerate(mesh.facets.T.tolist())}
-    middle = [lookup[min(a, b), max(a, b)] for a, b in zip(vertices[:-1].tolist(), vertices[1:].tolist(), strict=True)]
-    return np.array([vertices[:-1], vertices[1:], mesh.nvertices + np.array(middle)])
+    low, high = np.sort([vertices[:-1], vertices[1:]], axis=0)
+    keys = mesh.facets[0].astype(np.int64) * mesh.nvertices + mesh.facets[1]
+    order = np.argsort(keys)
+    middle = order[np.searchsorted(keys, low.astype(np.int64) * mesh.nvertices + high, sorter=order)]
+    return np.array([vertices[:-1], vertices[1:], mesh.nvertices + middle])
 
 
 def edge_shapes(t):

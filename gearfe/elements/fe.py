@@ -15,10 +15,11 @@ with (1, 0, -2, 0, 1) / 4 it is 6 / 16. S(s, s) is taken from those.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
-from scipy.sparse import coo_matrix, lil_matrix
+from scipy.sparse import coo_matrix, hstack
 
 from geometry.mesh.outline import GROWTH, stations
 from geometry.mesh.section_mesh import section
@@ -146,14 +147,18 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     """
     mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
     body = Body(mesh.mesh, material, state=state)
-    own = hats(mesh, 0, corner=True)
-    moved = body.solve(own.load)
-    near, tip = own_tooth(gear, own, own.load.T @ moved, half_plane(material, state))
-    far = {}
-    for tooth in range(1, neighbours + 1):
-        read = hats(mesh, tooth)
-        far[0, tooth] = RectBivariateSpline(own.arc, read.arc, (read.load.T @ moved).T)
-    return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), moved.shape[0])
+    on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
+    influence, at = _between(body, [one.load for one in on.values()])
+    own = on[0]
+    near, tip = own_tooth(gear, own, influence[at[0], at[0]], half_plane(material, state))
+    far = {(0, k): RectBivariateSpline(own.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
+    return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), 2 * mesh.mesh.doflocs.shape[1])
+
+
+def _between(body, loads):
+    """Displacements of all columns of `loads` under each other, and which rows and columns belong to each of them."""
+    ends = np.cumsum([0, *(load.shape[1] for load in loads)]).tolist()
+    return body.between(hstack(loads, format="coo")), [slice(a, b) for a, b in pairwise(ends)]
 
 
 def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
@@ -177,23 +182,21 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
     body = Body(mesh.mesh, material, state=state)
     own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
-    moved = {tooth: body.solve(own[tooth].load) for tooth in solved}
     faces = _face_columns(mesh)
-    openings = {tooth: faces.T @ moved[tooth] for tooth in solved}
-    influence = faces.T @ body.solve(faces)
-    influence = (influence + influence.T) / 2
-    stiffness = np.linalg.inv(influence)
+    influence, at = _between(body, [*(own[tooth].load for tooth in solved), faces])
+    at, opened = dict(zip(solved, at, strict=False)), at[-1]
+    opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
+    apart = influence[opened, opened]
+    stiffness = np.linalg.inv(apart)
     near, tip, far = {}, {}, {}
     for tooth in solved:
-        glued = own[tooth].load.T @ moved[tooth] - openings[tooth].T @ stiffness @ openings[tooth]
-        near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
         for other in solved:
-            if 0 < (other - tooth) % gear.z <= gear.z // 2:
-                # both are the same number, by reciprocity; their mean is symmetric to rounding
-                there, back = own[other].load.T @ moved[tooth], (own[tooth].load.T @ moved[other]).T
-                glued = (there + back) / 2 - openings[other].T @ stiffness @ openings[tooth]
-                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, glued.T)
-    seam = SeamFaces({t: CubicSpline(own[t].arc, openings[t].T) for t in solved}, influence, stiffness)
+            glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
+            if other == tooth:
+                near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
+            elif (other - tooth) % gear.z <= gear.z // 2:
+                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, glued)
+    seam = SeamFaces({t: CubicSpline(own[t].arc, opening[t].T) for t in solved}, apart, stiffness)
     limits = own[solved[0]].arc[0], own[solved[0]].arc[-2]
     return Flexibility(gear, near, far, tip, limits, faces.shape[0], healthy, seam)
 
@@ -205,12 +208,12 @@ def _face_columns(mesh):
         ahead = np.gradient(mesh.mesh.doflocs[:, seam.faces[0]], axis=1)[:, :-2]
         normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
         columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
-    apart = lil_matrix((2 * mesh.mesh.doflocs.shape[1], len(columns)))
-    for j, (left, right, normal) in enumerate(columns):
-        for d in range(2):
-            apart[2 * left + d, j] = normal[d]
-            apart[2 * right + d, j] = -normal[d]
-    return apart.tocsc()
+    at = np.arange(len(columns))
+    left, right = (np.array([one[side] for one in columns]) for side in (0, 1))
+    normal = np.array([one[2] for one in columns]).T
+    rows = [2 * nodes + d for nodes in (left, right) for d in (0, 1)]
+    forces = np.concatenate([*normal, *-normal])
+    return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
 
 
 def own_tooth(gear, own, influence, coefficient):

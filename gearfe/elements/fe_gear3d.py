@@ -1,6 +1,7 @@
 """`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
 
 import math
+from functools import partial
 
 import numpy as np
 from scipy.linalg import eigh
@@ -8,6 +9,7 @@ from scipy.linalg import eigh
 from ..flexibility.halfspace import half_space
 from ..flexibility.solid import hats, own_distance, parted, solved_teeth
 from .fe3d import Patches, influence, mesh_patches
+from .integral import integral_influence
 
 LOST = 2  # of the highest axial degrees may be dropped if the layers do not carry them
 RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
@@ -24,7 +26,19 @@ def axial_modes(width, m_n):
 
 
 def solid_flexibility(
-    gear, material, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, solver=None, tell=None, healthy=None, cache=True
+    gear,
+    material,
+    cracks=(),
+    *,
+    neighbours=1,
+    degree=None,
+    less=0,
+    refine=1.0,
+    solver=None,
+    tell=None,
+    healthy=None,
+    cache=True,
+    shaft=None,
 ):
     """Flexibility of a gear of finite width by finite elements of all of it.
 
@@ -48,6 +62,8 @@ def solid_flexibility(
         Of the gear without cracks; needed if there are `cracks`.
     cache : bool or SolvedGears
         Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
+    shaft : Shaft, optional
+        Of a gear that is one piece with it: held by it at its end faces, the bore free.
 
     Returns
     -------
@@ -69,7 +85,9 @@ def solid_flexibility(
     layer = min(LAYER * gear.m_n, gear.b / 6)
     fine = [(z, z, END * layer) for z in (0.0, gear.b)]
     mesh = mesh_patches(gear, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)
-    found = influence(mesh, material, patches, solver=solver, tell=tell)
+    options = {"solver": solver, "tell": tell}
+    whole_gear = influence if shaft is None else partial(integral_influence, shaft=shaft)
+    found = whole_gear(mesh, material, patches, **options)
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
     whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit

@@ -11,6 +11,7 @@ from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 
 from ..material import Material
+from ..threads import single
 from .elasticity import Body
 from .fe import EDGES
 from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
@@ -34,6 +35,7 @@ class Intensity:
     direction: float
 
 
+@single
 def stress_intensity(
     gear: Gear,
     crack: Crack,

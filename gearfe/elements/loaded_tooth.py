@@ -13,6 +13,7 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, flank, roll_at_arc
 
 from ..material import Material
+from ..threads import single
 from .elasticity import Body, edge_nodes, edge_shapes
 from .fe import EDGES, flank_load
 
@@ -63,6 +64,7 @@ def _solve(gear, material, state, arc, half_width, edges, refine):
     return mesh, body, body.solve(narrow_load(mesh, 0, arc, half_width))[:, 0]
 
 
+@single
 def tooth_flexibility(
     gear: Gear, radius: float, material: Material, *, at: str = "centreline", state: str = "plane strain", refine: float = 1.0
 ) -> float:
@@ -119,6 +121,7 @@ def _displacement(body, moved, x, y):
     return np.array(shapes) @ moved.reshape(-1, 2)[body.nodes[:, triangle[0]]]
 
 
+@single
 def root_stress(
     gear: Gear,
     radius: float,

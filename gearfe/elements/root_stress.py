@@ -11,6 +11,7 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from ..material import Material
+from ..threads import single
 from .fe3d import _points
 from .hexahedron import assemble, face_shapes
 from .loaded_tooth import _peak, check_line_load, edge_lengths, load_at
@@ -54,6 +55,7 @@ class RootStress:
         return float(self.z[self.stress.argmax()])
 
 
+@single
 def root_stress_along_width(
     gear: Gear,
     radius: float,

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
+PIECES = 20  # of the width, each longer than the one before, in `patch_kernel`
 
 
 def half_space(material):
@@ -94,7 +95,7 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     degree : int
         Of the polynomials, see `modes`.
     slope : ndarray, shape (n, n), or float
-        [-].
+        Symmetric [-].
     stretch : float
         ``1 / cos(beta_b)``.
 
@@ -103,19 +104,20 @@ def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     ndarray, shape (n, degree + 1, n, degree + 1)
     """
     fine = min((knots[2] - knots[0]).min(), width) * 1e-9  # the kernel rises like the logarithm of t
-    ends = np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, 61))
-    gauss, weight = legendre.leggauss(16)
+    ends = np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, PIECES + 1))
+    gauss, weight = legendre.leggauss(max(16, degree + 4))
     t = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * gauss).ravel()
     weight = (np.diff(ends)[:, None] / 2 * weight).ravel()
     gauss, inner = legendre.leggauss(degree + 1)
     left = width - t
     z = left[:, None] * (1 + gauss) / 2
-    ahead = modes(z + t[:, None], width, degree)
-    behind = modes(z, width, degree)
-    overlap = np.einsum("tg,tga,tgb->tab", left[:, None] / 2 * inner * weight[:, None], ahead, behind, optimize=True)
-    slope = np.broadcast_to(slope, (knots.shape[1],) * 2)[..., None]
-    out = np.einsum("ijt,tab->iajb", hat_distance(knots, -slope * t, stretch * t), overlap, optimize=True)
-    return out + np.einsum("ijt,tab->ibja", hat_distance(knots, slope * t, stretch * t), overlap, optimize=True)
+    ahead = modes(z + t[:, None], width, degree) * (left[:, None] / 2 * inner * weight[:, None])[..., None]
+    overlap = ahead.transpose(0, 2, 1) @ modes(z, width, degree)
+    n = knots.shape[1]
+    shift = -np.broadcast_to(slope, (n, n))[..., None] * t
+    distance = hat_distance(knots, shift, stretch * t).reshape(n * n, t.size)
+    out = (distance @ overlap.reshape(t.size, -1)).reshape(n, n, degree + 1, degree + 1)
+    return out.transpose(0, 2, 1, 3) + out.transpose(1, 3, 0, 2)  # t < 0: the same with both patches exchanged
 
 
 def strip(half_width):
@@ -146,13 +148,22 @@ def line_kernel(start, stop, x):
     return kernel / np.outer(stop - start, stop - start)
 
 
-def pair_kernel(ends, i, j, x):
-    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]."""
-    start, stop = ends
+def pair_kernel(ends, i, j, x, other=None):
+    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]; cells j are those between `other`, if given."""
+    (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
 
     def twice(apart):
         return apart * np.arcsinh(apart / least) - np.hypot(apart, least)
 
-    kernel = twice(stop[i] - start[j]) + twice(stop[j] - start[i]) - twice(start[i] - start[j]) - twice(stop[i] - stop[j])
-    return kernel / ((stop[i] - start[i]) * (stop[j] - start[j]))
+    kernel = twice(stop[i] - low[j]) + twice(high[j] - start[i]) - twice(start[i] - low[j]) - twice(stop[i] - high[j])
+    return kernel / ((stop[i] - start[i]) * (high[j] - low[j]))
+
+
+def pair_slope(ends, i, j, x, other=None):
+    """``dK / dx_i / x_i``, the same as ``dK / dx_j / x_j``, of `pair_kernel` K with the other x held ``(n,)`` [1/mm**3]."""
+    (start, stop), (low, high) = ends, other or ends
+    least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
+    away = (stop[i] - low[j], high[j] - start[i], start[i] - low[j], stop[i] - high[j])
+    one, two, three, four = (np.hypot(apart, least) for apart in away)
+    return (three + four - one - two) / (2 * least**2) / ((stop[i] - start[i]) * (high[j] - low[j]))

@@ -102,10 +102,11 @@ class Flexibility:
 
         Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
         """
-        arc = np.clip(arc_at(self.gear, roll), *self.limits)
+        low, high = self.limits
+        arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
-        members = {tooth: np.flatnonzero(teeth == tooth) for tooth in np.unique(teeth).tolist()}
+        members = {tooth: (teeth == tooth).nonzero()[0] for tooth in sorted(set(teeth.tolist()))}
         for tooth, own in members.items():
             out[..., own, own] = self.near_of(tooth)(arc[..., own])
             for other, theirs in members.items():

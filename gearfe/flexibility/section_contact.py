@@ -12,7 +12,8 @@ class Solved:
     `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
     `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
     `closed` the phases at which crack faces touch and were kept from passing through each other, `unloaded` (phases,) the part of
-    the approach at which the first pair touches [mm], None for involutes.
+    the approach at which the first pair touches [mm], None for involutes, `supports` (phases,) what the supports of the hubs
+    give way [mm], None of rigid ones.
     """
 
     order: np.ndarray
@@ -22,3 +23,4 @@ class Solved:
     pressure: np.ndarray
     closed: tuple = ()
     unloaded: np.ndarray | None = None
+    supports: np.ndarray | None = None

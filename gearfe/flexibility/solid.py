@@ -15,6 +15,7 @@ from numpy.polynomial import chebyshev
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, roll_at_arc
 
+from .end_faces import edge_factor, mirrored_patches
 from .halfspace import half_space, hat_points, modes, patch_kernel
 from .solved import solved_gears
 
@@ -31,9 +32,11 @@ class Flexibility3D:
 
     A load is a force per width P(z) [N/mm], at right angles to the flank, on a line s(z) of it. The displacement against it is
 
-        u(z) = int P(z)' [bulk(s, z, s', z') + k / R] dz',    bulk = sum of p_a(z) c_i(s) B_ia,jb c_j(s') p_b(z')
+        u(z) = int P(z)' [bulk(s, z, s', z') + k / R + edge (1 / R_0 + 1 / R_b)] dz',
+        bulk = sum of p_a(z) c_i(s) B_ia,jb c_j(s') p_b(z')
 
-    with orthonormal Legendre polynomials p over the width, polynomials c through the hats, and R the flat distance.
+    with orthonormal Legendre polynomials p over the width, polynomials c through the hats, R the flat distance, and R_0, R_b
+    those to the mirror images of the load in the end faces.
 
     Attributes
     ----------
@@ -54,6 +57,9 @@ class Flexibility3D:
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     seam : Faces or None
         The faces of its cracks, if they are to be kept from passing through each other; B is that of faces that may.
+    edge : float
+        Coefficient of loads mirrored in the end faces [mm**2/N], taken out of B like the half-space, see
+        `gearfe.flexibility.end_faces`.
     """
 
     gear: Gear
@@ -65,6 +71,7 @@ class Flexibility3D:
     unknowns: int
     healthy: "Flexibility3D | None" = None
     seam: Any = None
+    edge: float = 0.0
 
     def basis(self, roll, z):
         """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
@@ -153,13 +160,15 @@ def parted(gear, material, width, degree, influence, unknowns, healthy=None, *, 
     -------
     Flexibility3D
     """
+    edge = edge_factor(material) * half_space(material)
     local = half_space(material) * own_distance(gear, width, degree, cache=cache)
+    local = local + edge * own_mirrors(gear, width, degree, cache=cache)
     cracked = healthy is not None
     near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
     far = {
         (i, j): value for (i, j), value in influence.items() if i != j and (j - i) % gear.z <= gear.z // 2 and (cracked or i == 0)
     }
-    return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy)
+    return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy, edge=edge)
 
 
 def own_distance(gear, width, degree, *, cache=True):
@@ -173,6 +182,16 @@ def own_distance(gear, width, degree, *, cache=True):
         return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
 
     return solved_gears(cache).get(("own distance", gear, width, degree), solve)
+
+
+def own_mirrors(gear, width, degree, *, cache=True):
+    """Mean of 1 / R between each patch and the images of its flank's in the end faces, see `mirrored_patches`: ``(n, n)``."""
+
+    def solve():
+        n = PLACES * (degree + 1)
+        return mirrored_patches(hats(gear), width, degree, 1 / math.cos(gear.beta_b)).reshape(n, n)
+
+    return solved_gears(cache).get(("own mirrors", gear, width, degree), solve)
 
 
 def _scale(gear):

@@ -20,12 +20,15 @@ def stage_of(scene):
 
 
 def curves(pair, case, options):
-    """Curve of a scene's pair over one cycle, and that of its damaged tooth's engagement (None if healthy), by one method."""
+    """Curve of a scene's pair over one cycle, and that of its damaged tooth's engagement (None if healthy), by one method.
+
+    Without the part of shafts that hold its gears: a machine has bearings of its own.
+    """
     damage = pair.damage.get(case, {})
     if options["method"] == "auto" and any(isinstance(one, Pit) or not one.through for found in damage.values() for one in found):
         options = options | {"method": "ritz3d"}
-    healthy = mesh_stiffness(**pair.case(), **options)
-    return healthy, mesh_stiffness(**pair.case(case), **options, span="tooth") if damage else None
+    healthy = mesh_stiffness(**pair.case(), **options).without_supports()
+    return healthy, mesh_stiffness(**pair.case(case), **options, span="tooth").without_supports() if damage else None
 
 
 def healthy_and_hurt(scene, case, options, kinds):

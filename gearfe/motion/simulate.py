@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..elements.solver import free_memory
 from ..machine.tables import Machine
+from ..threads import single
 from .fixed_step import fixed_steps
 from .reference import SOLVERS, reference
 from .response import Response
@@ -38,6 +39,7 @@ LONGEST = 300.0  # s: a run without numba that would take longer is refused
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
+@single
 def simulate(
     machine: Machine,
     duration: float,

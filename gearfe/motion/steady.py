@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..machine.contact_law import slopes
 from ..machine.tables import Machine
+from ..threads import single
 from . import excitation, propagator
 from .exponential import Step
 from .numpy_loop import run
@@ -72,6 +73,7 @@ def common_period(machine: Machine) -> float:
     return turns / math.gcd(*(int(part * turns) for part in parts)) / rates[0]
 
 
+@single
 def steady_state(
     machine: Machine,
     *,

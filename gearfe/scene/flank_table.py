@@ -33,6 +33,13 @@ FLANK = {
     "table_roll_mm": (NUMBERS, None),
     "table_removed_um": (NUMBERS, None),
     "pitch_um": (NUMBERS, None),
+    "wear_roll_mm": (NUMBERS, None),
+    "wear_um": (NUMBERS, None),
+    "tip_rounding_mm": (NUMBER, 0.0),
+    "tip_chamfer_mm": (NUMBER, 0.0),
+    "tooth_scale": (NUMBERS, []),
+    "eccentricity_um": (NUMBER, 0.0),
+    "eccentric_tooth": (NUMBER, 0.0),
 }
 
 
@@ -86,10 +93,14 @@ def _flank(row):
         given |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}
         angle = row[f"{end}_start_angle_deg"]
         given[f"{end}_start_angle"] = None if angle is None else math.radians(angle)
-    if (row["table_roll_mm"] is None) != (row["table_removed_um"] is None):
-        raise ValueError("give table_roll_mm and table_removed_um together")
-    if row["table_roll_mm"] is not None:
-        given["table"] = row["table_roll_mm"], [value * 1e-3 for value in row["table_removed_um"]]
+    for name, roll, amount in (("table", "table_roll_mm", "table_removed_um"), ("wear", "wear_roll_mm", "wear_um")):
+        if (row[roll] is None) != (row[amount] is None):
+            raise ValueError(f"give {roll} and {amount} together")
+        if row[roll] is not None:
+            given[name] = row[roll], [value * 1e-3 for value in row[amount]]
+    given |= {f"tip_{edge}": row[f"tip_{edge}_mm"] for edge in ("rounding", "chamfer")}
+    given |= {"tooth_scale": row["tooth_scale"], "eccentricity": row["eccentricity_um"] * 1e-3}
+    given["eccentric_tooth"] = row["eccentric_tooth"]
     if row["pitch_um"] is not None:
         given["pitch"] = [value * 1e-3 for value in row["pitch_um"]]
     return Flank(**given)

@@ -15,10 +15,13 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
 from ..material import Material
+from ..supports.shaft import Shaft
+from ..supports.support import Support
 from . import assumed, machine_table
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .references import Reference, read_references
 from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
+from .support_table import SUPPORTS, supports_of
 from .toml_file import read_toml
 
 TOP = {"title": (TEXT, REQUIRED), "source": (TEXT, REQUIRED), "later": (TEXTS, [])}
@@ -49,6 +52,7 @@ TABLES = {
         **MISALIGNMENT,
     },
     "flank": FLANK,
+    **SUPPORTS,
 }
 DAMAGE = {
     "crack": {
@@ -91,8 +95,7 @@ ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEX
 class ScenePair:
     """A gear pair of a scene with its materials, its force along the line of action [N], and how its teeth run.
 
-    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage, `flanks` what it takes as flanks, `misalignment`
-    likewise.
+    `damage` holds by case what `gearfe.mesh_stiffness` takes as damage; `flanks`, `misalignment`, `supports` are as it has them.
     """
 
     pair: GearPair
@@ -103,11 +106,13 @@ class ScenePair:
     damage: dict[str, dict[str, list[Crack | Pit]]] = field(default_factory=dict)
     flanks: dict[str, Flank] = field(default_factory=dict)
     misalignment: Misalignment | None = None
+    supports: dict[str, Support | Shaft] = field(default_factory=dict)
 
     @property
     def wide(self) -> bool:
-        """Whether flanks change along the width, or lie askew."""
-        return bool(self.misalignment) or any(flank.wide for flank in self.flanks.values())
+        """Whether flanks change along the width, lie askew, or are tilted by their shafts."""
+        tilted = any(held.tilts for held in self.supports.values())
+        return tilted or bool(self.misalignment) or any(flank.wide for flank in self.flanks.values())
 
     def case(self, name: str | None = None) -> dict[str, Any]:
         """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
@@ -120,8 +125,7 @@ class ScenePair:
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
-        out |= {"flanks": self.flanks} if self.flanks else {}
-        out |= {"misalignment": self.misalignment} if self.misalignment else {}
+        out |= {name: own for name in ("flanks", "misalignment", "supports") if (own := getattr(self, name))}
         return out if name is None else out | {"damage": self.damage[name]}
 
 
@@ -224,7 +228,8 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         found = _cases(file, damage, gears, name, rows["pair"])
         bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
         askew = misalignment_of(file, where, made, row)
-        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent, askew)
+        held = supports_of(file, rows, name, rows["pair"], materials)
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent, askew, held)
     notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
     cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import TYPE_CHECKING, Any
 
@@ -44,6 +44,9 @@ class StiffnessCurve:
         Estimated discretisation error of k [N/m], if one was asked for.
     unloaded : ndarray, shape (n,) or None
         Transmission error without load [m]: 0 for involutes, otherwise where the first pair of modified flanks touches.
+    lte_supports : ndarray, shape (n,) or None
+        The part of `lte` that shafts and springs under the hubs give way [m], the mean over the loads of the contact; None of
+        rigid bores.
     meta : dict
         Gears, centre distance, load, materials, method, resolution, versions: all that is needed to repeat it.
     """
@@ -58,6 +61,7 @@ class StiffnessCurve:
     error: NDArray[np.float64] | None = None
     meta: dict[str, Any] = field(default_factory=dict)
     unloaded: NDArray[np.float64] | None = None
+    lte_supports: NDArray[np.float64] | None = None
 
     def __repr__(self):
         """One line: method, phases, load, the range of k."""
@@ -159,6 +163,20 @@ class StiffnessCurve:
         """Transmission error under load ``(n,)`` [m], its unloaded part included, as a length on the line of action."""
         return self.lte if self.unloaded is None else self.lte + self.unloaded
 
+    def without_supports(self) -> "StiffnessCurve":
+        """The stiffness of the teeth and bodies alone, loaded as they are on their shafts.
+
+        For models that have shafts and bearings of their own: they must not be counted twice. The tangent stiffness takes the
+        shafts' tangent for their secant, which is exact of hubs that do not tilt.
+        """
+        if self.lte_supports is None:
+            return self
+        lte, way = self.lte - self.lte_supports, self.lte_supports / self.meta["force_N"]
+        k_tangent = 1 / (1 / self.k_tangent - way)
+        error = None if self.error is None else self.error * (self.lte / lte) ** 2
+        k = self.meta["force_N"] / lte
+        return replace(self, k=k, k_tangent=k_tangent, lte=lte, error=error, lte_supports=None)
+
     @property
     def share(self) -> NDArray[np.float64]:
         """Load share of each pair ``(n, pairs)``, rows sum to 1."""
@@ -240,6 +258,13 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
         force=rows("force"),
         pressure=rows("pressure"),
         error=row("error"),
-        meta=curves[0].meta,
+        meta=_meta_of(curves),
         unloaded=row("unloaded"),
+        lte_supports=row("lte_supports"),
     )
+
+
+def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
+    """What is said of the first, and at which phases of all of them cracks closed."""
+    meta, name = curves[0].meta, "crack_closed_phases"
+    return meta | {name: [at for one in curves for at in one.meta[name]]} if name in meta else meta

@@ -15,13 +15,14 @@ from ..material import Material
 from .limits import check_count, check_range, is_number, numbers
 from .methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, Method, having
 from .own_flexibility import OwnFlexibility
+from .turns import check_length, cycles_in
 
 NO_VARIANTS = (
     *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
     "flanks",
 )
 
-SPANS = ("cycle", "tooth", "revolution")
+SPANS = ("cycle", "tooth", "revolution", "hunting")
 CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 
@@ -49,9 +50,10 @@ def phase_array(phases, span, pair, overlap=0.0):
         phases = check_count(phases)
         if span == "tooth":
             return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
-        return np.arange(phases * (pair.gear_1.z if span == "revolution" else 1)) / phases
-    if span == "revolution":
-        raise ValueError("span = 'revolution' with phases spelled out: give their number in each mesh cycle")
+        check_length(pair, span, phases)
+        return np.arange(phases * cycles_in(pair, span)) / phases
+    if span in ("revolution", "hunting"):
+        raise ValueError(f"span = {span!r} with phases spelled out: give their number in each mesh cycle")
     phases = numbers("phases", phases, "")
     if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
         raise ValueError("phases must be a non-empty array of finite numbers")
@@ -78,14 +80,17 @@ def why_solid(pair, face, damage):
     return ""
 
 
-def choose(method, pair, cracks, pits, face, teeth, flanks=None):
+def choose(method, pair, cracks, pits, face, teeth, flanks=None, supports=None):
     """The method that ``auto`` stands for, and why."""
     if method != "auto":
         return method, "asked for"
     if teeth is not None:
         return "fe", "teeth are left out"
+    if any(one.integral for one in supports or () if one):
+        return "fe3d", "a gear is one piece with its shaft"
     why = why_solid(pair, face, [one for own in (*cracks, *pits) for one in own])
     why = why or ("flanks change along the width" if any(form.wide for form in flanks or ()) else "")
+    why = why or ("shafts tilt the gears" if any(one.tilts for one in supports or () if one) else "")
     return ("ritz3d", why) if why else ("ritz", "spur gears, nothing changes along the width: plane strain")
 
 
@@ -106,6 +111,8 @@ def check_method(method):
 def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     """Raise ValueError for what the method of a `row` of the table does not model."""
     method = f"method = {row.name!r}"
+    if not is_number(groove):
+        raise ValueError(f"groove = {groove!r}, but give the width of the relief groove, a number [mm]")
     if face not in (None, *FACES):
         raise ValueError(f"face = {face!r}, but it must be one of {', '.join(FACES)}")
     if face not in (None, *row.faces):

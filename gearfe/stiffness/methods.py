@@ -99,7 +99,7 @@ ROWS = (
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
         "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="sloping", pits=True, faces=FACES, error=True,
-        extended=True, kept="disk",
+        extended=True, flanks=True, kept="disk",
     ),
     Method(
         "coupled", "closed form: tapered beams on a common annulus, neighbours coupled; healthy external gears", "section",
@@ -143,6 +143,7 @@ def fitted(method, run):
     This is the one rule for which face, groove and variants go to which method:
 
     - a transverse section takes a helical or herringbone pair as a spur pair of the width that carries, b less the groove;
+    - whatever knows no width takes shafts that tilt their gears as such that only give way;
     - a plain sum takes a ring's body as its row says: left out, or as its article prints it.
 
     ``mesh_stiffness`` itself refuses such arguments, so that nobody gets a section who asked for a helical gear.
@@ -173,6 +174,10 @@ def fitted(method, run):
             out["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))
         less = f", b less the groove of {groove:g} mm" if groove else ""
         left_out.append(f"{method} is the transverse section: {face} teeth are taken as spur teeth {width:g} mm wide{less}")
+    supports = run.get("supports") or {}
+    if row.kind != "solid" and any(one.tilts for one in supports.values() if one):
+        out["supports"] = {name: one and one.untilted() for name, one in supports.items()}
+        left_out.append(f"{method} knows no width: shafts give way, but do not tilt their gears")
     if pair.gear_2.internal and row.rings in RING_FOUNDATIONS and not run.get("variants"):
         out["variants"] = {"foundation": row.rings}
         left_out.append(f"{method} {RING_FOUNDATIONS[row.rings]}")

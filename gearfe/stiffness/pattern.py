@@ -13,9 +13,14 @@ from geometry.tooth.modified import Flank
 
 from ..contact.solid import Contact3D, pair_stiffness3d
 from ..material import Material
+from ..supports.shaft import Shaft
+from ..supports.support import Support
+from ..threads import single
 from .inputs import by_gear, forces_of, overlap, phase_array, two_materials
+from .supported import check_integral, supports_of
 
 
+@single
 def contact_pattern(
     pair: GearPair,
     force: float,
@@ -23,6 +28,7 @@ def contact_pattern(
     *,
     flanks: Mapping[str, Flank] | None = None,
     misalignment: Misalignment | None = None,
+    supports: Mapping[str, Support | Shaft] | None = None,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
     phases: int | ArrayLike = 24,
     face: str | None = None,
@@ -39,7 +45,7 @@ def contact_pattern(
     force : float
         Along the line of action [N].
     material : Material or (Material, Material)
-    flanks, misalignment, damage, phases, face, groove
+    flanks, misalignment, supports, damage, phases, face, groove
         As of `mesh_stiffness`.
 
     Returns
@@ -70,4 +76,6 @@ def contact_pattern(
     forms = flank_forms(pair, flanks, misalignment)
     phase = np.asarray(phase_array(phases, "cycle", pair, overlap(pair, face, groove)))
     options = {"pits": pits, "cracks": cracks, "flanks": forms, "face": face, "groove": groove}
+    options["supports"] = supports_of(pair, supports)
+    check_integral(pair, options["supports"], "ritz3d", face)
     return pair_stiffness3d(pair, forces[0], two_materials(material), phase, **options)

@@ -13,16 +13,17 @@ from ..steps import steps
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate, fixed_phases
 from .own_flexibility import flexibility_of
+from .supported import yielding
 
 
-def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove, flanks=None):
+def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove, flanks=None, yields=None):
     """`solve` of a plain sum (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it."""
     options = {**variants, "face": face, "groove": groove}
     solve, details = plain_sum(pair, materials, phase, row.load(), cracks=cracks, pits=pits, flanks=flanks, **options)
-    return solve, options | {"outside": [asdict(one) for one in details["outside"]]}
+    return yielding(solve, yields), options | {"outside": [asdict(one) for one in details["outside"]]}
 
 
-def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, **numeric):
+def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, yields=None, **numeric):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
     Parameters
@@ -41,6 +42,8 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
         Where solved gears are looked up and kept.
     flanks : (FlankForm, FlankForm), optional
         Modifications, `geometry.tooth.modified.flank_forms`.
+    yields : float, optional
+        Approach by the supports of the hubs per line load [mm per N/mm].
     **numeric
         ``refine``, ``order``, ``teeth``: each method gets those that it has.
     """
@@ -59,7 +62,7 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
     details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
-    return contact.solve, details
+    return yielding(contact.solve, yields), details
 
 
 def _numeric(row, given):
@@ -113,6 +116,7 @@ def curve(pair, phase, force, solve, meta, damage=None):
         pressure=solved.pressure[:, used] * 1e6,
         meta=meta,
         unloaded=unloaded,
+        lte_supports=None if solved.supports is None else solved.supports * 1e-3,
     )
 
 
@@ -120,7 +124,7 @@ def with_error(row, curves, case, options):
     """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
     pair, materials, phase = case
     less = coarser(options["refine"], _numeric(row, options).get("order"))
-    turns = any(form.flank.pitch for form in options.get("flanks") or ())
+    turns = any(form.differs for form in options.get("flanks") or ())
     periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
     solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less))]

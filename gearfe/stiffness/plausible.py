@@ -64,7 +64,8 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):
         bad = curve.phase[~(np.isfinite(curve.k) & (curve.k > 0))][0]
         raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
-    ratio = float(np.median(curve.lte)) * 1e3 / module
+    own = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth, that shafts carry along
+    ratio = float(np.median(own)) * 1e3 / module
     told = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:
         raise ValueError(
@@ -86,3 +87,15 @@ def _pressure(curve):
     """Largest pressure of the pairs [MPa], at the median phase; 0 without any."""
     known = np.where(np.isfinite(curve.pressure), curve.pressure, 0.0)
     return float(np.median(known.max(axis=1, initial=0.0))) / 1e6
+
+
+def answered(curves, pair, materials, force, torque):
+    """One curve or the list of them, none beyond what linear elasticity can say."""
+    for one in curves:
+        check_plausible(one, pair, materials)
+    return as_asked(curves, force, torque)
+
+
+def as_asked(curves, force, torque):
+    """The list of curves, or the one if one load was given."""
+    return curves if np.ndim(torque if force is None else force) else curves[0]

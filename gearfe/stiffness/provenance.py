@@ -10,6 +10,7 @@ VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 def provenance(pair, materials, method, options):
     """`meta` of a `StiffnessCurve` without its force, of a method (its name) with its `options`."""
     gears = {name: asdict(gear) for name, gear in (("gear_1", pair.gear_1), ("gear_2", pair.gear_2))}
+    held = "hubs on supports" if options.get("supports") else "bores held"
     return {
         "method": method,
         "width_mm": min(pair.gear_1.b, pair.gear_2.b),
@@ -17,7 +18,7 @@ def provenance(pair, materials, method, options):
         "a_mm": pair.a,
         "eps_alpha": pair.eps_alpha,
         "materials": [asdict(m) for m in materials],
-        "stiffness": "secant F / (loaded - unloaded transmission error), along the line of action, bores held",
+        "stiffness": f"secant F / (loaded - unloaded transmission error), along the line of action, {held}",
         **options,
         "versions": {name: _version(name) for name in VERSIONS},
     }

@@ -7,24 +7,37 @@ import numpy as np
 
 from ..contact.solid import pair_stiffness3d
 from ..flexibility.solved import solved_gears
-from ..steps import part
+from ..steps import part, steps
 from .cache import solved_solid
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
 
-MORE = 1.01  # load of the second solve that gives the tangent
 COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elements; the first whose section can be meshed in quads
 LESS = 2  # axial degrees less in it
 
 
-def wide_curve(
-    force, case, meta, *, brute, face, groove, refine, extended, order, error=False, flanks=None, cache=True, tell=None
+def wide_curves(
+    forces,
+    case,
+    meta,
+    *,
+    brute,
+    face,
+    groove,
+    refine,
+    extended,
+    order,
+    error=False,
+    flanks=None,
+    supports=None,
+    cache=True,
+    tell=None,
 ):
-    """`StiffnessCurve` of a pair in three dimensions, by the energy model or by finite elements.
+    """`StiffnessCurve` of a pair in three dimensions under each force, by the energy model or by finite elements.
 
     Parameters
     ----------
-    force : float
+    forces : sequence of float
         Along the transverse line of action [N].
     case : tuple
         ``pair, materials, phase, cracks, pits``: GearPair, two Material, ndarray, the damage of both in each gear's own frame.
@@ -44,6 +57,8 @@ def wide_curve(
         their limit at least with the second power of the edges, so the difference is an upper bound.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
+    supports : (Support or Shaft or None, Support or Shaft or None), optional
+        Of the hubs of pinion and wheel.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     tell
@@ -51,28 +66,37 @@ def wide_curve(
 
     Returns
     -------
-    StiffnessCurve
+    list of StiffnessCurve
         `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
     cache = solved_gears(cache)
     pair, materials, phase, cracks, pits = case
     options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
-    options["flanks"] = flanks
+    options |= {"flanks": flanks, "supports": supports}
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
         options |= {"refine": refine, "order": order}
-    done = 0.6 if error else 1.0
-    with part("contact", 0.0, 0.7 * done):
-        found = pair_stiffness3d(pair, force, materials, phase, error=error and not brute, **options)
-    with part("its slope", 0.7 * done, done):
-        more = pair_stiffness3d(pair, MORE * force, materials, phase, **options)
-    doubt = None
-    if error:
-        with part("estimate of the error", done, 1.0):
-            doubt, ratio = _doubt((pair, force, materials), phase, found, options, (refine, cache, tell) if brute else None)
-        meta = meta | ({"error_refine": ratio * refine} if brute else {})
+    with part("contact", 0.0, 0.6 if error else 1.0):
+        found = pair_stiffness3d(pair, list(forces), materials, phase, error=error and not brute, **options)
+    seconds = time.perf_counter() - started
+    curves = []
+    with part("estimate of the error", 0.6, 1.0):
+        for force, one in zip(steps(forces), found, strict=True):
+            doubt, own = None, meta | {"force_N": force, "dofs": list(one.dofs), "seconds_contact": seconds}
+            if error:
+                less = (refine, cache, tell) if brute else None
+                doubt, ratio = _doubt((pair, force, materials), phase, one, options, less)
+                own |= {"error_refine": ratio * refine} if brute else {}
+            if any(cracks) and not brute:
+                own |= {"crack_closed_phases": phase[list(one.closed)].tolist()}
+            curves.append(_curve(one, doubt, own, flanks is not None))
+    return curves
+
+
+def _curve(found, doubt, meta, modified):
+    """`StiffnessCurve` of a `Contact3D`."""
     pressure = np.zeros(found.load.shape)
     for i, cells in enumerate(found.cells):
         for k, order in enumerate(found.order):
@@ -80,25 +104,24 @@ def wide_curve(
             flat = own[np.isfinite(own)]
             pressure[i, k] = flat.max(initial=0.0) if flat.size or not own.size else np.nan
     used = found.load.max(axis=0) > 0
-    if any(cracks) and not brute:
-        meta = meta | {"crack_closed_phases": phase[list(found.closed)].tolist()}
     return StiffnessCurve(
-        phase=phase,
+        phase=found.phase,
         k=found.k,
-        k_tangent=1e3 * (MORE - 1) * force / (more.approach - found.approach),
+        k_tangent=found.k_tangent,
         lte=1e-3 * (found.approach - found.unloaded),
         order=found.order[used],
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
         error=doubt,
-        unloaded=None if flanks is None else 1e-3 * found.unloaded,
-        meta=meta | {"force_N": force, "dofs": list(found.dofs), "seconds_contact": time.perf_counter() - started},
+        unloaded=1e-3 * found.unloaded if modified else None,
+        lte_supports=None if found.supports is None else 1e-3 * found.supports,
+        meta=meta,
     )
 
 
 def _doubt(case, phase, found, options, brute):
-    """Estimated error of k at `phase` [N/m], see `wide_curve`, and the part of the resolution it is estimated with."""
-    turns = any(form.flank.pitch for form in options["flanks"] or ())
+    """Estimated error of k at `phase` [N/m], see `wide_curves`, and the part of the resolution it is estimated with."""
+    turns = any(form.differs for form in options["flanks"] or ())
     healthy = not (any(options["cracks"]) or any(options["pits"]) or turns)
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]

@@ -15,6 +15,7 @@ from geometry.tooth.modified import Flank
 
 from ..material import Material
 from ..pictures.error_plots import plot_transmission_error
+from ..threads import single
 from .curve import StiffnessCurve
 from .solve import mesh_stiffness
 
@@ -79,6 +80,7 @@ class TransmissionError:
         return plot_transmission_error(self, path, title)
 
 
+@single
 def transmission_error(
     pair: GearPair,
     forces: Sequence[float] | NDArray[np.float64],

@@ -16,6 +16,7 @@ from ..scene.load import ScenePair
 from ..steps import part
 from ..stiffness.inputs import by_gear
 from ..stiffness.limits import check_section, checked_refine
+from ..threads import single
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
 from .window import drawing_library
@@ -37,6 +38,7 @@ STRIP = 0.08  # edge length along the contact lines of a tooth [modules], about 
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
 
 
+@single
 def render_stress(
     scene_pair: ScenePair,
     path: str | os.PathLike[str],

@@ -131,19 +131,20 @@ def _attempt(gear, teeth, cracks, patches, size, algorithm):
     for number, crack in enumerate(cracks):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
     mouths = {tooth: _mouths(gear, size, found) for tooth, found in damaged.items()}
-    rim, flanks, marks = _rim(gear, draft, size, teeth, mouths, patches)
-    count = max(8, math.ceil(math.pi * gear.held / min(abs(gear.r_f - gear.held), 3 * size["far"])))
+    outline, flanks, marks = _rim(gear, draft, size, teeth, mouths, patches)
+    rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
+    count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
     turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
     bore = draft.add(gear.held * np.array([np.sin(turn), np.cos(turn)]), closed=True)
-    body, tops, cuts = list(rim), [], []
+    body, tops, cuts = list(outline), [], []
     for tooth, found in sorted(damaged.items()):
         line, cut = _cut(gear, draft, size, tooth, found, mouths[tooth], marks)
-        ends = {draft.lines[i - 1][0]: k for k, i in enumerate(rim)}
+        ends = {draft.lines[i - 1][0]: k for k, i in enumerate(outline)}
         first, last = ends[marks[tooth, "unloaded"]], ends[marks[tooth, "loaded"]]
-        above = [rim[i % len(rim)] for i in range(first, last if last > first else last + len(rim))]
+        above = [outline[i % len(outline)] for i in range(first, last if last > first else last + len(outline))]
         tops.append([above + line])
         body = [i for i in body if i not in set(above)]
-        before = rim[first - 1] if rim[first - 1] in body else body[-1]
+        before = outline[first - 1] if outline[first - 1] in body else body[-1]
         at = body.index(before) + 1
         body[at:at] = [-i for i in line[::-1]]
         cuts.append(cut)

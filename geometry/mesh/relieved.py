@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..tooth.modified import FlankForm
+from ..tooth.flank_form import FlankForm
 from .section_mesh import Section
 
 
@@ -37,7 +37,7 @@ def relieved(body: Section, form: FlankForm, order: np.ndarray, sense: int) -> S
         inside = (np.abs(angle) < np.pi / gear.z) & (gear.outward * (radius - gear.r_f) > 0)
         roll = np.sqrt(np.maximum(radius[inside] ** 2 - gear.r_b**2, 0.0))
         least, most = sorted((gear.roll_f, gear.roll_a))
-        removed = form.removed(np.clip(roll, least, most)) + form.shift(k)
+        removed = form.of(k).removed(np.clip(roll, least, most)) + form.shift(k)
         inner = gear.outward * (radius[inside] - gear.r_form) < 0
         half = np.array([gear.half_thickness(r) for r in np.where(inner, gear.r_form, radius[inside])])
         across = np.clip((angle[inside] / half + 1) / 2, 0.0, 1.0)

@@ -70,14 +70,16 @@ class Sector:
 
     def edge_bulges(self):
         """Bulges of the local edges of all triangles ``(3, 2, k, m)``, zero inside."""
-        shape = next(iter(self.bulge.values())).shape
-        out = np.zeros((3, *shape, self.triangles.shape[1]))
-        for local, (a, b) in enumerate(ENDS):
-            for i, (p, q) in enumerate(zip(self.triangles[a].tolist(), self.triangles[b].tolist(), strict=True)):
-                if (q, p) in self.bulge:
-                    out[local, :, :, i] = self.bulge[q, p][:, ::-1]
-                elif (p, q) in self.bulge:
-                    out[local, :, :, i] = self.bulge[p, q]
+        count, values = self.points.shape[1], np.array(list(self.bulge.values()))
+        first, second = np.array(list(self.bulge), dtype=np.int64).T
+        out = np.zeros((3, *values.shape[1:], self.triangles.shape[1]))
+        for along, keys in ((values, first * count + second), (values[..., ::-1], second * count + first)):
+            order = np.argsort(keys)
+            for local, (a, b) in enumerate(ENDS):
+                wanted = self.triangles[a].astype(np.int64) * count + self.triangles[b]
+                at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
+                found = keys[at] == wanted
+                out[local][..., found] = np.moveaxis(along[at[found]], 0, -1)
         return out
 
 
@@ -126,10 +128,11 @@ def _attempt(gear, cracks, sizes, refine, finer):
     if chains and not _inside(loop, np.hstack([line for _, line in chains] + [around])).all():
         return None  # a chord of the outline cuts the crack off: gmsh would not end
     points, triangles = triangulate([loop], chains, False, around.T)
-    if np.linalg.det(_arms(points, triangles)).sum() < 0:
-        triangles = triangles[[0, 2, 1]]
+    twice = _twice_areas(points, triangles)
+    if twice.sum() < 0:
+        triangles, twice = triangles[[0, 2, 1]], -twice
     longest = np.hypot(*(points[:, triangles] - points[:, triangles[[1, 2, 0]]])).max(axis=0)
-    if (np.linalg.det(_arms(points, triangles)) <= 2 * FLAT * longest**2).any():
+    if (twice <= 2 * FLAT * longest**2).any():
         return None
     faces, doubles, at = [], {}, count
     for i, (start, line) in enumerate(chains):
@@ -145,8 +148,10 @@ def _attempt(gear, cracks, sizes, refine, finer):
         points, triangles, _bulges(pieces, first, doubles), vertices["left"], vertices["right"][::-1], vertices["held"],
         vertices["flank"][::-1], rolls[::-1], tuple(faces),
     )  # fmt: skip
-    jacobian = jacobians(points, triangles, made.edge_bulges(), CHECKED)
-    return made if np.linalg.det(jacobian.transpose(0, 3, 1, 2)).min() > 0 else None
+    bulges = made.edge_bulges()
+    bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
+    (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
+    return made if (xx * yy - xy * yx).min() > 0 else None
 
 
 def _inside(loop, points):
@@ -158,9 +163,11 @@ def _inside(loop, points):
     return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
 
 
-def _arms(points, triangles):
-    corners = points[:, triangles]
-    return (corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1)
+def _twice_areas(points, triangles):
+    """Twice the areas of triangles, negative if their corners run clockwise."""
+    corner, one, two = points[:, triangles].transpose(1, 0, 2)
+    (x, y), (u, v) = one - corner, two - corner
+    return x * v - y * u
 
 
 def _pieces(gear, size, cracks):
@@ -294,12 +301,12 @@ def _bulges(pieces, first, doubles):
     out, gauss = {}, leggauss(BULGE)[0]
     for k, (_, params, place) in enumerate(pieces):
         middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
-        ends = place(params)
+        points = place(np.append(params, middle[:, None] + reach[:, None] * gauss))
+        ends, curve = points[:, : params.size], points[:, params.size :].reshape(2, -1, BULGE)
         chord = (ends[:, :-1, None] * (1 - gauss) + ends[:, 1:, None] * (1 + gauss)) / 2
-        away = (place(middle[:, None] + reach[:, None] * gauss) - chord) / (1 - gauss**2)
-        for i in range(params.size - 1):
-            a, b = int(first[k] + i), int((first[k] + i + 1) % first[-1])
-            for p in {a, doubles.get(a, a)}:
-                for q in {b, doubles.get(b, b)}:
-                    out[p, q] = away[:, i]
+        away = ((curve - chord) / (1 - gauss**2)).transpose(1, 0, 2)
+        start = first[k] + np.arange(params.size - 1)
+        out |= zip(zip(start.tolist(), ((start + 1) % first[-1]).tolist(), strict=True), away, strict=True)
+    for (a, b), away in list(out.items()):
+        out |= {(p, q): away for p in {a, doubles.get(a, a)} for q in {b, doubles.get(b, b)}} if {a, b} & doubles.keys() else {}
     return out

@@ -38,7 +38,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..tooth.profile import cartesian, flank
 
 if TYPE_CHECKING:
-    from ..tooth.modified import FlankForm
+    from ..tooth.flank_form import FlankForm
     from .gear_pair import GearPair
 
 STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
@@ -87,6 +87,14 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
     first, last = -1 - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - math.floor(phase.min())
     order = np.arange(first, last + 1)
     nominal = start + (phase[:, None] + order) * pair.p_bt
+    roll_1, roll_2, gap = touching(pair, nominal, extended=extended)
+    radius = pair.relative_radius(roll_1, roll_2)
+    return Contacts(order, nominal, roll_1, roll_2, gap, np.where(np.isfinite(gap) & (radius > 0), radius, 1.0))
+
+
+def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> tuple[NDArray, NDArray, NDArray]:
+    """Roll lengths of both gears where sections touch, and their gaps [mm], as of `contacts`, at any abscissae `nominal` [mm]."""
+    start, end = pair.path
     slack = 1e-9 * pair.p_bt
     before, after = nominal < start - slack, nominal >= end + slack
     roll_1, roll_2 = nominal.copy(), pair.mate_roll(nominal)
@@ -102,8 +110,7 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
             there = tuple(index[meets] for index in np.nonzero(where))
             own[there], met[there] = tip.roll_a, roll[meets]
             gap[there] = np.maximum(distance[meets], 0.0)
-    radius = pair.relative_radius(roll_1, roll_2)
-    return Contacts(order, nominal, roll_1, roll_2, gap, np.where(np.isfinite(gap) & (radius > 0), radius, 1.0))
+    return roll_1, roll_2, gap
 
 
 def approach(
@@ -145,7 +152,7 @@ def approach(
     back: NDArray[np.float64] | float = 0.0
     mate = None
     if flanks is not None:
-        own, mate = flanks if driver else flanks[::-1]
+        own, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))
         back, behind = own.removed(roll) + own.shift(order), mate.shift(order)
     for _ in range(STEPS):
         distance, met, arm = distances(sense * (gap / 2 - back))

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-from ..tooth.modified import Flank, FlankForm
+from ..tooth.flank_form import FlankForm
+from ..tooth.modified import Flank
 
 STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
 
@@ -122,4 +123,4 @@ def flank_forms(
     first, second = (one.on(gear) for one, gear in zip(given, (pair.gear_1, pair.gear_2), strict=True))
     if not tilt and all(one == Flank() for one in given):
         return None
-    return first.tilted(tilt / 2), second.tilted(tilt / 2)
+    return first.tilted(tilt / 2), second.tilted(tilt / 2).turned(-1)

@@ -8,9 +8,9 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..tooth.flank_form import FlankForm
 from ..tooth.gear import Gear
 from ..tooth.involute import inv, inverse_inv
-from ..tooth.modified import FlankForm
 from ..tooth.profile import flank
 from .contacts import Contacts, approach, contacts, opposite
 from .interference import overlap, radial_assembly

@@ -18,15 +18,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.modified import FlankForm
+from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, roll_at_arc
 from .contacts import Contacts, approach, contacts, facing
 
 if TYPE_CHECKING:
     from .gear_pair import GearPair
 
+EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that it cuts away
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
+OFF = 1e6  # a distance that no flanks have [mm]
 GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
 
@@ -110,11 +112,11 @@ def first_touch(
     """
     common = min(pair.gear_1.b, pair.gear_2.b)
     own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
-    here = forms[0].at(own_z[0]), forms[1].at(own_z[1])
+    here = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
     rolls_1, rolls_2, found = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
-    inner = [form.at(None if h is None else h[near]) for form, h in zip(forms, own_z, strict=True)]
+    inner = [form.at(None if h is None else h[near]).of(order[near]) for form, h in zip(forms, own_z, strict=True)]
     rolls_1[near], rolls_2[near], found[near] = _inside(pair, inner, nominal[near], order[near], start[near])
     for driver, own, met in ((True, rolls_1, rolls_2), (False, rolls_2, rolls_1)):
         tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
@@ -144,8 +146,11 @@ def _radius(pair, forms, roll_1, roll_2, there):
 def _inside(pair, forms, nominal, order, start):
     """Touching points on the flanks, their corners left out: rolls of both gears and gaps ``(n,)``, inf where there is none."""
     one = pair.gear_1
-    amounts = [form.removed(np.linspace(form.low, form.high, 65)[None, :]) for form in forms]
+    amounts = [form.removed(form.before_edge(np.linspace(form.low, form.high, 65))[None, :]) for form in forms]
     range_ = sum(np.ptp(values, axis=-1) for values in amounts)
+    edges = [form.edge.most for form in forms if form.edge is not None]
+    if edges:  # a tip's edge is part of the flank and may touch beyond the path; sharp corners are looked at by `first_touch`
+        range_ = range_ + start + EDGE * max(edges)
     shift = forms[0].shift(order) + forms[1].shift(order)
     low, high = (arc_at(one, roll) for roll in pair.path)
     ends = np.linspace(*pair.path, 9)
@@ -155,7 +160,8 @@ def _inside(pair, forms, nominal, order, start):
     half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * one.m_n
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
     roll_0 = np.clip(nominal, *pair.path)
-    pose = start + forms[0].removed(roll_0) + forms[1].removed(pair.mate_roll(roll_0)) + shift
+    pose = start + shift + forms[0].removed(forms[0].before_edge(roll_0))
+    pose = pose + forms[1].removed(forms[1].before_edge(pair.mate_roll(roll_0)))
     turns = pair.turn(nominal)
     arcs = first[:, None] + (last - first)[:, None] * np.linspace(0, 1, SCAN)
     own = [turn[:, None] for turn in turns]
@@ -180,13 +186,15 @@ def _inside(pair, forms, nominal, order, start):
 def _residual(pair, forms, arc, turns, order, pose):
     """How far a further approach closes each place of the pinion's flank, with the gears at `pose` [mm]; inf off the flanks."""
     roll = roll_at_arc(pair.gear_1, arc)
+    forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)
     distance, met, _ = facing(pair, roll, None, True, turns)(pose / 2 - back)
     low, high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
     slack = 1e-6 * pair.gear_1.m_n
     on = (met >= low - slack) & (met <= high + slack)
     value = back + forms[1].removed(np.where(on, met, low)) + forms[1].shift(order) + distance - pose
-    return np.where(on, value, np.inf)
+    off = np.abs(met - np.clip(met, low, high))  # leads the search back
+    return np.where(on, value, np.where(np.isfinite(off), OFF + off, np.inf))
 
 
 def _least(function, low, high, steps):

@@ -3,11 +3,18 @@
 import math
 import warnings
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from numbers import Real
 
 from .involute import inv
 
 LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
+
+
+@lru_cache(maxsize=256)
+def _base_radius(z: int, m_n: float, alpha_n: float, beta: float) -> float:
+    """``r cos(alpha_t)``, kept: everything on an involute asks for it."""
+    return z * (m_n / math.cos(beta)) / 2 * math.cos(math.atan(math.tan(alpha_n) / math.cos(beta)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +210,7 @@ class Gear:
     @property
     def r_b(self) -> float:
         """Base radius [mm]."""
-        return self.r * math.cos(self.alpha_t)
+        return _base_radius(self.z, self.m_n, self.alpha_n, self.beta)
 
     @property
     def r_a(self) -> float:

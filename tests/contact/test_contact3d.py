@@ -9,8 +9,10 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact import bodies as bodies3d
-from gearfe.contact import cell_sharing
-from gearfe.contact import cells as lines3d
+from gearfe.contact.cell_sharing import SharedLines
+from gearfe.contact.cells import cells_of
+from gearfe.contact.joined_lines import System
+from gearfe.contact.pieces import pieces_of
 from gearfe.contact.sharing import share
 from gearfe.contact.solid import pair_stiffness3d
 from gearfe.energy.ritz.solid import flexibility3d
@@ -41,8 +43,8 @@ def test_contact_lines_are_straight_with_one_normal(face):
     pair = pair_of(20.0)
     if face == "ring":
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
-    found = lines3d.pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
-    cells = lines3d.cells_of(pair, found, [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), 0.5)
+    found = pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
+    cells = cells_of(pair, [found], [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), [0.5])[0]
     gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2
     for number in np.unique(cells.order):
@@ -143,10 +145,10 @@ def test_loads_satisfy_the_contact_conditions():
         gap = 10 ** rng.uniform(-4, -1) * rng.random(n)
         load, radius, modulus, k = n * 10 ** rng.uniform(-2, 4), rng.uniform(1, 10, n), 1.1e5, 2.8e-6
         ends = edge[:-1], edge[1:]
-        force, approach = cell_sharing.line_cells(matrix, gap, load, k, ends, line, radius, modulus)
-        reach = cell_sharing.SMOOTH * half_width(load / np.diff(edge).sum(), radius.mean(), modulus)
-        mean = np.maximum(cell_sharing.smoother(ends, line, reach) @ force, 1e-9 * load / np.diff(edge))
-        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), cell_sharing.pieces(ends, line) / 2)
+        both = SharedLines([System(matrix, gap, ends, line, radius)], k, modulus)
+        force, approach, _ = both.solve(np.array([load]))[0]
+        mean = np.maximum(both.joined.smoother(np.array([load])) @ force, 1e-9 * load / np.diff(edge))
+        x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), both.joined.widest)
         total = matrix + k * np.where(line[:, None] == line, halfspace.line_kernel(*ends, x), 0.0)
         closed = total @ force + gap
         close = (
@@ -157,25 +159,6 @@ def test_loads_satisfy_the_contact_conditions():
         assert_allclose(closed[force > 0], approach, rtol=close, err_msg=f"seed {seed}")
         assert (closed[force == 0] >= approach * (1 - close)).all()
         assert_allclose(share(total, gap, load)[1], approach, rtol=close)
-
-
-def test_cells_that_cannot_touch_are_as_good_as_absent():
-    edge = np.linspace(0, 10, 21)
-    gap = np.where((np.arange(20) > 5) & (np.arange(20) < 9), np.inf, 0.0)
-    some = np.isfinite(gap)
-    args = np.full(20, 3.0), 1.1e5
-    line = np.zeros(20, dtype=int)
-    force, approach = cell_sharing.line_cells(np.full((20, 20), 1e-6), gap, 500.0, 2.8e-6, (edge[:-1], edge[1:]), line, *args)
-    few = cell_sharing.line_cells(
-        np.full((17, 17), 1e-6), gap[some], 500.0, 2.8e-6, (edge[:-1][some], edge[1:][some]), line[some], args[0][some], args[1]
-    )
-    assert_allclose(force[some], few[0], rtol=1e-9)
-    assert approach == few[1]
-    assert (force[~some] == 0).all()
-    with pytest.raises(RuntimeError, match="no cell can touch"):
-        cell_sharing.line_cells(
-            np.eye(2), np.full(2, np.inf), 1.0, 1e-6, (np.arange(2.0), np.arange(2.0) + 1), np.zeros(2), 1.0, 1.0
-        )
 
 
 @pytest.mark.parametrize(
@@ -228,27 +211,49 @@ def test_error_estimate_covers_a_finer_solve():
     assert (error < 0.03 * solved.k).all()
 
 
-def test_cells_that_cannot_touch_leave_the_corners_and_the_faces_of_cracks_in():
-    """Cells of an infinite gap are as good as absent, also where tip corners and faces of cracks take part."""
-    n, edge = 20, np.linspace(0, 10, 21)
-    line, gap = np.repeat([0, 1], n // 2), np.where((np.arange(n) > 5) & (np.arange(n) < 9), np.inf, 0.0)
-    matrix = 1e-6 * (line[:, None] == line) + 1e-8 * np.eye(n)
-    opening = np.vstack([np.linspace(-4e-7, 1e-7, n), np.linspace(-1e-7, -5e-7, n)]) * (line == np.array([[0], [1]]))
-    found = []
-    for own in (np.arange(n), np.flatnonzero(np.isfinite(gap))):
-        softer = np.linspace(0.0, 0.5, n)[own]
-        options = {
-            "block": line[own],
-            "faces": (opening[:, own], 1e-6 * np.eye(2), np.array([0, 1])),
-            "local": lambda along, softer=softer: softer * np.log1p(along),
-        }
-        case = matrix[np.ix_(own, own)], gap[own], 500.0, 2.8e-6, (edge[own], edge[own + 1]), line[own], np.full(own.size, 3.0)
-        force, approach = cell_sharing.line_cells(*case, 1.1e5, **options)
-        whole = np.zeros(n)
-        whole[own] = force[:-2]
-        found.append([*whole, *force[-2:], approach])
-    assert_allclose(found[0], found[1], rtol=1e-12)
-    assert max(found[0][n : n + 2]) > 0, "a face that would pass through the other is held back"
+def test_problems_solved_together_are_those_solved_alone():
+    """With a local law, faces of cracks, floors and two bodies; from a cold start and from another load."""
+    systems, softer = [], []
+    for seed in range(6):
+        rng = np.random.default_rng(seed)
+        n = int(rng.integers(8, 30))
+        edge, line = np.linspace(0, n / 2, n + 1), np.repeat([0, 1], [n // 2, n - n // 2])
+        matrix = 1e-6 * (line[:, None] == line) + 1e-8 * np.eye(n)
+        opening = np.vstack([np.linspace(-4e-7, 1e-7, n), np.linspace(-1e-7, -5e-7, n)]) * (line == np.array([[0], [1]]))
+        faces = (opening, 1e-6 * np.eye(2), np.array([0, 1])) if seed % 2 else None
+        floor = np.where(np.arange(n) % 5 == 0, 1e-4 * (seed > 3), 0.0)
+        systems.append(
+            System(matrix, 1e-4 * rng.random(n) + floor, (edge[:-1], edge[1:]), line, np.full(n, 3.0), line, faces, floor)
+        )
+        softer.append(np.linspace(0.0, 0.5, n))
+    loads = 500.0 + 100.0 * np.arange(6)
+    both, whole = SharedLines(systems, 2.8e-6, 1.1e5), np.concatenate(softer)
+    found = both.solve(loads, lambda along: whole * np.log1p(along))
+    warm = both.solve(loads, lambda along: whole * np.log1p(along), None, both.solve(1.7 * loads))
+    assert any(one.force[-2:].max() > 0 for one in found[1::2]), "a face that would pass through the other is held back"
+    for system, load, own, one, other in zip(systems, loads.tolist(), softer, found, warm, strict=True):
+        alone = SharedLines([system], 2.8e-6, 1.1e5).solve(np.array([load]), lambda along, own=own: own * np.log1p(along))[0]
+        for again in (one, other):
+            assert_allclose(again.force, alone.force, rtol=1e-4, atol=1e-5 * load)
+            assert_allclose([again.approach, again.tangent], [alone.approach, alone.tangent], rtol=1e-5)
+        assert_allclose(one.force, alone.force, rtol=1e-9, atol=1e-9 * load)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_the_tangent_is_that_of_a_little_more_load(seed):
+    """The linearisation of what was solved against central differences of solves of the same cells."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(20, 60))
+    edge, line = np.cumsum(rng.uniform(0.1, 0.5, n + 1)), np.sort(rng.integers(0, 3, n))
+    root = rng.standard_normal((n, 5))
+    gap = 1e-3 * np.linspace(-1, 1, n) ** 2
+    system = System(1e-6 * root @ root.T, gap, (edge[:-1], edge[1:]), line, rng.uniform(3, 9, n))
+    softer, load = rng.uniform(0, 0.3, n), np.array([200.0 * n])
+    both, more = SharedLines([system], 2.8e-6, 1.1e5), 1e-3
+    one, less, further = (both.solve(load * by, lambda along: softer * np.log(along))[0] for by in (1, 1 - more, 1 + more))
+    same = ((one.force > 0) == (less.force > 0)).all() and ((one.force > 0) == (further.force > 0)).all()
+    wanted = 2 * more * load[0] / (further.approach - less.approach)
+    assert_allclose(one.tangent, wanted, rtol=1e-5 if same else 1e-2)
 
 
 def test_a_piece_that_vanishes_takes_its_load_with_it():
@@ -258,9 +263,8 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
     for length in (0.1, 0.01, 0.001):
         ends = np.append(edge[:-1], 12.0), np.append(edge[1:], 12.0 + length)
         line = np.zeros(26, dtype=int)
-        force, _ = cell_sharing.line_cells(
-            np.full((26, 26), 1e-6), np.zeros(26), 1500.0, 2.8e-6, ends, line, np.full(26, 3.0), 1.1e5
-        )
+        system = System(np.full((26, 26), 1e-6), np.zeros(26), ends, line, np.full(26, 3.0))
+        force = SharedLines([system], 2.8e-6, 1.1e5).solve(np.array([1500.0]))[0].force
         carried.append(force[-1])
     assert_allclose(np.array(carried[:2]) / carried[1:], 10.0, rtol=0.5)
     assert carried[2] < 1e-3 * 1500.0

@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import gearfe as gf
-from gearfe.contact.cells import pieces_of
 from gearfe.contact.phase_contact import PhaseContact
+from gearfe.contact.pieces import pieces_of
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
@@ -45,8 +45,8 @@ def test_k_falls_with_the_depth_to_that_of_a_hole(healthy):
 
 
 def test_a_deep_pit_is_solved_once(monkeypatch):
-    calls, solve = [], PhaseContact._carried
-    monkeypatch.setattr(PhaseContact, "_carried", lambda *args: (calls.append(1), solve(*args))[1])
+    calls, solve = [], PhaseContact._shared
+    monkeypatch.setattr(PhaseContact, "_shared", lambda *args: (calls.append(1), solve(*args))[1])
     k_of(pit(0.2))
     deep = len(calls)
     gf.mesh_stiffness(**RUN)

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ import pytest
 import gearfe as gf
 from gearfe.elements.hexahedron import gauss, shapes
 from gearfe.elements.solid_deck import FACES, TWENTY, sides_of
+from geometry.mesh.relieved_solid import relieved_points
+from geometry.pair.flanks import flank_forms
 from geometry.tooth.profile import flank
 from validation.make import outsider_three
 from validation.shared import outsider
@@ -121,7 +124,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"pose": "left"}, "must be one of"),
         ({"damage": {"ring": []}}, "pinion and wheel"),
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
-        ({"flanks": {"pinion": gf.Flank(slope=0.002)}}, "only the section's mesh"),
+        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
     ],
 )
@@ -168,3 +171,39 @@ def test_calculix_in_contact():
     row = outsider.contact_row(name, {"per_width": 1.0})
     print(f"{name}: {100 * outsider.apart(row):+.2f} %")
     assert abs(outsider.apart(row)) < outsider.ASKED
+
+
+def test_nodes_of_modified_flanks_lie_on_them():
+    """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
+    pair = pair_of(15.0)
+    flanks = {"pinion": gf.Flank(lead_crowning=0.01, twist=0.004, tip_relief=0.02, tip_start_roll=pair.gear_1.roll_a - 2.0)}
+    form = flank_forms(pair, flanks, gf.Misalignment(F_beta=0.01))[0]
+    gear, rng = pair.gear_1, np.random.default_rng(0)
+    roll, z = rng.uniform(gear.roll_f, gear.roll_a, 50), rng.uniform(0, gear.b, 50)
+    for tooth, loaded in ((0, True), (3, True), (0, False), (1, None)):
+        radius, angle = flank(gear, roll)
+        angle = (angle if loaded is not False else -angle) + 2 * math.pi * tooth / gear.z + gear.twist_rate * z
+        points = relieved_points(np.array([radius * np.sin(angle), radius * np.cos(angle), z]), gear, form, (0, 3))
+        moved = (np.arctan2(points[0], points[1]) - angle + math.pi) % (2 * math.pi) - math.pi
+        removed = form.at(z).removed(roll) + form.at(z).shift(np.full(50, tooth))
+        np.testing.assert_allclose(-moved * gear.r_b, removed if loaded else 0.0, atol=1e-9)
+        np.testing.assert_allclose(np.hypot(*points[:2]), radius, rtol=1e-12)
+
+
+def test_a_deck_carries_the_modified_flanks(tmp_path):
+    """The pinion's flanks that may touch lie behind their involutes by what is removed there, in the place of their phase."""
+    pair = pair_of(15.0)
+    flanks, askew = {"pinion": gf.Flank(lead_crowning=0.02, tip_relief=0.01, tip_start_roll=5.0)}, gf.Misalignment(F_beta=0.01)
+    deck = written(tmp_path, pair, flanks=flanks, misalignment=askew)
+    form, part, gear = flank_forms(pair, flanks, askew)[0], deck.parts[0], pair.gear_1
+    assert deck.slaves
+    for order in deck.slaves:
+        faces = part.faces[f"flank {order % gear.z}"]
+        x, y, z = part.points[:, np.unique(faces)]
+        radius = np.hypot(x, y)
+        there = (radius > gear.r_form) & (radius < gear.r_a)
+        roll = np.sqrt(radius[there] ** 2 - gear.r_b**2)
+        removed = form.at(z[there]).removed(roll) + form.at(z[there]).shift(np.zeros(roll.size, dtype=int))
+        seen = SimpleNamespace(points=part.points, faces={f"flank {-order % pair.gear_2.z}": faces})
+        np.testing.assert_allclose(-depth(pair, seen, order), removed, atol=1e-6)
+        assert np.ptp(removed) > 0.01

@@ -63,7 +63,8 @@ def test_rigid_motions_store_no_energy():
     section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
     no = np.zeros(0, dtype=int)
     body = elimination.body_of(numbers, np.zeros((count, 3, 1)), section, axial(width, degree), sides=np.arange(1), held=no)
-    stiffness = elimination.leaf(body, np.arange(numbers.shape[1]), np.arange(body.first_load))
+    stiffness = elimination.leaf(body, np.arange(numbers.shape[1]), no, np.arange(body.first_load))[2]
+    stiffness = np.tril(stiffness) + np.tril(stiffness, -1).T
     straight = np.zeros((2, count))
     straight[:, numbers[:3]] = made.points[:, made.triangles]
     for k, (a, b) in enumerate(ENDS):
@@ -117,6 +118,7 @@ def test_even_load_on_a_wide_gear_is_the_plane_law():
     edge = np.linspace(0, width, 801)
     z = (edge[1:] + edge[:-1]) / 2
     kernel = body.kernel * halfspace.line_kernel(edge[:-1], edge[1:], halfspace.strip(np.full(z.size, a)))
+    kernel = kernel + body.edge * (1 / (z[:, None] + z) + 1 / (2 * width - z[:, None] - z))
     plane = ritz.flexibility(gear, STEEL, order=6)
     for arc in np.linspace(*plane.limits, 9)[2:-1]:
         roll = roll_at_arc(gear, np.full(z.size, arc))
@@ -166,6 +168,23 @@ def test_both_sides_have_the_same_degrees_and_the_flank_the_highest():
         assert found.min() < 12
         seen.append(first)
     assert_allclose(*seen, err_msg="sectors with and without a crack are joined side to side")
+
+
+@pytest.mark.parametrize("width", [None, pytest.param((0.0, 2.5), marks=pytest.mark.slow)])
+def test_the_other_hand_is_the_mirror_image(width):
+    """A gear with negative beta is not solved for; solving for it gives the same, opening of its cracks included."""
+    gear, crack = replace(GEAR, beta=-BETA, b=6.0), gf.Crack(level=0.5, width=width)
+    case = gear, STEEL, (crack,), 1, 6.0, 2, 3, 0.7
+    mirrored, solved = ritz3d._mirrored(*case, PROCESS), ritz3d._solved(*case, PROCESS)
+    assert mirrored.gear == solved.gear
+    for one, two in ((mirrored, solved), (mirrored.healthy, solved.healthy)):
+        for key, want in (one.near | one.far).items():
+            assert_allclose((two.near | two.far)[key], want, atol=1e-9 * np.abs(want).max())
+    shut = []  # the points where faces touch are in another order
+    for found in (mirrored, solved):
+        opening, seam = found.seam.opening[0], found.seam.influence
+        shut.append(found.near[0] - opening.T @ np.linalg.solve(seam, opening))
+    assert_allclose(*shut, atol=1e-9 * np.abs(shut[1]).max())
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from gearfe.files import written
 
 from ..shared import machine
 from ..shared.places import PAGES, TABLES
-from . import flanks_wide
+from . import flanks_three, flanks_wide
 
 PAGE, CSV, PICTURE = PAGES / "flanks.md", TABLES / "flanks_calculix.csv", PAGES / "flanks_map.png"
 LINE_LOAD = 150.0  # N/mm
@@ -134,6 +134,7 @@ def text():
         "![transmission error over phase and load](flanks_map.png)",
         "",
         *flanks_wide.text(),
+        *flanks_three.text(),
     ]
     return "\n".join(lines) + "\n"
 
@@ -148,6 +149,7 @@ def run():
         _write(rows)
         print(f"  CalculiX, {case}: {rows[case][1]:.4f} N/mm", flush=True)
     flanks_wide.run()
+    flanks_three.run()
     with written(PAGE) as name:
         Path(name).write_text(text(), encoding="utf-8")
     print(f"wrote {PAGE.name} on {machine.describe()}")

@@ -86,14 +86,14 @@ def solve(pair, case, shape, refine):
 def table():
     """Ten rows as Markdown: stiffness with lost contact, and what cutting the pits out changes."""
     known = stored()
-    lines = ["| pair | case | k, lost contact [GN/m] | circular, mean | largest | elliptic, mean | largest | finer mesh, mean |"]
+    lines = ["| pair | case | k, lost contact [N/um] | circular, mean | largest | elliptic, mean | largest | finer mesh, mean |"]
     lines.append("|---" * 8 + "|")
     for pair, case in printed_cases(gf.load_scene(SCENE)):
         rows = [known.get((pair, case, shape, MAIN)) for shape in SHAPES]
         if case and rows[0]:
             finer = known.get((pair, case, "circular", FINE))
             cells = [_percent(row and row[name]) for row in rows for name in ("mean change", "largest change")]
-            cells = [pair, case, f"{float(rows[0]['k mean [N/m]']) / 1e9:.4f}", *cells, _percent(finer and finer["mean change"])]
+            cells = [pair, case, f"{float(rows[0]['k mean [N/m]']) / 1e6:.1f}", *cells, _percent(finer and finer["mean change"])]
             lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines)
 

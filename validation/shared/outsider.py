@@ -110,8 +110,8 @@ def calculix(folder, name):
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
-def line_row(name, mesh):
-    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by `ritz3d` and by CalculiX."""
+def line_place(name):
+    """Gear and cracks of a case, the roll length [mm] of its line and the deflection [nm/N] there by `ritz3d`."""
     gear, cracks = lines()[name]
     axial = ritz3d.axial_degree(gear.b, gear.m_n)
     panels = [ritz3d.solid_sector(gear, STEEL, own, width=gear.b, order=3, axial=axial, refine=1.0) for own in (cracks, ())]
@@ -121,7 +121,13 @@ def line_row(name, mesh):
     top = int(whole[len(whole) // 2])
     at = top * (axial + 1)
     ours = found[0, 0][at, at] / gear.b
-    radius = math.hypot(math.sqrt(2 * gear.r_b * gear.outward * knots[1, top]), gear.r_b)
+    return gear, cracks, math.sqrt(2 * gear.r_b * gear.outward * knots[1, top]), 1e6 * ours
+
+
+def line_row(name, mesh):
+    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by `ritz3d` and by CalculiX."""
+    gear, cracks, roll, ours = line_place(name)
+    radius = math.hypot(roll, gear.r_b)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         deck = gf.write_line_inp(
@@ -129,7 +135,7 @@ def line_row(name, mesh):
         )
         seconds = calculix(folder, "gear")
         theirs = deck.deflection(folder / "gear.dat") / deck.force
-    return _row(name, mesh, deck.part.points.shape[1], seconds, 1e6 * ours, 1e6 * theirs, 0.0)
+    return _row(name, mesh, deck.part.points.shape[1], seconds, ours, 1e6 * theirs, 0.0)
 
 
 def contact_row(name, mesh):
@@ -213,8 +219,20 @@ def stored():
         return {(row["case"], row["mesh"]): row for row in csv.DictReader(file)}
 
 
+def refresh():
+    """Put what `ritz3d` finds today into the rows of the table."""
+    known, today = stored(), {}
+    for row in known.values():
+        name = row["case"]
+        if name not in today:
+            today[name] = line_place(name)[-1] if name in lines() else stiffness(cases()[name])[0]
+        row["ours"] = f"{today[name]:.6g}"
+    _write(known.values())
+
+
 def reference():
     """Compute the runs that the table lacks, each kept at once; without CalculiX say so and compute nothing."""
+    refresh()
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
@@ -225,13 +243,16 @@ def reference():
 
 def keep(row):
     """Append a row to the table."""
-    known = stored()
+    _write([*stored().values(), row])
+    print(f"  {row['case']}, {row['mesh']}: {100 * apart(row):+.2f} %, {float(row['seconds']):.0f} s", flush=True)
+    sys.stdout.flush()
+
+
+def _write(rows):
     with written(TABLE) as name, open(name, "w", encoding="utf-8", newline="") as file:
         out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         out.writeheader()
-        out.writerows([*known.values(), row])
-    print(f"  {row['case']}, {row['mesh']}: {100 * apart(row):+.2f} %, {float(row['seconds']):.0f} s", flush=True)
-    sys.stdout.flush()
+        out.writerows(rows)
 
 
 def apart(row):

@@ -10,8 +10,6 @@ from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
-from .axial import Axial
-
 LEAF = 2  # triangles eliminated together first
 CUTS, PARTS = 8, (0.4, 0.45, 0.5, 0.55, 0.6)  # directions in which sets of triangles are divided, and where
 
@@ -31,20 +29,20 @@ def dissect(sector):
 
 def _halves(triangles, centre, own):
     """Two parts of a set of triangles, on both sides of the straight cut through the fewest vertices."""
-    fewest, halves = np.inf, None
-    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])
-    for turn in np.arange(CUTS) * math.pi / CUTS:
-        order = own[np.argsort(np.array([math.cos(turn), math.sin(turn)]) @ centre[:, own], kind="stable")]
-        found, place = np.unique(triangles[:, order], return_inverse=True)
-        rank = np.broadcast_to(np.arange(own.size), (3, own.size)).ravel()
-        first, last = np.full(found.size, own.size), np.zeros(found.size, dtype=int)
-        np.minimum.at(first, place.ravel(), rank)
-        np.maximum.at(last, place.ravel(), rank)
-        shared = ((first < cuts[:, None]) & (last >= cuts[:, None])).sum(axis=1)
-        best = int(shared.argmin())
-        if shared[best] < fewest:
-            fewest, halves = shared[best], (order[: cuts[best]], order[cuts[best] :])
-    return halves
+    turn = np.arange(CUTS) * math.pi / CUTS
+    order = np.argsort(np.array([np.cos(turn), np.sin(turn)]).T @ centre[:, own], axis=1, kind="stable")
+    rank = np.empty_like(order)
+    np.put_along_axis(rank, order, np.arange(own.size)[None, :], axis=1)
+    corners = triangles[:, own].ravel()
+    by_vertex = np.argsort(corners, kind="stable")
+    starts = np.flatnonzero(np.diff(corners[by_vertex], prepend=-1))
+    rank = np.tile(rank, 3)[:, by_vertex]  # (directions, corners), those of a vertex side by side
+    first, last = np.minimum.reduceat(rank, starts, axis=1), np.maximum.reduceat(rank, starts, axis=1)
+    cuts = np.unique([max(1, round(part * own.size)) for part in PARTS])[:, None]
+    shared = ((first[:, None] < cuts) & (last[:, None] >= cuts)).sum(axis=2)
+    k, cut = np.unravel_index(shared.argmin(), shared.shape)
+    own = own[order[k]]
+    return own[: cuts[cut, 0]], own[cuts[cut, 0] :]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +70,10 @@ class SectorBody:
         What is not eliminated, and what is not held.
     section : ndarray, shape (3, m, 3 n, 3 n)
         ``K00, K01, K11`` of the triangles.
-    axial : Axial
-        The functions along the width.
+    factors : dict of (int, int) to ndarray, shape (4, f, g)
+        ``M, C, C', Dz`` between two sets of functions along the width.
     kind : ndarray, shape (k,)
-        Which set of `axial` each number has.
+        Which set each number has.
     size : ndarray, shape (k,)
         How many unknowns each number stands for.
     """
@@ -90,7 +88,7 @@ class SectorBody:
     stays: np.ndarray
     there: np.ndarray
     section: np.ndarray
-    axial: Axial
+    factors: dict
     kind: np.ndarray
     size: np.ndarray
 
@@ -112,7 +110,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
     load : ndarray, shape (count, 3, loads)
         Forces on the nodes that triangles share.
     section : ndarray
-    axial : Axial
+    axial : gearfe.energy.ritz.axial.Axial
     sides, held : ndarray
         Nodes that stay, and nodes that do not move.
     seams : sequence of (ndarray, ndarray)
@@ -130,6 +128,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
         partner[left], partner[right] = right, left
     touch = tuple(np.union1d(own, partner[own]) for own in numbers.T)
     kind = np.zeros(nodes + loads, dtype=int) if kinds is None else kinds
+    used = np.unique(kind).tolist()
     each = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
     return SectorBody(
         numbers=numbers,
@@ -142,10 +141,14 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
         stays=stays,
         there=there,
         section=section,
-        axial=axial,
+        factors={(a, b): _factors(axial, axial.sets[a], axial.sets[b]) for a in used for b in used},
         kind=kind,
         size=each * np.array([own.size for own in axial.sets])[kind],
     )
+
+
+def _factors(axial, one, other):
+    return np.array([part[np.ix_(one, other)] for part in (axial.mass, axial.mixed, axial.mixed.T, axial.slope)])
 
 
 def front(body, tree):
@@ -184,18 +187,17 @@ def _planned(body, tree, turn, count):
 def _eliminated(body, plan, turn):
     """Numbers of a set that stay, in the order in which they go, and the lower triangle of the matrix between them."""
     own, gone, rest, parts = plan
-    rest = rest[np.lexsort((rest, turn[rest]))]
-    ids, first = np.append(gone, rest), int(body.size[gone].sum())
+    gone, rest = (some[np.lexsort((some, body.kind[some], some >= body.first_load, turn[some]))] for some in (gone, rest))
+    first = int(body.size[gone].sum())
     if parts:
         left = int(body.size[rest].sum())
         blocks = [np.zeros(shape, order="F") for shape in ((first, first), (left, first), (left, left))]
+        ids = np.append(gone, rest)
         for part in parts:
             others, matrix = _eliminated(body, part, turn)
             _add(blocks, matrix, places(body, ids, others), first)
     else:
-        matrix = leaf(body, own, ids)
-        cuts = (slice(first), slice(first)), (slice(first, None), slice(first)), (slice(first, None), slice(first, None))
-        blocks = [np.asfortranarray(matrix[cut]) for cut in cuts]
+        blocks = leaf(body, own, gone, rest)
     inside, across, matrix = blocks
     if first:
         lower, failed = dpotrf(inside, lower=1, clean=0, overwrite_a=1)
@@ -228,26 +230,31 @@ def places(body, ids, wanted):
     return np.repeat(start[wanted] - np.cumsum(size) + size, size) + np.arange(size.sum())
 
 
-def leaf(body, own, ids):
-    """Matrix of a few triangles between `ids`: the section's is assembled first, then multiplied by the axial ones."""
+def leaf(body, own, gone, rest):
+    """Matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
+
+    The section's is assembled first, then multiplied by those of the functions along the width.
+    """
+    ids = np.append(gone, rest)
     raw = np.unique(body.numbers[:, own])
     nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
     index = np.full(body.first_load, -1)
     index[raw] = np.arange(raw.size)
-    plane = np.zeros((3, 3 * raw.size, 3 * raw.size))
+    plane = np.zeros((4, 3 * raw.size, 3 * raw.size))
     for triangle in own:
         at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        plane[(slice(None), *np.ix_(at, at))] += body.section[:, triangle]
+        plane[(slice(None), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
+    plane[2] = plane[1].T
     here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
     turn = _seamed(body, raw, nodes)
     here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
     if np.isin(turn, (0.0, 1.0)).all():
-        at = (3 * np.searchsorted(raw, nodes)[:, None] + np.arange(3)).ravel()
+        at = (3 * turn.argmax(axis=0)[:, None] + np.arange(3)).ravel()
         plane = plane[:, at[:, None], at]
     else:
         turn = np.kron(turn, np.eye(3))
         plane = turn.T @ plane @ turn
-    return _times(body, plane, here, nodes, loads)
+    return _times(body, plane, here, gone.size, ids)
 
 
 def _seamed(body, raw, nodes):
@@ -263,38 +270,32 @@ def _seamed(body, raw, nodes):
     return out
 
 
-def _times(body, plane, here, nodes, loads):
-    """The section's matrices and loads multiplied by those of the functions along the width, set by set."""
-    along, ids = body.axial, np.append(nodes, loads)
-    start = np.cumsum(body.size[ids]) - body.size[ids]
-    out = np.zeros((body.size[ids].sum(),) * 2)
-    kinds = np.unique(body.kind[nodes]).tolist()
-    groups = {}
-    for kind in kinds:
-        own = np.flatnonzero(body.kind[nodes] == kind)
-        size = along.sets[kind].size
-        rows = (start[own][:, None] + np.arange(3 * size)).ravel()
-        groups[kind] = along.sets[kind], (3 * own[:, None] + np.arange(3)).ravel(), rows
-    for f, at, rows in groups.values():
-        for g, others, columns in groups.values():
-            both = np.ix_(at, others)
-            widths = np.ix_(f, g)
-            first = np.array([part[both].ravel() for part in (plane[0], plane[1], plane[1].T, plane[2])])
-            second = np.array([part[widths].ravel() for part in (along.mass, along.mixed, along.mixed.T, along.slope)])
-            block = (first.T @ second).reshape(at.size, others.size, f.size, g.size).transpose(0, 2, 1, 3)
-            _put(out, rows, columns, block.reshape(rows.size, columns.size))
-        for k, load in enumerate(loads.tolist()):
-            pushed = along.sets[body.kind[load]]
-            first = start[nodes.size + k]
-            block = np.kron(here[at, k][:, None], along.mass[np.ix_(f, pushed)])
-            out[rows, first : first + pushed.size] = block
-            out[first : first + pushed.size, rows] = block.T
-    return out
+def _times(body, plane, here, gone, ids):
+    """The section's matrices ``(4, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
+
+    Numbers in a row with the same functions are taken together. What is written is the upper triangle in rows, which is the
+    lower one in columns.
+    """
+    nodes, kind, size = here.shape[0] // 3, body.kind[ids], body.size[ids]
+    place, first = np.cumsum(size) - size, int(size[:gone].sum())
+    place[gone:] -= first
+    cuts = np.unique(np.concatenate([[0, gone, nodes, ids.size], 1 + np.flatnonzero(np.diff(kind))]))
+    runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
+    left = int(size[gone:].sum())
+    blocks = [np.zeros(shape) for shape in ((first, first), (first, left), (left, left))]
+    for k, (own, one, rows) in enumerate(runs):
+        if own.start >= nodes:
+            break  # loads have nothing to do with each other
+        for others, other, columns in runs[k:]:
+            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
+            if others.start >= nodes:
+                factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
+            block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)
+            block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
+            target = blocks[(own.start >= gone) + (others.start >= gone)]
+            target[rows, columns].reshape(block.shape)[:] = block
+    return [block.T for block in blocks]
 
 
-def _put(out, rows, columns, block):
-    """Write a block, at once if it is the top left of `out`."""
-    if rows[-1] == rows.size - 1 and columns[-1] == columns.size - 1:
-        out[: rows.size, : columns.size] = block
-    else:
-        out[np.ix_(rows, columns)] = block
+def _three(nodes):
+    return slice(3 * nodes.start, 3 * nodes.stop)

@@ -4,7 +4,9 @@ Sectors in a row are all alike where no load is, so that they are joined by doub
 """
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import LinAlgError
+from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.lapack import dpotrf
 
 
 def join(gear, panels, healthy):
@@ -35,8 +37,7 @@ def join(gear, panels, healthy):
             pushes[tooth] = slice(sum(p.shape[1] for p in loads), sum(p.shape[1] for p in loads) + push.shape[1])
             loads.append(push)
     loads = np.hstack(loads)
-    halved = _halved(total, loads)
-    between = halved.T @ halved
+    between = _full(_added(total, loads, np.zeros((loads.shape[1],) * 2, order="F"), 1.0))
     n = healthy.push.shape[1]
     for tooth in teeth:
         at, one = pushes[tooth], panels[tooth]
@@ -58,21 +59,27 @@ def repeated(stiffness, count):
             out = stiffness if out is None else side_by_side(out, stiffness)
         count //= 2
         stiffness = side_by_side(stiffness, stiffness) if count else stiffness
-    return out
+    return _full(out)
 
 
 def side_by_side(one, two):
-    """Two sectors side by side, their common side eliminated."""
+    """Two sectors side by side, their common side eliminated; of all matrices only the lower triangles count."""
     h = one.shape[0] // 2
-    middle = one[h:, h:] + two[:h, :h]
-    coupling = np.hstack([one[h:, :h], two[:h, h:]])
-    halved = _halved(middle, coupling)
-    out = -halved.T @ halved
-    out[:h, :h] += one[:h, :h]
-    out[h:, h:] += two[h:, h:]
-    return (out + out.T) / 2
+    out = np.zeros(one.shape, order="F")
+    out[:h, :h], out[h:, h:] = one[:h, :h], two[h:, h:]
+    coupling = np.asfortranarray(np.hstack([one[h:, :h], two[h:, :h].T]))
+    return _added(one[h:, h:] + two[:h, :h], coupling, out, -1.0)
 
 
-def _halved(stiffness, loads):
-    """``L**-1 loads`` of ``stiffness = L L'``: its square is the displacement of the loads under each other."""
-    return solve_triangular(cholesky(stiffness, lower=True, check_finite=False), loads, lower=True, check_finite=False)
+def _added(stiffness, loads, out, sign):
+    """``out + sign loads' stiffness**-1 loads``, lower triangles, by Cholesky: only the forward substitution is needed."""
+    lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
+    if failed:
+        raise LinAlgError("the stiffness of the joined sectors is not positive definite")
+    halved = dtrsm(1.0, lower, np.asfortranarray(loads), lower=1, overwrite_b=1)
+    return dsyrk(sign, halved, trans=1, beta=1.0, c=out, lower=1, overwrite_c=1)
+
+
+def _full(lower):
+    """The symmetric matrix of which `lower` has the lower triangle."""
+    return np.tril(lower) + np.tril(lower, -1).T

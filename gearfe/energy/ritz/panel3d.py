@@ -30,7 +30,7 @@ CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends alo
 NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
-def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False, parts=(), tree=None):
+def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tree=None):
     """Reduce a sector to its two helicoidal sides.
 
     Parameters
@@ -46,8 +46,6 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         [mm]; both end faces are free.
     order, degree : int
         Of the polynomials in the section and along the width.
-    plane : bool
-        The transverse section as if it were a spur gear's: with degree 0 and width 1 it is in plane strain.
     parts : tuple
         Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
     tree : tuple, optional
@@ -60,34 +58,26 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
         at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
-    numbers, count, chain = numbering(sector, order)
-    tilt = 0.0 if plane else gear.beta_b
-    load = _hats(gear, sector, chain, count, knots, order, tilt)
-    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
+    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order)
     parts = parts or (None,) * len(sector.faces)
     along = axial(width, degree, parts, gear.m_n)
-    apart, owner = (np.zeros((count, 3, 0)), []) if plane else _apart(sector, chain, count)
+    apart, owner = _apart(sector, chain, load.shape[0])
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
     load = np.concatenate([load, apart], axis=2)
-    every, nodes = all_nodes(numbers, count, order)
+    nodes = int(every.max()) + 1
     own_degrees = degrees(gear, sector, every, sides, width, degree, order)
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 3 * i for i in owner]
-    section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
-    held = chain(sector.held)
-    if order == ORDER:
-        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
     body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds)
     ids, matrix = front(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
     sizes = body.size[sides] // 3
     border = int(body.size[sides].sum())
-    angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sides.size // 2)
-    edge = _polar(angle, sizes, _polar(angle, sizes, matrix[:border, :border]).T)
-    push = _polar(angle, sizes, matrix[:border, border:])
+    edge = polar(gear, sizes, polar(gear, sizes, matrix[:border, :border]).T)
+    push = polar(gear, sizes, matrix[:border, border:])
     own = -(matrix[border:, border:] + matrix[border:, border:].T) / 2
     n = knots.shape[1] * (degree + 1)
     points = block_diag(*(along.at[i] for i in owner)) if owner else np.zeros((0, 0))
@@ -100,6 +90,40 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, plane=False,
         open_open=points @ own[n:, n:] @ points.T,
         unknowns=int(body.size[: body.first_load][body.there[: body.first_load]].sum()),
     )
+
+
+def section_of(gear, sector, material, knots, order, *, plane=False):
+    """The section of a sector with its loads, short edges bound.
+
+    Parameters
+    ----------
+    gear, sector, material, knots, order
+        As in `panel3d`.
+    plane : bool
+        As if it were a spur gear's.
+
+    Returns
+    -------
+    every : ndarray, shape (n, m)
+        Nodes of the triangles, inside ones too.
+    section : ndarray, shape (3, m, 3 n, 3 n)
+        ``K00, K01, K11`` of the triangles.
+    load : ndarray, shape (count, 3, loads)
+        Forces of the hats on the nodes that triangles share.
+    sides, held : ndarray
+        Nodes of both sides, left ones first, and those that do not move.
+    chain : callable
+        Of `panel.numbering`.
+    """
+    numbers, count, chain = numbering(sector, order)
+    load = _hats(gear, sector, chain, count, knots, order, 0.0 if plane else gear.beta_b)
+    sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
+    every, _ = all_nodes(numbers, count, order)
+    section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
+    held = chain(sector.held)
+    if order == ORDER:
+        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
+    return every, section, load, sides, held, chain
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, right):
@@ -143,9 +167,11 @@ def _near(gear, sector, numbers, face):
     return np.unique(numbers[:, close])
 
 
-def _polar(angle, sizes, matrix):
-    """Rows of side nodes at `angle`, `sizes` for each component, from Cartesian to radial, tangential and axial ones."""
-    x = np.repeat(3 * np.cumsum(sizes) - 3 * sizes, sizes) + np.arange(sizes.sum()) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+def polar(gear, sizes, matrix, components=3):
+    """Rows of side nodes, `sizes` for each component, from Cartesian to radial and tangential (and axial) ones."""
+    angle = np.repeat([-math.pi / gear.z, math.pi / gear.z], sizes.size // 2)
+    before = np.cumsum(sizes) - sizes
+    x = np.repeat((components - 1) * before, sizes) + np.arange(sizes.sum())
     y = x + np.repeat(sizes, sizes)
     sin, cos = np.repeat(np.sin(angle), sizes)[:, None], np.repeat(np.cos(angle), sizes)[:, None]
     out = matrix.copy()
@@ -165,24 +191,28 @@ def _section(sector, order, material, twist):
     place = np.einsum("cq,dcm->dmq", basis.corner, sector.points[:, sector.triangles])
     x, y = place + np.einsum("kqg,kdgm->dmq", basis.bulge, bulges, optimize=True)
     around = y[:, None] * dx - x[:, None] * dy
-    value = np.broadcast_to(basis.value, dx.shape)
-    flat, along = (np.zeros((6, 3, *dx.shape)) for _ in range(2))  # strains xx, yy, zz, xy, xz, yz of v and of v_z
+    weight = np.sqrt(area * basis.weight)[:, None]
+    base = np.stack([part * weight for part in (dx, dy, around, np.broadcast_to(basis.value, dx.shape))], axis=1)
+    base = base.reshape(area.shape[0], 4 * basis.count, -1)
+    gram = (base @ base.transpose(0, 2, 1)).reshape(-1, 4, basis.count, 4, basis.count).transpose(1, 3, 0, 2, 4)
+    between = _between(material, twist)
+    out = (between.reshape(27, 16) @ gram.reshape(16, -1)).reshape(3, 3, 3, *gram.shape[2:])
+    return out.transpose(0, 3, 4, 1, 5, 2).reshape(3, area.shape[0], 3 * basis.count, 3 * basis.count)
+
+
+def _between(material, twist):
+    """Energy ``(3, 3, 3, 4, 4)`` of K00, K01, K11 between components, in products of N_X, N_Y, Y N_X - X N_Y and N."""
+    dx, dy, around, value = np.eye(4)
+    flat, along = np.zeros((6, 3, 4)), np.zeros((6, 3, 4))  # strains xx, yy, zz, xy, xz, yz of v and of v_z
     flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
     flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
     flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * around
     flat[4, 1], flat[5, 0] = twist * value, -twist * value
     along[2, 2] = along[4, 0] = along[5, 1] = value
-    stiffness = np.zeros((6, 6))
-    stiffness[:3, :3] = material.lame("plane strain")[0]
-    stiffness += material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
-    weight = np.sqrt(area * basis.weight)[:, None]
-    flat, along = ((part * weight).transpose(2, 3, 1, 0, 4).reshape(area.shape[0], 3 * basis.count, -1) for part in (flat, along))
-    flat_stress, along_stress = (
-        np.einsum("ij,mnjq->mniq", stiffness, part.reshape(*part.shape[:2], 6, -1), optimize=True).reshape(part.shape)
-        for part in (flat, along)
-    )
-    flat, along = flat.transpose(0, 2, 1), along.transpose(0, 2, 1)
-    return np.array([flat_stress @ flat, flat_stress @ along, along_stress @ along])
+    stiffness = material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+    stiffness[:3, :3] += material.lame("plane strain")[0]
+    pairs = (flat, flat), (flat, along), (along, along)
+    return np.array([np.einsum("ij,icf,jdg->cdfg", stiffness, one, two) for one, two in pairs])
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):

@@ -11,16 +11,15 @@ from numbers import Integral
 
 import numpy as np
 
+from geometry.damage.crack import crack_in_band
 from geometry.mesh.sector import sector
 
-from ...flexibility.halfspace import hat_points
-from ...flexibility.hertz import half_plane, hat_logarithm
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
 from ...flexibility.solved import solved_gears
 from .elimination import dissect
 from .join import join
 from .panel3d import panel3d
-from .plane import carry, loaded_sector
+from .plane_strain import missing
 
 LOST = 2  # axial modes too poor to be kept
 # edge lengths in modules, see `geometry.mesh.sector.SIZES`
@@ -82,12 +81,28 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     options = (width, int(order), int(axial), float(refine))
     case = (gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
     kept = solved_gears(cache)
-    return kept.get(("ritz3d", *case), partial(_solved, *case, kept))
+    return kept.get(("ritz3d", *case), partial(_mirrored if gear.beta < 0 else _solved, *case, kept))
 
 
 def axial_degree(width, m_n):
     """Degree along a `width` [mm] that goes with cubic triangles: 2 and 0.8 per normal module [mm], at least 8."""
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
+
+
+def _mirrored(gear, material, cracks, neighbours, width, order, axial, refine, cache):
+    """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
+    cracks = tuple(crack_in_band(crack, width, width, 0.0) for crack in cracks)
+    options = {"width": width, "neighbours": neighbours, "order": order, "axial": axial, "refine": refine, "cache": cache}
+    other = flexibility3d(replace(gear, beta=-gear.beta), material, cracks, **options)
+    sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
+    near, far = ({key: sign[:, None] * found * sign for key, found in own.items()} for own in (other.near, other.far))
+    healthy = None
+    if other.healthy is not None:
+        healthy = flexibility3d(gear, material, **options)
+    seam = other.seam
+    if seam is not None:
+        seam = replace(seam, opening={tooth: found * sign for tooth, found in seam.opening.items()})
+    return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
 
 
 def _solved(gear, material, cracks, neighbours, width, order, axial, refine, cache):
@@ -143,14 +158,6 @@ def solid_sector(gear, material, cracks, *, width, order, axial, refine, cache=T
     return kept.get(("ritz3d sector", gear, material, cracks, width, order, axial, refine), solve)
 
 
-def _plane_sector(gear, material, cracks, order, refine, cache):
-    def solve():
-        section, tree = _sector(gear, cracks, refine, cache)
-        return panel3d(gear, section, material, hats(gear), 1.0, order=order, degree=0, plane=True, tree=tree)
-
-    return cache.get(("ritz3d plane sector", gear, material, cracks, order, refine), solve)
-
-
 def _sector(gear, cracks, refine, cache):
     """The section's triangles and their nested halves."""
 
@@ -182,30 +189,13 @@ def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial
 
 
 def _missing(gear, material, cracks, order, refine, cache):
-    """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm], known in plane strain.
+    """`plane_strain.missing` with the sections solved for: of all modes along the width, or what a crack adds, of the even one.
 
-    There `ritz` has it: it takes the singular fields of loads out. Near the tip corner the difference is that of all modes along
-    the width, to a thousandth; what a crack adds to it is taken for the even mode only.
+    Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
     """
 
     def solve():
-        panels = {tooth: _plane_sector(gear, material, own, order, refine, cache) for tooth, own in ((0, cracks), (1, ()))}
-        found = join(gear, panels, panels[1])[0][0, 0]
-        local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
-        return plane_hats(gear, material, cracks, cache=cache) + local - found
+        sections = tuple(_sector(gear, own, refine, cache)[0] for own in (cracks, ()))
+        return missing(gear, material, cracks, order, sections, cache=cache)
 
     return cache.get(("ritz3d missing", gear, material, cracks, order, refine), solve)
-
-
-def plane_hats(gear, material, cracks=(), *, cache=True):
-    """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
-    kept = solved_gears(cache)
-
-    def solve():
-        panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
-        influence = join(gear, panels, panels[1])[0][0, 0]
-        points, weight = hat_points(hats(gear), 12)
-        mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
-        return mean @ (influence + influence.T) @ mean.T / 2
-
-    return kept.get(("plane hats", gear, material, cracks), solve)

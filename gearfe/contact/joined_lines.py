@@ -1,0 +1,208 @@
+"""Cells of contact lines of many contact problems in joined arrays, and the half-space between them.
+
+What is done cell by cell is done for all problems, one for each phase, at once.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from ..flexibility.halfspace import pair_kernel, pair_slope, strip
+from ..flexibility.hertz import half_width
+
+SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
+FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
+NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
+
+
+class System(NamedTuple):
+    """A contact problem over n cells, without its load.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (n, n)
+        Approach per unit force, symmetric, half-space left out [mm/N].
+    gap : ndarray, shape (n,)
+        Unloaded distance [mm].
+    ends : (ndarray, ndarray)
+        Ends of the cells along their lines [mm].
+    line : ndarray, shape (n,)
+        Number of each cell's line; cells of a line are neighbours, in the order along it.
+    radius : ndarray, shape (n,)
+        Relative radius of curvature [mm].
+    block : ndarray, shape (n,), optional
+        Number of the bodies each cell is on: `matrix` is zero between different ones.
+    faces : (ndarray (m, n), ndarray (m, m), ndarray (m,)), optional
+        Faces of cracks that must not pass through each other: their opening by the cells' forces and by unit forces that push
+        them apart [mm/N], and the block of each.
+    floor : ndarray, shape (n,), optional
+        How deep the pits above the cells are [mm]; cells of one depth share their mean load.
+    mirrors : list of (float, ndarray (n,), ndarray (n,))
+        End faces in which loads are mirrored, as of `bodies.mirrors_of`; as many in all systems solved together.
+    """
+
+    matrix: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    ends: tuple[NDArray[np.float64], NDArray[np.float64]]
+    line: NDArray[np.int64]
+    radius: NDArray[np.float64]
+    block: NDArray[np.int64] | None = None
+    faces: Any = None
+    floor: NDArray[np.float64] | None = None
+    mirrors: Any = ()
+
+
+class JoinedLines:
+    """Cells of many contact problems, and the flexibility of each, whose half-space follows the widths of the strips of pressure.
+
+    Attributes
+    ----------
+    totals : list of ndarray, shape (n + m, n + m)
+        Flexibility between the cells, then the faces of cracks, of each problem [mm/N]; views of `flat`, each from its `base` on.
+    gaps, weights, blocks : list
+        Of the same: unloaded distances [mm], 1 for what carries the load, numbers of the members of each block.
+    problem, width, widest : ndarray, shape (cells,)
+        Of all cells: number of their problem, length [mm], most that their strip can be wide [mm].
+    slices : list of slice
+        The cells of each problem among all.
+    near : tuple or None
+        Pairs of cells ``(i, j)`` within `NEAR`, their places in `flat`, both ways, and what is there without half-space; None
+        before `begin`.
+    images : list
+        Of each end face: its `System.mirrors`, which of the pairs of `near` are within `NEAR` of their images, and what these
+        add to them in `near`.
+    """
+
+    def __init__(self, systems, kernel, modulus):
+        self.systems, self.kernel, self.modulus = systems, kernel, modulus
+        count = np.array([one.gap.size for one in systems])
+        self.slices = [slice(int(end) - int(n), int(end)) for n, end in zip(count, np.cumsum(count), strict=True)]
+        self.problem = np.repeat(np.arange(count.size), count)
+        self.start, self.stop = (np.concatenate([one.ends[side] for one in systems]) for side in (0, 1))
+        self.width, self.radius = self.stop - self.start, np.concatenate([one.radius for one in systems])
+        lines = np.concatenate([one.line for one in systems])
+        self.line = np.cumsum(np.append(True, (np.diff(lines) != 0) | (np.diff(self.problem) > 0))) - 1
+        self.first = np.flatnonzero(np.append(True, np.diff(self.line) > 0))  # cell of each line
+        self.floor = np.concatenate([np.zeros(one.gap.size) if one.floor is None else one.floor for one in systems])
+        lowest = np.minimum.reduceat(self.floor, np.cumsum(count) - count)
+        flat = (self.floor == lowest[self.problem]).astype(float)
+        self.length = np.bincount(self.problem, self.width * flat)
+        self.mean_radius = np.bincount(self.problem, self.radius * flat) / np.bincount(self.problem, flat)
+        self.widest = self._pieces() / 2  # a piece shorter than it is wide acts as one as wide as it is long
+        self._arrange()
+        mirrors = zip(*(one.mirrors for one in systems), strict=True)
+        self.mirrors = [(own[0][0], *(np.concatenate([one[k] for one in own]) for k in (1, 2))) for own in mirrors]
+        self.near, self.images = None, []
+
+    def _pieces(self):
+        """Length of the unbroken piece of contact each cell belongs to ``(n,)`` [mm]."""
+        part = _runs(self.line, self.floor)
+        apart = (np.diff(part) != 0) | (np.abs(self.start[1:] - self.stop[:-1]) > 1e-9 * self.width[1:])
+        number = np.concatenate([[0], np.cumsum(apart)])
+        return np.bincount(number, weights=self.width)[number]
+
+    def _arrange(self):
+        """Of each problem its whole flexibility (a view of one array), gaps, weights and blocks, faces of cracks included."""
+        sizes = [one.gap.size + (0 if one.faces is None else one.faces[2].size) for one in self.systems]
+        base = np.concatenate([[0], np.cumsum(np.square(sizes))])
+        self.flat, self.base, self.sizes = np.zeros(base[-1]), base[:-1], np.array(sizes)
+        self.totals = [self.flat[at : at + n * n].reshape(n, n) for at, n in zip(base[:-1].tolist(), sizes, strict=True)]
+        self.gaps, self.weights, self.blocks = [], [], []
+        for one, total in zip(self.systems, self.totals, strict=True):
+            n, m = one.gap.size, total.shape[0] - one.gap.size
+            total[:n, :n] = one.matrix
+            number = np.zeros(n, dtype=int) if one.block is None else one.block
+            if one.faces is not None:
+                total[n:, :n], total[:n, n:], total[n:, n:] = one.faces[0], one.faces[0].T, one.faces[1]
+                number = np.append(number, one.faces[2])
+            self.gaps.append(np.append(one.gap, np.zeros(m)))
+            self.weights.append(np.append(np.ones(n), np.zeros(m)))
+            self.blocks.append([np.flatnonzero(number == k) for k in np.unique(number)])
+
+    def places(self, i, j):
+        """Places in the array of all flexibilities of the pairs ``(i, j)`` of cells."""
+        problem = self.problem[i]
+        first = np.array([one.start for one in self.slices])[problem]
+        return self.base[problem] + (i - first) * self.sizes[problem] + (j - first)
+
+    def begin(self, x):
+        """Put the half-space into the flexibilities, and find the pairs of cells in which it depends on the strips' widths."""
+        last = np.searchsorted(self.line, self.line, side="right")
+        i, j = _ranges(np.arange(self.line.size), last)
+        forth, back = self.places(i, j), self.places(j, i)
+        widest = np.maximum.reduceat(x, self.first)[self.line[i]]
+        near = np.flatnonzero(self.start[j] - self.stop[i] < NEAR * widest)
+        bulk = self.flat[forth]
+        for weight, low, high in self.mirrors:
+            image = weight * pair_kernel((low, high), i, j, x, (-high, -low))
+            bulk += image
+            at = np.flatnonzero(low[i[near]] + low[j[near]] < NEAR * widest[near])
+            self.images.append((weight, low, high, at, image[near[at]]))
+        self.flat[forth] = self.flat[back] = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
+        self.near = i[near], j[near], forth[near], back[near], bulk[near]
+
+    def widen(self, x):
+        """The half-space and the images in end faces of strips with distances `x`."""
+        i, j, forth, back, bulk = self.near
+        own = bulk + self.kernel * pair_kernel((self.start, self.stop), i, j, x)
+        for weight, low, high, at, before in self.images:
+            own[at] += weight * pair_kernel((low, high), i[at], j[at], x, (-high, -low)) - before
+        self.flat[forth] = self.flat[back] = own
+
+    def smoother(self, load):
+        """Sparse matrix from the cells' forces to mean line loads over some half widths, within their lines and floors."""
+        reach = SMOOTH * half_width(load / self.length, self.mean_radius, self.modulus)[self.problem]
+        middle = (self.start + self.stop) / 2
+        long = np.maximum.reduceat(self.stop, self.first) - self.start[self.first]
+        apart = np.append(0.0, np.cumsum(long + 4 * reach.max())[:-1])  # all lines behind each other
+        shift = (apart - self.start[self.first])[self.line]
+        first = np.searchsorted(self.stop + shift, middle + shift - reach, side="right")
+        i, j = _ranges(first, np.searchsorted(self.start + shift, middle + shift + reach))
+        over = np.minimum(self.stop[j], middle[i] + reach[i]) - np.maximum(self.start[j], middle[i] - reach[i])
+        over = np.where(self.floor[i] == self.floor[j], np.maximum(over, 0.0), 0.0)
+        over = over / np.bincount(i, over, minlength=reach.size)[i] / self.width[j]
+        return csr_array((over, (i, j)), shape=(reach.size,) * 2)
+
+    def cells(self, forces):
+        """Forces of all cells, those of faces left out."""
+        return np.concatenate([force[: one.gap.size] for force, one in zip(forces, self.systems, strict=True)])
+
+    def along(self, mean, forces, load):
+        """Mean line loads of all cells [N/mm]."""
+        return np.maximum(mean @ self.cells(forces), FLOOR * load[self.problem] / self.width)
+
+    def wide(self, along, local):
+        """Distances x of the strips ``(n,)`` [mm] at mean line loads `along`, with the local law of `SharedLines.solve`."""
+        wide = strip(half_width(along, self.radius, self.modulus))
+        if local is not None:
+            wide = wide * np.exp(-local(along))
+        return np.minimum(wide, self.widest)
+
+    def change(self, forces, x):
+        """Sparse change ``(n, n)`` of the approach of each cell with the strip's distance x of each."""
+        cells = self.cells(forces)
+        i, j = self.near[:2]
+        slope = self.kernel * pair_slope((self.start, self.stop), i, j, x)
+        for weight, low, high, at, _ in self.images:
+            slope[at] += weight * pair_slope((low, high), i[at], j[at], x, (-high, -low))
+        apart = i != j
+        i, j, slope = np.append(i, j[apart]), np.append(j, i[apart]), np.append(slope, slope[apart])
+        own, number = x * np.bincount(i, slope * cells[j], minlength=x.size), np.arange(x.size)
+        values = np.append(slope * cells[j] * x[j], own)
+        return csr_array((values, (np.append(i, number), np.append(j, number))), shape=(x.size,) * 2)
+
+
+def _runs(line, floor):
+    """Numbers of the parts with one line and floor, equal for equal ones ``(n,)``."""
+    if not floor.any():
+        return line
+    return np.unique(np.array([line, floor]), axis=1, return_inverse=True)[1].ravel()
+
+
+def _ranges(first, last):
+    """Pairs ``(i, j)`` with ``first[i] <= j < last[i]``."""
+    count = np.maximum(last - first, 0)
+    i = np.repeat(np.arange(count.size), count)
+    return i, np.arange(count.sum()) - np.repeat(np.cumsum(count) - count - first, count)

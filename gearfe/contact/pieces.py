@@ -1,0 +1,187 @@
+"""Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where tip corners may touch beyond.
+
+On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a tip
+corner of one gear on the other flank, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.pair.contacts import touching
+from geometry.pair.lines import covered
+
+SAMPLES = 400  # of the gap beyond the path, over a base pitch
+PARTS = 4  # straight parts of a line beyond the path, where pits are looked for
+
+
+class Piece(NamedTuple):
+    """A part of a contact line between two depths [mm].
+
+    `roll` is the abscissa of its line at depth 0 [mm], `corner` as of `Cells`; `ends` says which of its ends (first, last) end
+    contact, so that the pressure rises there; `floor` as of `Cells`.
+    """
+
+    half: int
+    order: int
+    roll: float
+    corner: int
+    first: float
+    last: float
+    ends: tuple
+    floor: float = 0.0
+
+
+@lru_cache(maxsize=64)
+def gaps(pair):
+    """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met.
+
+    Where the path ends at a form point the corner first meets nothing; its gaps count from where it meets the flank.
+    """
+    start, end = pair.path
+    away = np.linspace(0.0, pair.p_bt, SAMPLES) + 1e-6 * pair.p_bt
+    out = []
+    for nominal in (start - away, end + away):
+        gap = touching(pair, nominal)[2]
+        met = np.flatnonzero(np.isfinite(gap))
+        first = met[0] if met.size else gap.size
+        lost = first + np.flatnonzero(~np.isfinite(gap[first:]))
+        if 0 < first < gap.size - 1:  # it meets the flank between two samples: what the gap is at the one before, at least
+            first -= 1
+            gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
+        own = slice(first, lost[0] if lost.size else gap.size)
+        out.append((away[own], np.maximum.accumulate(gap[own])))
+    return out
+
+
+def beyond(pair, reach):
+    """How far before the start and after the end of the path [mm] the gap is below `reach` [mm]."""
+    return tuple(float(np.interp(reach, gap, away, left=0.0)) if reach > 0 and away.size else 0.0 for away, gap in gaps(pair))
+
+
+def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
+    """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
+
+    Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor.
+
+    Parameters
+    ----------
+    pair : GearPair
+    phase : float
+    pits : (sequence of Pit, sequence of Pit)
+        In each gear's own frame.
+    bands : list
+        Of `geometry.pair.lines.bands_of`.
+    beta_b : float
+    further : (float, float)
+        Of `beyond`.
+    closing : float
+        Normal approach [mm] that closes shallower pits.
+
+    Returns
+    -------
+    list of Piece
+        From the end that touches first to the other, line by line.
+    """
+    start, end = pair.path
+    slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
+    first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
+    last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
+    limits = (end + further[1], end, start, start - further[0])
+    pieces = []
+    for half in range(len(bands)):
+        for order in range(first, last + 1):
+            roll = start + (phase + order) * pair.p_bt
+            for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
+                ends = (low == 0, high == width) if any(further) else (True, True)
+                pieces.append(Piece(half, order, roll, corner, low, high, ends))
+    deep, *shallow = _by_depth(pits, closing)
+    taken = _taken(pair, deep, bands, pieces, slope)
+    pieces = [part for piece, own in zip(pieces, taken, strict=True) for part in _left(piece, own, width)]
+    if not shallow:
+        return pieces
+    floors = [(gear, depth, _taken(pair, own, bands, pieces, slope)) for gear, depth, own in shallow]
+    own = [[(gear, depth, *part) for gear, depth, found in floors for part in found[k]] for k in range(len(pieces))]
+    return [part for piece, above in zip(pieces, own, strict=True) for part in _on_floors(piece, above, width)]
+
+
+def _by_depth(pits, closing):
+    """Pits of both gears deeper than `closing`; then (gear, depth, pits of both gears) of each depth that is not."""
+    out = [tuple(tuple(pit for pit in own if pit.depth > closing) for own in pits)]
+    for gear, own in enumerate(pits):
+        for depth in sorted({pit.depth for pit in own if pit.depth <= closing}):
+            alike = tuple(pit for pit in own if pit.depth == depth)
+            out.append((gear, depth, ((), alike) if gear else (alike, ())))
+    return out
+
+
+def _on_floors(piece, above, width):
+    """Parts of a piece under pits `above` (gear, depth, first, last): of one gear the deepest counts, of both their sum."""
+    edges = np.unique(np.clip([piece.first, piece.last, *(at for one in above for at in one[2:])], piece.first, piece.last))
+    edges = edges[np.concatenate([[True], np.diff(edges) > 1e-6 * width])]
+    edges[-1] = piece.last
+    middles = (edges[1:] + edges[:-1]) / 2
+    floors = [
+        sum(max((depth for gear, depth, a, b in above if gear == side and a < at < b), default=0.0) for side in (0, 1))
+        for at in middles.tolist()
+    ]
+    kept = [0, *(k for k in range(1, len(floors)) if floors[k] != floors[k - 1])]
+    out = []
+    for k, after in zip(kept, [*kept[1:], len(floors)], strict=True):
+        ends = piece.ends[0] if k == 0 else True, piece.ends[1] if after == len(floors) else True
+        out.append(piece._replace(first=float(edges[k]), last=float(edges[after]), ends=ends, floor=floors[k]))
+    return out
+
+
+def _parts(roll, slope, width, limits, slack):
+    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high."""
+    if slope > 1e-12:
+        at = np.clip([(roll - limit) / slope for limit in limits], 0.0, width)
+        found = zip((1, 0, 2), at[:-1].tolist(), at[1:].tolist(), strict=True)
+        return [(corner, low, high) for corner, low, high in found if high - low > 1e-6 * width]
+    top, end, start, bottom = limits
+    if start - slack <= roll < end + slack:
+        return [(0, 0.0, width)]
+    if end < roll < top:
+        return [(1, 0.0, width)]
+    return [(2, 0.0, width)] if bottom < roll < start else []
+
+
+def _left(piece, taken, width):
+    """Pieces that the intervals `taken` (first, last) leave of one."""
+    out, at, fine = [], piece.first, piece.ends[0]
+    for a, b in sorted(taken):
+        if a > at:
+            out.append((at, min(a, piece.last), (fine, True)))
+        if b > at:
+            at, fine = b, True
+    out.append((at, piece.last, (fine, piece.ends[1])))
+    return [piece._replace(first=a, last=b, ends=ends) for a, b, ends in out if b - a > 1e-6 * width]
+
+
+def _taken(pair, pits, bands, pieces, slope):
+    """Intervals of depth that pits take from each piece; beyond the path a line is bent, so it is looked at in `PARTS`."""
+    out, (one, two) = [[] for _ in pieces], (pair.gear_1.z, pair.gear_2.z)
+    teeth_1, teeth_2 = {pit.tooth % one for pit in pits[0]}, {pit.tooth % two for pit in pits[1]}
+    found = [k for k, piece in enumerate(pieces) if piece.order % one in teeth_1 or -piece.order % two in teeth_2]
+    if not found:
+        return out
+    depths = [np.linspace(pieces[k].first, pieces[k].last, PARTS + 1 if pieces[k].corner else 2) for k in found]
+    which = np.concatenate([np.full(depth.size - 1, k) for k, depth in zip(found, depths, strict=True)])
+    depth = np.concatenate([np.stack([depth[:-1], depth[1:]], axis=1) for depth in depths])
+    half, order, roll, corner = (np.array(values)[which] for values in list(zip(*pieces, strict=True))[:4])
+    nominal = roll[:, None] - slope * depth
+    rolls = nominal.copy(), pair.mate_roll(nominal)
+    beyond_it = np.flatnonzero(corner)
+    if beyond_it.size:
+        for own, met in zip(rolls, touching(pair, nominal[beyond_it].ravel()), strict=False):
+            own[beyond_it] = met.reshape(-1, 2)
+    ends = np.array(bands)[half]
+    z = ends[:, :1] + np.sign(ends[:, 1:] - ends[:, :1]) * depth
+    row, _, first, last = covered(pair, pits, order, rolls, z)
+    step = depth[row, 1] - depth[row, 0]
+    for k, a, b in zip(which[row].tolist(), depth[row, 0] + first * step, depth[row, 0] + last * step, strict=True):
+        out[k].append((float(a), float(b)))
+    return out

@@ -1,0 +1,83 @@
+"""What the polynomials of a sector's section miss near the tip corner and at the tips of cracks, known in plane strain.
+
+The section's triangles of `panel3d` are coarser than those of `ritz`, which takes the singular fields of loads out. In plane
+strain both are cheap, and their difference is what `solid` adds.
+"""
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import splu
+
+from ...flexibility.halfspace import hat_points
+from ...flexibility.hertz import half_plane, hat_logarithm
+from ...flexibility.solid import hats
+from ...flexibility.solved import solved_gears
+from .join import join
+from .panel import Panel
+from .panel3d import polar, section_of
+from .plane import carry, loaded_sector
+
+
+def missing(gear, material, cracks, order, sections, *, cache=True):
+    """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
+
+    Parameters
+    ----------
+    gear : Gear
+    material : Material
+    cracks : tuple of Crack
+        On tooth 0.
+    order : int
+        Of the polynomials in the section.
+    sections : tuple of Sector
+        With `cracks`, and without.
+    cache : bool or SolvedGears
+        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    """
+    one = plane_panel(gear, sections[1], material, order)
+    found = join(gear, {0: plane_panel(gear, sections[0], material, order) if cracks else one, 1: one}, one)[0][0, 0]
+    local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
+    return plane_hats(gear, material, cracks, cache=cache) + local - found
+
+
+def plane_panel(gear, sector, material, order):
+    """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats; faces of cracks are free."""
+    every, section, load, sides, held, _ = section_of(gear, sector, material, hats(gear), order, plane=True)
+    nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # the third is zero
+    at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
+    block = section[0][:, local[:, None], local]
+    rows, columns = np.broadcast_to(at[:, :, None], block.shape), np.broadcast_to(at[:, None], block.shape)
+    matrix = coo_matrix((block.ravel(), (rows.ravel(), columns.ravel())), shape=(2 * nodes,) * 2).tocsr()
+    force = np.zeros((2 * nodes, load.shape[2]))
+    force[: 2 * load.shape[0]] = load[:, :2].reshape(-1, load.shape[2])
+    inner = np.setdiff1d(np.arange(nodes), np.concatenate([sides, held]))
+    inside, border = ((2 * own[:, None] + np.arange(2)).ravel() for own in (inner, sides))
+    coupled = np.hstack([matrix[inside][:, border].toarray(), force[inside]])
+    factor = splu(matrix[inside][:, inside].tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    between = coupled.T @ factor.solve(coupled)
+    m, n, sizes = border.size, force.shape[1], np.ones(sides.size, dtype=int)
+    edge = matrix[border][:, border].toarray() - between[:m, :m]
+    edge = polar(gear, sizes, polar(gear, sizes, edge, 2).T, 2)
+    return Panel(
+        stiffness=(edge + edge.T) / 2,
+        push=polar(gear, sizes, force[border] - between[:m, m:], 2),
+        own=between[m:, m:],
+        open_push=np.zeros((m, 0)),
+        open_own=np.zeros((0, n)),
+        open_open=np.zeros((0, 0)),
+        unknowns=inside.size,
+    )
+
+
+def plane_hats(gear, material, cracks=(), *, cache=True):
+    """Plane strain's flexibility between the hats ``(PLACES, PLACES)`` [mm per N/mm], the half-plane's logarithm left out."""
+    kept = solved_gears(cache)
+
+    def solve():
+        panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
+        influence = join(gear, panels, panels[1])[0][0, 0]
+        points, weight = hat_points(hats(gear), 12)
+        mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
+        return mean @ (influence + influence.T) @ mean.T / 2
+
+    return kept.get(("plane hats", gear, material, cracks), solve)

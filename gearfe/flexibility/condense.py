@@ -1,0 +1,163 @@
+"""Bodies of many elements reduced to a few unknowns: elements by nested halves, what only one half touches is eliminated there.
+
+With unknowns u that go and b that stay, and columns F of loads, the result is::
+
+    [[K_bb, F_b], [F_b', 0]] - [[K_bu], [F_u']] K_uu^-1 [[K_ub, F_u]]
+
+so that the block of the loads is minus their displacements under each other with b held. All of it is Cholesky of small dense
+matrices, and forward only: no displacement is ever computed.
+
+A *front* is what a set of elements is to the rest: the unknowns that it shares, rising in the order in which all of them go,
+and a lower triangle. So what goes first stands first in it, and lower triangles add up to lower triangles.
+"""
+
+import math
+
+import numpy as np
+from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.lapack import dpotrf
+
+
+def condense(local, dofs, centre, load, stays, held=(), *, leaf):
+    """Reduce a body to the unknowns that stay and its loads.
+
+    Parameters
+    ----------
+    local : ndarray, shape (m, k, k)
+        Symmetric stiffness matrices of the elements.
+    dofs : ndarray of int, shape (m, k)
+        Their unknowns.
+    centre : ndarray, shape (2, m)
+        Where the elements are, in coordinates in which to halve them.
+    load : scipy.sparse.coo_array, shape (n, loads)
+        Forces on the n unknowns, by column.
+    stays, held : ndarray of int
+        Unknowns that stay, in the order wanted, and unknowns that are zero.
+    leaf : int
+        So many elements, and up to twice as many, are put together at once; at least 2.
+
+    Returns
+    -------
+    ndarray, shape (stays + loads, stays + loads)
+        See the module.
+
+    Raises
+    ------
+    RuntimeError
+        If the body gives way without force: its elements fold.
+
+    References
+    ----------
+    A. George, SIAM J. Numer. Anal. 10 (1973) 345-363, on nested dissection.
+    """
+    n, columns = load.shape
+    sets = _halved(centre, leaf)
+    height = len(sets).bit_length() - 1
+    part = np.empty(dofs.shape[0], dtype=np.int64)
+    part[np.concatenate(sets)] = np.repeat(np.arange(len(sets)), [own.size for own in sets])
+    number, first, turns = _numbered(dofs, part, n, stays, held, height)
+    found = n + 1 + columns  # numbers in all: unknowns, loads, and n for those that are held
+    by_part = np.argsort(first[load.coords[0]], kind="stable")
+    at, column, force = number[load.coords[0]][by_part], n + 1 + load.coords[1][by_part], load.data[by_part]
+    ends = np.searchsorted(first[load.coords[0]][by_part], np.arange(len(sets) + 1))
+    place = np.empty(found, dtype=np.int64)
+    fronts = []
+    for k, own in enumerate(sets):
+        brought = slice(ends[k], ends[k + 1])
+        made = _put_together(local[own], number[dofs[own]], (at[brought], column[brought], force[brought]), n, place)
+        fronts.append(_eliminated(*made, turns, k))
+    for level in range(1, height + 1):
+        pairs = zip(fronts[::2], fronts[1::2], strict=True)
+        fronts = [_eliminated(*_joined(*pair), turns, (level << height) + k) for k, pair in enumerate(pairs)]
+    return _filled(*fronts[0], np.concatenate([number[stays], n + 1 + np.arange(columns)]), place)
+
+
+def _halved(centre, leaf):
+    """Elements halved again and again across their longer extent: sets of equal size to one, a power of two of them."""
+    sets = [np.arange(centre.shape[1])]
+    for _ in range(max(0, math.floor(math.log2(centre.shape[1] / leaf)))):
+        halves = []
+        for own in sets:
+            spread = centre[:, own]
+            ranked = own[np.argsort(spread[np.argmax(spread.max(axis=1) - spread.min(axis=1))], kind="stable")]
+            halves += [ranked[: own.size // 2], ranked[own.size // 2 :]]
+        sets = halves
+    return sets
+
+
+def _numbered(dofs, part, n, stays, held, height):
+    """New numbers of the unknowns, n if held; the first set that touches each; and the turns of the numbers, ascending.
+
+    An unknown goes with the smallest set of sets, 2**level of them, that holds all its elements: its turn is the level, then
+    the place of that set on the level.
+    """
+    first, last = np.full(n, part.max(initial=0) + 1), np.zeros(n, dtype=np.int64)
+    each = np.broadcast_to(part[:, None], dofs.shape)
+    np.minimum.at(first, dofs, each)
+    np.maximum.at(last, dofs, each)
+    level = np.ceil(np.log2((np.minimum(first, last) ^ last) + 1)).astype(np.int64)
+    turn = (level << height) + (first >> level)
+    turn[stays] = (height + 1) << height
+    order = np.argsort(turn, kind="stable")
+    turns = turn[order]
+    number = np.empty(n, dtype=np.int64)
+    number[order] = np.arange(n)
+    number[np.asarray(held, dtype=np.int64)] = n
+    return number, first, turns
+
+
+def _put_together(local, numbers, loads, n, place):
+    """Front of a few elements and the loads ``(unknown, load, force)`` on them."""
+    at, column, force = loads
+    ids = _merged(numbers.ravel(), column)
+    ids = ids[ids != n]
+    size = ids.size + 1  # what is held is put into a last row and column, which are dropped
+    place[ids], place[n] = np.arange(ids.size), ids.size
+    rows = place[numbers]
+    where = [(rows[:, :, None] * size + rows[:, None, :]).ravel(), place[at] * size + place[column]]
+    summed = np.bincount(np.concatenate(where), np.append(local.ravel(), force), minlength=size**2)
+    return ids, summed.reshape(size, size)[:-1, :-1].T
+
+
+def _merged(*numbers):
+    """What is in any of them, ascending; `numpy.unique` takes five times as long on so few."""
+    out = np.concatenate(numbers)
+    out.sort()
+    return out[np.append(True, out[1:] > out[:-1])]
+
+
+def _joined(one, two):
+    """Front of two."""
+    ids = _merged(one[0], two[0])
+    total = np.zeros((ids.size,) * 2)
+    for own, matrix in (one, two):
+        padded = np.zeros((own.size + 1,) * 2)
+        padded[:-1, :-1] = matrix.T
+        source = np.full(ids.size, own.size)
+        source[np.searchsorted(ids, own)] = np.arange(own.size)
+        total += padded.take(source, axis=0).take(source, axis=1)
+    return ids, total.T
+
+
+def _eliminated(ids, matrix, turns, turn):
+    """Front without the unknowns whose turn it is."""
+    gone = int(np.searchsorted(ids, np.searchsorted(turns, turn, side="right")))
+    if not gone:
+        return ids, matrix
+    lower, failed = dpotrf(np.asfortranarray(matrix[:gone, :gone]), lower=1, clean=0, overwrite_a=1)
+    if failed:
+        raise RuntimeError("the triangles of the section fold or nearly do, or nothing holds them: change refine a little")
+    rest = np.array(matrix[gone:, gone:], order="F")
+    if rest.size:
+        across = dtrsm(1.0, lower, np.array(matrix[gone:, :gone], order="F"), side=1, lower=1, trans_a=1, overwrite_b=1)
+        rest = dsyrk(-1.0, across, beta=1.0, c=rest, lower=1, overwrite_c=1)
+    return ids[gone:], rest
+
+
+def _filled(ids, matrix, wanted, place):
+    """The whole matrix of a front between the numbers `wanted`, zero for those that it does not have."""
+    out = np.zeros((wanted.size,) * 2)
+    place[wanted] = np.arange(wanted.size)
+    whole = np.tril(matrix) + np.tril(matrix, -1).T
+    out[np.ix_(place[ids], place[ids])] = whole
+    return out

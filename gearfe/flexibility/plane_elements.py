@@ -1,0 +1,54 @@
+"""Stiffness of plane elements of any shape functions, all of them at once.
+
+The weak form is ``lambda div u div v + 2 mu eps(u) : eps(v)``. On a straight triangle the map is linear, so its matrix is a sum
+of the same four reference matrices ``int d_e N_i d_f N_j``; only bent ones are integrated one by one.
+"""
+
+import numpy as np
+
+
+def stiffness(slope, weight, arms, lam, mu):
+    """Stiffness of triangles with linear maps ``(m, 2 n, 2 n)``, unknowns x, y node by node.
+
+    Parameters
+    ----------
+    slope : ndarray, shape (2, n, q)
+        Derivatives of the n shape functions by the reference coordinates at q points.
+    weight : ndarray, shape (q,)
+        Of the points.
+    arms : ndarray, shape (m, 2, 2)
+        Derivatives of the maps, place by reference coordinate.
+    lam, mu : float
+        Lame's constants of the plane problem [MPa].
+    """
+    (xx, xy), (yx, yy) = arms.transpose(1, 2, 0)
+    area = xx * yy - xy * yx
+    back = np.array([[yy, -xy], [-yx, xx]]) / area  # reference coordinate by place
+    outer = np.einsum("eam,fbm->mabef", back, back)
+    factor = lam * outer + mu * outer.transpose(0, 2, 1, 3, 4)
+    alike = mu * np.einsum("mccef->mef", outer)
+    factor[:, 0, 0] += alike
+    factor[:, 1, 1] += alike
+    factor *= np.abs(area)[:, None, None, None, None]  # whichever way round its corners are
+    reference = np.einsum("eiq,fjq->efij", slope * weight, slope)
+    n, m = slope.shape[1], area.size
+    local = (factor.reshape(4 * m, 4) @ reference.reshape(4, n * n)).reshape(m, 2, 2, n, n)
+    return local.transpose(0, 3, 1, 4, 2).reshape(m, 2 * n, 2 * n)
+
+
+def bent_stiffness(slope, weight, jacobian, lam, mu):
+    """The same of triangles whose maps have derivatives `jacobian` ``(m, 2, 2, q)`` at the points."""
+    (xx, xy), (yx, yy) = jacobian.transpose(1, 2, 0, 3)
+    area = xx * yy - xy * yx
+    n, m = slope.shape[1], area.shape[0]
+    gradient = np.empty((m, n, 2, area.shape[1]))
+    first, second = slope
+    gradient[:, :, 0] = (yy / area)[:, None] * first - (yx / area)[:, None] * second
+    gradient[:, :, 1] = (xx / area)[:, None] * second - (xy / area)[:, None] * first
+    rows = gradient.reshape(m, 2 * n, -1)
+    product = ((rows * (np.abs(area) * weight)[:, None]) @ rows.transpose(0, 2, 1)).reshape(m, n, 2, n, 2)
+    local = lam * product + mu * product.transpose(0, 1, 4, 3, 2)
+    alike = mu * (product[:, :, 0, :, 0] + product[:, :, 1, :, 1])
+    local[:, :, 0, :, 0] += alike
+    local[:, :, 1, :, 1] += alike
+    return local.reshape(m, 2 * n, 2 * n)

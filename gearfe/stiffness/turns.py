@@ -1,0 +1,68 @@
+"""Curves over many mesh cycles, one revolution or the hunting period: each different cycle is solved once."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from .curve import joined
+
+LONGEST = {"revolution": "z of the pinion", "hunting": "the least common multiple of both numbers of teeth"}
+MOST = 2e7  # values of forces by phase and tooth pair that a curve may hold: 160 MB
+
+
+def cycles_in(pair, span):
+    """Mesh cycles of a `span`: a revolution of the pinion, or until the same teeth meet again."""
+    one, two = pair.gear_1.z, pair.gear_2.z
+    return {"revolution": one, "hunting": math.lcm(one, two)}.get(span, 1)
+
+
+def check_length(pair, span, phases):
+    """ValueError for a span of more values than `MOST`, before anything is solved."""
+    cycles = cycles_in(pair, span)
+    if cycles > 1 and cycles * phases * (cycles + pair.eps_alpha) > MOST:
+        fewer = int(MOST / cycles / (cycles + pair.eps_alpha))
+        instead = f"at most {fewer} phases in each cycle" if fewer else "span = 'revolution'"
+        raise ValueError(
+            f"span = {span!r} of {pair.gear_1.z} and {pair.gear_2.z} teeth is {cycles} mesh cycles ({LONGEST[span]}), with "
+            f"{phases} phases each {cycles * phases} contacts of up to {cycles} tooth pairs, more than a curve can hold: give "
+            f"{instead}, or the phases of the cycles you need"
+        )
+
+
+def over_turns(solve, phase, pair, span, differs):
+    """Curves over a span of many cycles, for a list of loads.
+
+    Cycle c brings the pinion's tooth c and the wheel's into contact. Only gears whose teeth differ tell cycles apart, so those
+    that are alike are solved once and taken again.
+
+    Parameters
+    ----------
+    solve : callable
+        From the phases ``(n,)`` of one cycle to a list of `StiffnessCurve`, one for each load.
+    phase : ndarray
+        Of all cycles.
+    pair : GearPair
+    span : {"revolution", "hunting"}
+    differs : (bool, bool)
+        Whether the teeth of pinion and wheel differ from each other.
+
+    Returns
+    -------
+    list of StiffnessCurve
+    """
+    parts = np.split(phase, cycles_in(pair, span))
+    alike = math.lcm(*(gear.z for gear, apart in zip((pair.gear_1, pair.gear_2), differs, strict=True) if apart))
+    solved = [solve(part) for part in parts[:alike]]
+    turns = [[_later(one, part, c // alike * alike) for one in solved[c % alike]] for c, part in enumerate(parts)]
+    return [joined(curves) for curves in zip(*turns, strict=True)]
+
+
+def _later(curve, phase, cycles):
+    """The same curve so many cycles later: its tooth pairs are those so many behind."""
+    if not cycles:
+        return curve
+    meta = curve.meta
+    if "crack_closed_phases" in meta:
+        meta = meta | {"crack_closed_phases": [at + cycles for at in meta["crack_closed_phases"]]}
+    return replace(curve, phase=phase, order=curve.order - cycles, meta=meta)

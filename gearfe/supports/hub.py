@@ -1,0 +1,54 @@
+"""`Hub`: how far the flanks of a gear give way because what holds its body gives way, by the place of the contact."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Hub:
+    """Flexibility of what holds a gear, seen from the middle of its width; the gear follows as a rigid body.
+
+    Attributes
+    ----------
+    bending : ndarray, shape (2, 2)
+        Displacement [mm] and slope [rad] by a force [N] and a moment [N mm]. The same in every plane through the axis.
+    torsion : float
+        Twist [rad] by a torque [N mm].
+    axial : float
+        [mm/N].
+    """
+
+    bending: NDArray[np.float64]
+    torsion: float
+    axial: float
+
+    def given(
+        self, along: NDArray[np.float64], z: NDArray[np.float64], hand: NDArray[np.float64], r_b: float, beta_b: float
+    ) -> NDArray[np.float64]:
+        """Approach at each contact by unit normal forces on the others, as the body follows its hub ``(n, n)`` [mm/N].
+
+        A unit normal force has the part cos(beta_b) along the line of action, ``r_b`` away from the axis, and hand sin(beta_b)
+        along the axis. Rows below are its forces and moments on the hub; by reciprocity they also read the displacements.
+
+        Parameters
+        ----------
+        along : ndarray, shape (n,)
+            Where the contacts are on the line of action, from the foot of the perpendicular from the gear's axis, in the sense
+            of the pinion's roll length [mm].
+        z : ndarray, shape (n,)
+            Heights from the middle of the gear [mm].
+        hand : ndarray, shape (n,)
+            Sense of the axial part: +1 towards z = b.
+        r_b : float
+            Base radius [mm].
+        beta_b : float
+            Base helix angle [rad], not negative.
+        """
+        cos, pull = math.cos(beta_b), math.sin(beta_b) * hand
+        plane = np.stack([np.full(z.size, cos), cos * z - pull * along], axis=1)  # the plane of axis and line of action
+        across = r_b * pull  # moment in the one at right angles to it
+        out = plane @ self.bending @ plane.T + self.bending[1, 1] * np.outer(across, across)
+        return out + (cos * r_b) ** 2 * self.torsion + self.axial * np.outer(pull, pull)

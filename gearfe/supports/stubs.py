@@ -1,0 +1,82 @@
+"""What a shaft does at both end faces of a gear that is one piece with it: stiffness of the two stubs beside the gear."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .beam import beam_element, pieces_between
+
+RIGID = 1e7  # of the largest stiffness: as good as rigid, and no trouble for the solve
+MOTIONS = 6  # of a face: displacements x, y, z [mm], turns about x, y, z [rad]
+
+
+def stub_stiffness(shaft: Any, width: float) -> NDArray[np.float64]:
+    """Forces and moments that the stubs put on both end faces of the gear, by the faces' motions.
+
+    A stub that reaches no bearing moves along freely; one that ends at its face, likewise.
+
+    Parameters
+    ----------
+    shaft : Shaft
+        Its first bearing holds it along the axis, its `torque` about it.
+    width : float
+        Of the gear [mm].
+
+    Returns
+    -------
+    ndarray, shape (12, 12)
+        Six motions of the face z = 0, then six of z = b.
+    """
+    faces = (shaft.gear - width / 2, shaft.gear + width / 2)
+    nodes, pieces = pieces_between(shaft.segments, [*shaft.bearings, shaft.torque, *faces])
+    bend, turn, pull = (np.zeros((n * nodes.size,) * 2) for n in (2, 1, 1))
+    for i, (length, section) in enumerate(pieces):
+        if faces[0] < (nodes[i] + nodes[i + 1]) / 2 < faces[1]:
+            continue
+        bend[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += beam_element(length, section, shaft.material)
+        spring = np.array([[1, -1], [-1, 1]]) / length
+        turn[i : i + 2, i : i + 2] += shaft.material.shear_modulus * 2 * section.second_moment * spring
+        pull[i : i + 2, i : i + 2] += shaft.material.E * section.area * spring
+
+    def nearest(place: float) -> int:
+        return int(np.argmin(np.abs(nodes - place)))
+
+    rigid = RIGID * np.abs(bend).max()
+    for place, stiff in zip(shaft.bearings, shaft.bearing_stiffness, strict=True):
+        bend[2 * nearest(place), 2 * nearest(place)] += min(stiff, rigid)
+    turn[nearest(shaft.torque), nearest(shaft.torque)] += RIGID * turn.max()
+    pull[nearest(shaft.bearings[0]), nearest(shaft.bearings[0])] += RIGID * pull.max()
+    ends = [nearest(face) for face in faces]
+    plane = _condensed(bend, [k for end in ends for k in (2 * end, 2 * end + 1)])
+    out = np.zeros((2 * MOTIONS, 2 * MOTIONS))
+    for (across, about), sense in (((0, 4), 1), ((1, 3), -1)):  # the slope of x is a turn about y, that of y one about -x
+        at = np.array([across, about, MOTIONS + across, MOTIONS + about])
+        signs = np.array([1, sense, 1, sense])
+        out[np.ix_(at, at)] += signs[:, None] * plane * signs
+    for motion, rod in ((5, turn), (2, pull)):
+        at = np.array([motion, MOTIONS + motion])
+        out[np.ix_(at, at)] += _condensed(rod, ends)
+    return out
+
+
+def _condensed(stiffness, kept):
+    """Stiffness of some unknowns, the others left to themselves."""
+    rest = np.setdiff1d(np.arange(len(stiffness)), kept)
+    rest = rest[np.abs(stiffness[rest]).max(axis=1) > 0] if rest.size else rest  # places inside of the gear have none
+    cross = stiffness[np.ix_(rest, kept)]
+    return stiffness[np.ix_(kept, kept)] - cross.T @ np.linalg.solve(stiffness[np.ix_(rest, rest)], cross)
+
+
+def face_radii(shaft: Any, width: float) -> tuple[float, float]:
+    """Radius of the shaft beside the faces z = 0 and z = b [mm], 0 where it ends there."""
+    ends = np.cumsum([0.0, *(one.length for one in shaft.segments)])
+    slack = 1e-9 * ends[-1]
+
+    def beside(place: float) -> float:
+        if not slack < place < ends[-1] - slack:
+            return 0.0
+        return shaft.segments[int(np.searchsorted(ends, place)) - 1].diameter / 2
+
+    reach = 1e-6 * width
+    return beside(shaft.gear - width / 2 - reach), beside(shaft.gear + width / 2 + reach)

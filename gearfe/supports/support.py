@@ -1,0 +1,93 @@
+"""`Support`: the springs on which the hub of a gear sits, as numbers."""
+
+import math
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import numpy as np
+
+from .hub import Hub
+
+UNITS = {"radial": "N/mm", "tilt": "N mm/rad", "torsion": "N mm/rad", "axial": "N/mm"}
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """Springs under the hub of a gear, seen from the middle of its width; what is not given is rigid.
+
+    The edge that is held otherwise (the bore, or the rim of a ring) moves as a rigid body; the springs hold it, alike in every
+    direction across the axis::
+
+        displacement = force / radial + coupling moment          across the axis, at the middle of the gear
+        slope        = coupling force + moment / tilt            of the axis, in the plane of the force
+        twist        = torque / torsion                          between the gear and where its torque leaves the shaft
+        shift        = axial force / axial
+
+    Parameters
+    ----------
+    radial : float
+        Force across the axis by its displacement, no moment acting [N/mm]; 1 N/um are 1000 N/mm.
+    tilt : float
+        Moment by the slope it gives, no force acting [N mm/rad].
+    torsion : float
+        [N mm/rad].
+    axial : float
+        [N/mm].
+    coupling : float
+        Slope under a unit force [rad/N], the same as displacement under a unit moment: 0 for a gear in the middle of its
+        bearings, positive if the end z = b of the gear gives way more than z = 0. `Shaft` computes it.
+
+    Raises
+    ------
+    ValueError
+        If a stiffness is not positive, or the coupling is so large that the springs would give energy away.
+
+    Examples
+    --------
+    >>> Support(radial=2e5, torsion=4e8)
+    Support(radial=200000.0, tilt=inf, torsion=400000000.0, axial=inf, coupling=0.0)
+    """
+
+    radial: float = math.inf
+    tilt: float = math.inf
+    torsion: float = math.inf
+    axial: float = math.inf
+    coupling: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse springs that do not hold."""
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real) or math.isnan(value):
+                raise ValueError(f"support: {name} = {value!r}, but it needs a number")
+            object.__setattr__(self, name, float(value))
+        for name, unit in UNITS.items():
+            if not getattr(self, name) > 0:
+                raise ValueError(
+                    f"support: {name} = {getattr(self, name):g} {unit}, but a spring holds the gear: give a stiffness > 0, or "
+                    "leave it out (rigid)"
+                )
+        if not self.coupling**2 <= (1 + 1e-9) / (self.radial * self.tilt):
+            raise ValueError(
+                f"support: coupling = {self.coupling:g} rad/N is more than 1 / sqrt(radial tilt) = "
+                f"{1 / math.sqrt(self.radial * self.tilt):g}: such springs would give energy away; take all three from a Shaft"
+            )
+
+    @property
+    def integral(self) -> bool:
+        """Whether the gear is one piece with what holds it: never of springs."""
+        return False
+
+    @property
+    def tilts(self) -> bool:
+        """Whether a force in the middle of the gear tilts it."""
+        return self.coupling != 0
+
+    def untilted(self) -> "Support":
+        """The same without coupling: a force moves the gear, and tilts it no more."""
+        return replace(self, coupling=0.0)
+
+    def hub(self) -> Hub:
+        """`Hub` on these springs."""
+        bending = np.array([[1 / self.radial, self.coupling], [self.coupling, 1 / self.tilt]])
+        return Hub(bending, 1 / self.torsion, 1 / self.axial)

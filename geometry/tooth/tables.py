@@ -1,0 +1,47 @@
+"""Lists of numbers of a `Flank`, checked."""
+
+from typing import Any
+
+import numpy as np
+
+from .gear import Gear
+
+
+def numbers(name: str, values: Any) -> list[float]:
+    """A row of finite numbers; ValueError if it is none."""
+    try:
+        out = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} = {values!r}, but give a sequence of numbers [mm]") from error
+    if out.ndim != 1 or not np.isfinite(out).all():
+        raise ValueError(f"{name} needs one row of finite numbers [mm], without holes")
+    return out.tolist()
+
+
+def table(name: str, given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Rising roll lengths, and as many amounts; ValueError if they are none."""
+    try:
+        rolls, amounts = given
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} needs two rows: roll lengths and the material removed there [mm]") from error
+    rolls, amounts = numbers(f"{name}: roll lengths", rolls), numbers(f"{name}: amounts", amounts)
+    if len(rolls) != len(amounts) or len(rolls) < 2 or not (np.diff(rolls) > 0).all():
+        raise ValueError(
+            f"{name} has {len(rolls)} roll lengths and {len(amounts)} amounts: give as many, the roll lengths rising"
+        )
+    return tuple(rolls), tuple(amounts)
+
+
+def worn(given: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Wear over roll lengths: a `table` of depths; ValueError if material has grown."""
+    rolls, depths = table("wear", given)
+    if min(depths) < 0:
+        raise ValueError(f"wear: depth {min(depths):g} mm, but wear takes material away: give depths from 0 on")
+    return rolls, depths
+
+
+def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
+    """Values by tooth, or none; ValueError unless there is one for each."""
+    if len(values) not in (0, gear.z):
+        raise ValueError(f"{name} has {len(values)} values, but z = {gear.z}: give one for each tooth")
+    return np.array(values)

@@ -1,0 +1,176 @@
+"""Gears on springs and shafts: identities, springs in series, and tilt against an iteration over misalignment."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
+STEEL = gf.Material(E=207e3, nu=0.3)
+PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=30, r_bore=18.0, **RACK))
+PHASES = [0.1, 0.75]
+SPRINGS = {"pinion": gf.Support(radial=1e5, torsion=3e8, tilt=1e9), "wheel": gf.Support(radial=2e5)}
+SERIES = 1e-3 * (1 / 1e5 + 1 / 2e5 + PAIR.gear_1.r_b**2 / 3e8)  # m/N
+OVERHUNG = gf.Shaft(segments=[(80, 30)], bearings=(0, 50), gear=70, material=STEEL, torque=0)
+
+
+def solved(supports=None, force=2000.0, pair=PAIR, method="ritz3d", **options):
+    options |= {"order": 2} if method == "ritz3d" else {}
+    return gf.mesh_stiffness(pair, force, STEEL, method=method, supports=supports, **({"phases": PHASES} | options))
+
+
+def helical(hand, **more):
+    beta = math.radians(14)
+    rack = RACK | more
+    return gf.GearPair(
+        gf.Gear(z=24, r_bore=15.0, beta=-hand * beta, **rack), gf.Gear(z=30, r_bore=18.0, beta=hand * beta, **rack)
+    )
+
+
+@pytest.mark.parametrize("method", ["ritz", "ritz3d", "coupled", "textbook"])
+def test_rigid_supports_are_those_of_before(method):
+    plain = solved(method=method)
+    for given in ({}, {"pinion": None}, {"pinion": gf.Support(), "wheel": gf.Support()}):
+        found = solved(given, method=method)
+        assert_allclose(found.k, plain.k, rtol=1e-14)
+        assert_allclose(found.k_tangent, plain.k_tangent, rtol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["ritz", "ritz3d", "textbook"])
+def test_centred_supports_are_springs_in_series(method):
+    plain, found = solved(method=method), solved(SPRINGS, method=method)
+    assert_allclose(1 / found.k - 1 / plain.k, SERIES, rtol=1e-9)
+    assert_allclose(1 / found.k_tangent - 1 / plain.k_tangent, SERIES, rtol=1e-6)
+    assert_allclose(found.lte_supports, 2000 * SERIES, rtol=1e-9)
+    assert_allclose(found.force, plain.force, rtol=1e-6, atol=1e-6)
+    teeth = found.without_supports()
+    assert_allclose([teeth.k, teeth.lte], [plain.k, plain.lte], rtol=1e-9)
+    assert_allclose(teeth.k_tangent, plain.k_tangent, rtol=1e-6)
+    assert plain.without_supports() is plain
+
+
+def test_modified_flanks_on_springs():
+    flanks = {"pinion": gf.Flank(tip_relief=0.02, tip_start_roll=PAIR.gear_1.roll_a - 4)}
+    plain, found = (solved(given, flanks=flanks, method="ritz", phases=8) for given in (None, SPRINGS))
+    assert_allclose(found.te - plain.te, 2000 * SERIES, rtol=1e-9)
+    assert_allclose(found.unloaded, plain.unloaded, rtol=1e-12)
+
+
+def test_a_tilting_shaft_is_the_misalignment_it_makes():
+    """The gear pair alone, askew by what the beam tilts under the moment of its load, until both agree."""
+    springs, gear = OVERHUNG.support(), PAIR.gear_1
+    found = gf.contact_pattern(PAIR, 2000.0, STEEL, phases=PHASES[:1], supports={"pinion": OVERHUNG})
+    askew = 0.0
+    for _ in range(30):
+        alone = gf.contact_pattern(PAIR, 2000.0, STEEL, phases=PHASES[:1], misalignment=gf.Misalignment(F_beta=askew))
+        cells = alone.cells[0]
+        moment = cells.load @ (cells.z - gear.b / 2)
+        before, askew = askew, gear.b * (springs.coupling * 2000.0 + moment / springs.tilt)
+        if abs(askew - before) < 1e-12:
+            break
+    assert askew > 1e-3  # mm; the overhung end z = b gives way
+    assert moment < 0  # so the load moves to z = 0
+    middle = 2000.0 / springs.radial + springs.coupling * moment + gear.r_b**2 * 2000.0 / springs.torsion
+    assert_allclose(found.approach, alone.approach + middle, rtol=1e-6)
+    assert_allclose(found.cells[0].load, cells.load, atol=1e-5 * cells.load.max())
+
+
+def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
+    right = gf.Shaft(segments=[(80, 30)], bearings=(30, 80), gear=10, material=STEEL, torque=80)
+    one, two = (
+        gf.contact_pattern(helical(hand), 2000.0, STEEL, phases=PHASES[:1], supports={"pinion": shaft})
+        for hand, shaft in ((1, OVERHUNG), (-1, right))
+    )
+    assert_allclose(one.approach, two.approach, rtol=1e-7)
+    assert_allclose(one.supports, two.supports, rtol=1e-6)
+    middle = [found.cells[0].load @ found.cells[0].z / found.cells[0].load.sum() for found in (one, two)]
+    assert_allclose(sum(middle), RACK["b"], rtol=1e-6)
+    plain = gf.contact_pattern(helical(1), 2000.0, STEEL, phases=PHASES[:1]).cells[0]
+    assert middle[0] < plain.load @ plain.z / plain.load.sum() - 0.2
+
+
+def test_reactions_of_a_helical_gear_do_the_work_of_its_load():
+    """The hub's displacements by hand: force, axial force and moments of all cells about the middle of the gear."""
+    held = gf.Support(radial=3e5, tilt=4e7, torsion=2e8, axial=2e5, coupling=5e-8)
+    pair, force = helical(1), 2000.0
+    for side, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
+        found = gf.contact_pattern(pair, force, STEEL, phases=[0.3], supports={side: held})
+        cells, beta_b = found.cells[0], abs(pair.gear_1.beta_b)
+        along = cells.roll_1 if sense > 0 else -cells.roll_2
+        place = np.stack([along, np.full(along.size, gear.r_b), cells.z - gear.b / 2], axis=1)  # line of action, off it, axis
+        push = math.cos(beta_b) * np.array([1, 0, 0]) + math.sin(beta_b) * np.array([0, 0, 1])  # z = 0 touches first
+        total, moment = cells.load.sum() * push, (cells.load[:, None] * np.cross(place, push)).sum(axis=0)
+        assert_allclose(total[0], force, rtol=1e-9)
+        work = total[0] ** 2 / held.radial + 2 * held.coupling * total[0] * moment[1] + total[2] ** 2 / held.axial
+        work += (moment[0] ** 2 + moment[1] ** 2) / held.tilt + moment[2] ** 2 / held.torsion
+        assert_allclose(found.supports, work / force, rtol=1e-9)
+
+
+def test_herringbone_halves_share_a_hub():
+    """Mirrored halves cancel each other's axial force, so that an axial spring and one that tilts change nothing."""
+    pair = helical(1, b=12.0)
+    run = {"pair": pair, "face": "herringbone", "phases": [0.3], "force": 1600.0}
+    plain = solved(**run)
+    found = solved({"pinion": gf.Support(radial=2e5, tilt=1e8, axial=1e4)}, **run)
+    assert_allclose(1 / found.k - 1 / plain.k, 1e-3 / 2e5, rtol=1e-6)
+
+
+def test_a_crack_and_auto_and_poses_take_them():
+    crack = {"pinion": [gf.Crack(level=0.4)]}
+    plain, found = (solved(given, damage=crack, method="ritz", phases=[0.5, 1.2]) for given in (None, SPRINGS))
+    assert_allclose(1 / found.k - 1 / plain.k, SERIES, rtol=1e-9)
+    chosen = solved({"pinion": OVERHUNG}, method="auto", order=2)
+    assert chosen.meta["method"] == "ritz3d"
+    assert "tilt" in chosen.meta["why"]
+    turned = solved(SPRINGS, method="ritz", pose="pinion")
+    assert_allclose(turned.lte_supports, 2000 * SERIES, rtol=1e-9)
+
+
+def test_curves_are_written_and_read_back(tmp_path):
+    found = solved(SPRINGS, method="ritz")
+    found.to_csv(tmp_path / "curve.csv")
+    back = gf.StiffnessCurve.from_csv(tmp_path / "curve.csv")
+    assert_allclose(back.lte_supports, found.lte_supports)
+    assert back.meta["supports"]["wheel"]["radial"] == 2e5
+    found.save(tmp_path / "curve.json")
+
+
+@pytest.mark.slow
+def test_hexahedra_and_energy_model_agree_on_a_tilting_shaft():
+    pair = replace(PAIR, gear_1=replace(PAIR.gear_1, b=6.0), gear_2=replace(PAIR.gear_2, b=6.0))
+    found = [solved({"pinion": OVERHUNG}, pair=pair, method=name, force=800.0, phases=[0.75]) for name in ("fe3d", "ritz3d")]
+    assert_allclose(found[0].k, found[1].k, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"sun": gf.Support()}, "given for 'pinion' and 'wheel'"),
+        ({"pinion": 2e5}, "neither a Support nor a Shaft"),
+        (gf.Support(), "give them by gear"),
+        ({"pinion": OVERHUNG}, "tilts it under a force, with method = 'ritz'"),
+    ],
+)
+def test_wrong_supports_are_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        solved(given, method="ritz")
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"radial": 0.0}, "radial = 0 N/mm, but a spring holds the gear"),
+        ({"tilt": -1.0}, "tilt = -1 N mm/rad"),
+        ({"torsion": math.nan}, "torsion = nan"),
+        ({"axial": "soft"}, "axial = 'soft'"),
+        ({"radial": 1e5, "tilt": 1e9, "coupling": 1e-6}, "would give energy away"),
+        ({"coupling": 1e-9}, "would give energy away"),
+    ],
+)
+def test_impossible_springs_are_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        gf.Support(**given)
