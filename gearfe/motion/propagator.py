@@ -95,13 +95,16 @@ def plan(machine, h, x=None, adapt=False):
     local = adapt and opens and is_bent(machine)
     count = 1 + (DEEPER if local else LEVELS if opens or any(one.breaks.size > 1 for one in machine.loads) else 0)
     levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
-    m, wide = len(machine.meshes), B.shape[1]
-    ends = [
-        P[:m] @ F[:, 2 * wide :] * k[:, None] + (P[m:] @ F[:, 2 * wide :] * c[:, None] if len(P) > m else 0.0) for *_, F in levels
-    ]
+    told = [_told(P, F[:, 2 * B.shape[1] :], k, c) for *_, F in levels]
     allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf
     scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
-    return Plan(basis, inverse, P, affine, k, c, h, levels, ends, allowed, scale)
+    return Plan(basis, inverse, P, affine, k, c, h, levels, told, allowed, scale)
+
+
+def _told(P, end, k, c):
+    """Mesh forces of the linear part from forces at the end of a step, which add ``end @ f`` to z there."""
+    x, m = P @ end, len(k)
+    return x[:m] * k[:, None] + (x[m:] * c[:, None] if len(P) > m else 0.0)
 
 
 def is_bent(machine):

@@ -103,9 +103,12 @@ class _Run:
             message = solver.step()
             if solver.status == "failed" or not np.isfinite(solver.y).all():
                 raise RuntimeError(f"{self.method} gave up at t = {solver.t:.4g} s: {message or 'values that are not finite'}")
-            path = solver.dense_output()
-            end, hit = self._first_exit(path, solver.t_old, solver.t) if self.opens.size else (solver.t, None)
-            wanted = inside[(inside > solver.t_old) & (inside <= end)]
+            wanted, end, hit = inside[(inside > solver.t_old) & (inside <= solver.t)], solver.t, None
+            if self.opens.size or wanted.size:
+                path = solver.dense_output()
+            if self.opens.size:
+                end, hit = self._first_exit(path, solver.t_old, solver.t)
+                wanted = wanted[wanted <= end]
             if wanted.size:
                 found.append((path(wanted) / self.scale[:, None]).T)
             if hit is not None or solver.status == "finished":

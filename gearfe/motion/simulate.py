@@ -103,9 +103,10 @@ def simulate(
     -------
     Response
         Its ``stats["error"]`` estimates the error: the largest difference of displacements and mesh forces to a run of half the
-        step, over their ranges (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the
-        worst damaged tooth or where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the
-        accelerations. Without damping the error goes on growing after such a stretch: ask for the whole run (``error=True``).
+        step (under a law of contact that is not linear, of a third), over their ranges
+        (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
+        where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
+        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``).
 
     Raises
     ------

@@ -155,7 +155,7 @@ def phm_angle():
 
 
 def phm_stiffness():
-    """Mean stiffness over width [N/(mm um)] of both meshes of the train by what is not printed: module, bore over pitch radius."""
+    """Mean stiffness over width [N/(mm um)] of both meshes of the train by what is not printed: module, bore by pitch radius."""
     out = {}
     pairs = gf.load_scene(SOURCES / "phm_2009.toml").pairs
     for (name, one), module, part in product(pairs.items(), PHM_MODULES, PHM_BORES):
@@ -282,10 +282,9 @@ def _modes_text():
         "## Hammami: measured modes of a planetary set",
         _line("""A. Hammami et al., J. Theor. Appl. Mech. 53(1) (2015) 125-138, doi 10.15632/jtam-pl.53.1.125: impact tests on two
             planetary sets back to back, compared there with a model of lumped masses of the kind of `gf.planetary`."""),
-        _line("""**Verdict: not comparable.** The masses, stiffnesses and frequencies of its tables could not be obtained as text;
-            nor could its tooth numbers, so that there is not even a scene;
-            without them a simulation would be fitted, not compared. The same model meets the natural frequencies that J. Lin,
-            R. G. Parker (1999) print to 5e-4 (`tests/machine/test_models.py`)."""),
+        _line("""**Verdict: not comparable.** The masses, stiffnesses, frequencies and even the tooth numbers of its tables could
+            not be obtained as text, so that there is no scene: a simulation would be fitted, not compared. The same model meets
+            the natural frequencies that J. Lin, R. G. Parker (1999) print to 5e-4 (`tests/machine/test_models.py`)."""),
     ]
 
 

@@ -215,7 +215,9 @@ BOTH_PATHS = (
     "What the path from mesh to sensor changes: the raised cosine by which the verdicts are judged, and `gf.ring_window` of the "
     "ring between its root circle and rim, on a foundation as stiff as its bearing, 1e8 N/m; none of it is printed. A ring whose "
     "centre line keeps its length gives nothing on average over a turn of the carrier: the mesh line of equal planets in "
-    "phase goes and what is 3 f_c beside it stays. Impact law, without pulses"
+    "phase goes and what is 3 f_c beside it stays. The sun turns 84/21 = 4 times in a turn of the carrier relative to it, so "
+    "that lines one carrier turn beside the sun's harmonics lie where the passing planets put theirs: through a path with more "
+    "harmonics than one a healthy stage has them too. Impact law, without pulses"
 )
 
 

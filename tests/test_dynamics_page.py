@@ -1,0 +1,51 @@
+"""The page of the dynamics: it says what its tables say, and they what the code gives."""
+
+import pytest
+from numpy.testing import assert_allclose
+
+from gearfe.motion.simulate import simulate
+from validation.make import dynamics, hard_dynamics
+from validation.shared.kept_rows import kept, stored
+from validation.shared.stages import machines, stage
+
+TEXT = dynamics.PAGE.read_text(encoding="utf-8")
+
+
+def test_the_page_says_what_its_tables_say():
+    lines = [*dynamics.accuracy(), *dynamics.chatter(), *dynamics.speeds()]
+    assert [line for line in lines if line not in TEXT] == []
+    assert len(stored("dynamics_steps")) == len(list(machines()))
+    hard = hard_dynamics.PAGE.read_text(encoding="utf-8")
+    assert [row for row in stored("hard_dynamics").values() if row["cells"] not in hard] == []
+
+
+def test_estimates_cover_the_errors_in_95_of_100_runs():
+    rows = stored("dynamics_steps").values()
+    inside = [max(d, f) <= e for row in rows for d, f, e in zip(row["displacement"], row["force"], row["estimate"], strict=True)]
+    assert len(inside) >= 100
+    assert sum(inside) >= 0.95 * len(inside)
+
+
+def test_a_step_and_an_estimate_on_file_are_those_of_the_code():
+    row = stored("dynamics_steps")["herringbone, damaged"]
+    got = simulate(stage(True), 0.005, rate=dynamics.RATES[0])
+    assert_allclose([1e6 * got.stats["dt"], got.stats["error"]], [row["step"][0], row["estimate"][0]], rtol=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["compound_planetary, damaged, springs 100 times stiffer", "herringbone, damaged, contact loss"])
+def test_a_row_on_file_is_what_the_code_gives(name):
+    build, duration = next((made, span) for own, made, span in machines() if own == name)
+    new, old = dynamics.errors(build(), duration), stored("dynamics_steps")[name]
+    for key in ("step", "estimate", "displacement", "force"):
+        assert_allclose(new[key], old[key], rtol=0.1, err_msg=key)
+
+
+def test_a_row_is_computed_once_and_anew_when_asked_for(tmp_path, monkeypatch):
+    monkeypatch.setattr("validation.shared.kept_rows.TABLES", tmp_path)
+    made = iter(range(9))
+    rows = [
+        kept("t", key, lambda: {"n": next(made)}, again)["n"] for key, again in (("a", ()), ("b", ()), ("a", ()), ("a", ("a",)))
+    ]
+    assert rows == [0, 1, 0, 2]
+    assert stored("t") == {"a": {"row": "a", "n": 2}, "b": {"row": "b", "n": 1}}
