@@ -104,6 +104,7 @@ def test_full_contact_on_tip_edges(edge, phase):
     assert_allclose(solved(flanks, phases=[phase]).te[0], full.approach * 1e-3, rtol=1e-2)
 
 
+@pytest.mark.slow
 def test_rounded_tips_in_three_dimensions():
     """Softer than sharp corners as much as in the section, but for what strips know of an arc's ends."""
     rack = RACK | {"b": 6.0}
