@@ -33,8 +33,8 @@ refined.
 
 Which differences are of the mesh: the healthy helical pair shows how far a mesh is from its limit, and of every case but it
 there are two meshes where the table has them. With pits the meshes are tets, straight, and coarse at the crack's tip. Contact
-in CalculiX is a bed of springs, so that its k is too low by about 0.07 %: see [truth.md](truth.md). Before loads were mirrored in the
-free end faces `ritz3d` was 0.3 % stiffer for the spur pair (97.31 instead of 97.03 N/um) and 0.2 % for the helical one.
+in CalculiX is a bed of springs, so that its k is too low by about 0.07 %: see [truth.md](truth.md). Before loads were mirrored
+in the free end faces `ritz3d` was 0.3 % stiffer for the spur pair (97.31 instead of 97.03 N/um) and 0.2 % for the helical one.
 
 `python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
 installed, run by run.
