@@ -97,7 +97,7 @@ def text():
         "(wheel), a parabolic tip relief of 8 um over 2 mm of roll length on the pinion, and axes askew by F_beta = 8 um, which",
         "presses it at one end. CalculiX: both whole gears in 20-node hexahedra whose nodes lie on the modified flanks,",
         'surface-to-surface contact, large displacements (`gf.write_contact_inp(face="helical", flanks=..., misalignment=...)`).',
-        "Involutes by the same meshes show what of a difference is the mesh's: at phase 0.45 they differ in k by -0.38 % with one edge",
+        "Involutes by the same meshes show what of a difference is the mesh's: at phase 0.45 k differs by -0.38 % with one edge",
         "per half width and by -0.09 % with 1.5 ([outsider_three.md](outsider_three.md)).",
         "",
         "| flanks | phase | edges per half width | nodes | CPU s | error, `ritz3d` [um] | CalculiX [um] | its part | k |",
