@@ -108,10 +108,10 @@ def stress_intensity_along_front(
     z, part, least = _followed(mesh, crack)
     mouth, tip = crack_path(gear, whole(crack)).T
     length = math.dist(mouth, tip)
-    axes = _axes(gear, mouth, tip, z, part)
+    front, ahead, normal = _axes(gear, mouth, tip, z, part)
     tube = min(TUBE[0] * gear.m_n, TUBE[1] * least * length)
-    found = front_intensity(mesh.points, mesh.cells, moved.T, material, *axes, tube)
-    return FrontIntensity(z, part[0] * length, *found, unknowns)
+    one, two, three = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
+    return FrontIntensity(z, part[0] * length, one, two, three, unknowns)
 
 
 def _followed(mesh, crack):
