@@ -13,6 +13,8 @@ from .datasets.make import dataset as dataset
 from .datasets.opened import Dataset as Dataset
 from .datasets.opened import open_dataset as open_dataset
 from .elements.contact_inp import write_contact_inp as write_contact_inp
+from .elements.crack_front import FrontIntensity as FrontIntensity
+from .elements.crack_front import stress_intensity_along_front as stress_intensity_along_front
 from .elements.deck import write_inp as write_inp
 from .elements.fracture import stress_intensity as stress_intensity
 from .elements.line_deck import write_line_inp as write_line_inp
@@ -97,6 +99,7 @@ from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error
 from .stress.mesh_picture import render_mesh as render_mesh
 from .stress.render import render_stress as render_stress
+from .stress.root_of_contact import root_stress_of_contact as root_stress_of_contact
 from .studies.batches import batch as batch
 from .studies.by_zone import compare as compare
 from .studies.errormap import error_map as error_map

@@ -8,19 +8,16 @@ from numpy.typing import NDArray
 
 from geometry.mesh.solid import Solid, solid
 from geometry.tooth.gear import Gear
-from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from ..material import Material
 from ..threads import single
-from .fe3d import _points
-from .hexahedron import assemble, face_shapes
-from .loaded_tooth import _peak, check_line_load, edge_lengths, load_at
-from .solver import factor, plan
+from .hexahedron import face_shapes
+from .line_load import check_spread, contact_line, strip, under_line
+from .loaded_tooth import _peak, check_line_load, edge_lengths
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`; the fillet decides
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
 LAYER, LAYERS, END = 0.8, 8, 0.25  # height of the layers [m_n], least number of them, height at the end faces against that
-ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
 GAUSS = np.array([-1.0, 1.0]) / math.sqrt(3)  # places of a face where derivatives are most accurate
 
 
@@ -98,49 +95,33 @@ def root_stress_along_width(
         If the system does not fit into memory.
     """
     check_line_load(line_load)
+    spread = check_spread(gear, half_width)
+    return stress_under_line(gear, contact_line(gear, radius), line_load, material, spread=spread, refine=refine)
+
+
+def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) -> RootStress:
+    """`RootStress` under a load on a line of tooth 0.
+
+    Parameters
+    ----------
+    gear : Gear
+    roll : callable
+        Roll length of the line at heights z [mm].
+    line_load : float or callable
+        Normal to the flank per width [N/mm], or as a function of z.
+    material : Material
+    spread : float
+        Half width of the hat over which the load is spread [mm].
+    refine : float
+    """
     edge_lengths(gear, {}, refine)
-    spread = 0.15 * gear.m_n if half_width is None else half_width
-    if not 0 < spread <= gear.m_n:
-        raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
-    middle = float(roll_at_arc(gear, load_at(gear, radius)))
-    slope = gear.outward * math.tan(gear.beta_b)
-    least, most = sorted((gear.roll_f, gear.roll_a))
-    ends = np.clip(middle + slope * gear.b / 2 * np.array([-1, 1]), least, most)
-    low, high = np.sort(arc_at(gear, ends))
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(
-        gear, layer=layer, patches=[(low - spread, high + spread, spread / 2 / refine)], refine=refine, sizes=SIZES,
+        gear, layer=layer, patches=[strip(gear, roll, spread, refine)], refine=refine, sizes=SIZES,
         fine=[(0.0, 0.0, END * layer), (gear.b, gear.b, END * layer)],
     )  # fmt: skip
-    load = _line_forces(mesh, lambda z: middle + slope * (z - gear.b / 2), line_load, spread)
-    free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
-    rows = (3 * free[:, None] + np.arange(3)).ravel()
-    moved = np.zeros(load.size)
-    moved[rows] = factor(assemble(mesh.points, mesh.cells, material, free), plan(rows.size))(load[rows, None])[:, 0]
-    return _along(mesh, moved.reshape(-1, 3), material, rows.size)
-
-
-def _line_forces(mesh: Solid, roll, line_load, spread):
-    """Nodal forces ``(3 nodes,)`` [N] of a line load on tooth 0 at roll lengths ``roll(z)``, 0 where it is off the flank."""
-    gear = mesh.gear
-    edge, x, at, across = _points(gear.outward * mesh.section.roll[0], (), ACROSS)
-    layer, y, z, along = _points(mesh.levels, (), ALONG)
-    at, centre = gear.outward * at, roll(z)
-    low, high = sorted((gear.roll_f, gear.roll_a))
-    on = (centre >= low) & (centre <= high)
-    away = np.abs(arc_at(gear, at)[:, None] - arc_at(gear, np.clip(centre, low, high)))
-    hat = np.maximum(1 - away / spread, 0.0) * (across * at / gear.r_b)[:, None]
-    press = line_load * along * on * hat / hat.sum(axis=0)
-    plane, turn, tilt = flank_normal(gear, at), gear.twist_rate * z, math.cos(gear.beta_b)
-    cos, sin = np.cos(turn), np.sin(turn)
-    normal = np.array([
-        tilt * (np.outer(plane[0], cos) + np.outer(plane[1], sin)), tilt * (np.outer(plane[1], cos) - np.outer(plane[0], sin)),
-        np.full(press.shape, -math.sin(gear.beta_b)),
-    ])  # fmt: skip
-    value, nodes = face_shapes(x[:, None], y[None, :]), mesh.flank(0)[:, edge[:, None], layer[None, :]]
-    force = np.zeros((mesh.points.shape[1], 3))
-    np.add.at(force, nodes, -np.einsum("nsz,dsz->nszd", value * press, normal))
-    return force.ravel()
+    moved, unknowns = under_line(mesh, roll, line_load, material, spread)
+    return _along(mesh, moved, material, unknowns)
 
 
 def _fillet(mesh: Solid):

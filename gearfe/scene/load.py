@@ -20,7 +20,7 @@ from ..supports.support import Support
 from . import assumed, machine_table
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .references import Reference, read_references
-from .strict import NUMBER, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 from .support_table import SUPPORTS, supports_of
 from .toml_file import read_toml
 
@@ -66,7 +66,8 @@ DAMAGE = {
         "tooth": (WHOLE, 0),
         "pair": (TEXT, None),
         "width_mm": (TWO, None),
-        "ends": (TWO, [1.0, 1.0]),
+        "ends": (NUMBERS, [1.0, 1.0]),
+        "rounded": (TRUTH, False),
     },
     "pits": {
         "case": (TEXT, REQUIRED),
@@ -282,7 +283,9 @@ def _cases(file, damage, gears, name, pairs):
 
 def _crack(row):
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
-    return [Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends")})]
+    return [
+        Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})
+    ]
 
 
 def _pits(row):

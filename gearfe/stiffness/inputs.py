@@ -139,14 +139,8 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     if any(pits) and not row.pits:
         raise ValueError(f"pits with {method}, a transverse section: use {having('pits')}")
     found = [crack for own in cracks for crack in own]
-    if row.cracks not in ("part of the width", "sloping"):
+    if row.cracks != "any":
         check_through(found, method)
-    for crack in found:
-        if crack.ends != (1.0, 1.0) and row.cracks != "sloping":
-            raise ValueError(
-                f"crack open over parts {crack.ends} of its length, but {method} has cracks of one depth: give ends = (1, 1) and "
-                f"the level they have there, or use method = 'fe3d'"
-            )
     if teeth is not None and not row.teeth:
         raise ValueError(f"teeth = {teeth} with {method}: only {having('teeth')!r} can leave teeth out")
     if flanks is not None and not row.flanks:

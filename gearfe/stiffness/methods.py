@@ -37,8 +37,8 @@ class Method:
         Of one curve: milliseconds, seconds or minutes.
     converged : bool
         Its discretisation can be refined to the limit; otherwise a closed form.
-    cracks : {"", "through", "part of the width", "sloping"}
-        None; of one depth through the whole width; also of part of the width; also sloping.
+    cracks : {"", "through", "any"}
+        None; of one depth through the whole width; also of part of the width, or of a depth that changes along it.
     pits : bool
     rings : {"yes", "no", "external", "printed"}
         The last two: only with the variant ``foundation`` saying what a ring's body does; of a scene's rings it is this one.
@@ -88,7 +88,7 @@ ROWS = (
     ),
     Method(
         "ritz3d", "converged energy model of gears of finite width: helical, herringbone, pits", "solid",
-        "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="part of the width", pits=True, faces=FACES,
+        "gearfe.energy.ritz.solid:flexibility3d", "seconds", converged=True, cracks="any", pits=True, faces=FACES,
         error=True, extended=True, flanks=True, order=3, kept="process",
     ),
     Method(
@@ -98,7 +98,7 @@ ROWS = (
     ),
     Method(
         "fe3d", "finite elements of whole gears of finite width, the independent reference", "solid",
-        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="sloping", pits=True, faces=FACES, error=True,
+        "gearfe.stiffness.cache:solved_solid", "minutes", converged=True, cracks="any", pits=True, faces=FACES, error=True,
         extended=True, flanks=True, kept="disk",
     ),
     Method(

@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
 
 STARTS = ("30deg", "root", "middle")
+SLACK = 1e-9  # of the open part of a crack
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +40,12 @@ class Crack:
     width : (float, float), optional
         Heights z [mm] between which it is open, counted as those of a `Pit`; default: the whole width, in a herringbone gear that
         of both halves.
-    ends : (float, float)
-        The part of its length over which it is open at the two ends of `width`, linear in between: ``(1, 0)`` runs out.
+    ends : (float, float) or (float, float, float)
+        The part of its length over which it is open at the two ends of `width`, linear in between: ``(1, 0)`` runs out. Three
+        numbers: at one end, half-way and at the other end, a parabola in between.
+    rounded : bool
+        Whether it is the square of that part which is linear or a parabola: ``ends=(1, 0)`` is then the parabolic front of
+        Z. Chen, Y. Shao, Eng. Fail. Anal. 18 (2011) 2149-2164, and ``ends=(0, 1, 0)`` half an ellipse.
 
     Raises
     ------
@@ -59,7 +64,8 @@ class Crack:
     tooth: int = 0
     side: str = "loaded"
     width: tuple[float, float] | None = None
-    ends: tuple[float, float] = (1.0, 1.0)
+    ends: tuple[float, ...] = (1.0, 1.0)
+    rounded: bool = False
 
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
@@ -89,34 +95,79 @@ class Crack:
         if self.turning and self.length is not None:
             raise ValueError("a turning crack is given by its level, not its length")
         if self.width is not None:
-            object.__setattr__(self, "width", _two("width", self.width))
+            object.__setattr__(self, "width", _numbers("width", self.width, (2,)))
             if not 0 <= self.width[0] < self.width[1]:
                 raise ValueError(f"width = {self.width} mm, but a crack is open from a height z >= 0 to a greater one")
-        object.__setattr__(self, "ends", _two("ends", self.ends))
+        if not isinstance(self.rounded, bool):
+            raise ValueError(f"rounded = {self.rounded!r}, but give True or False")
+        object.__setattr__(self, "ends", _numbers("ends", self.ends, (2, 3)))
         if not (min(self.ends) >= 0 and 0 < max(self.ends) <= 1):
-            raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not both 0")
+            raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not all 0")
+        low, high = extremes(self)
+        if low < -SLACK or high > 1 + SLACK:
+            raise ValueError(
+                f"ends = {self.ends}: the parabola through them runs from {low:.3g} to {high:.3g}, but parts of the crack's "
+                "length lie between 0 and 1; change the middle number, or give two"
+            )
 
     @property
     def through(self) -> bool:
         """Whether the crack is open over its whole length and over the whole width."""
-        return self.width is None and self.ends == (1.0, 1.0)
+        return self.width is None and self.even and self.ends[0] == 1.0
+
+    @property
+    def even(self) -> bool:
+        """Whether it is as deep at every height between its ends."""
+        return len(set(self.ends)) == 1
 
 
-def _two(name, values):
+def _numbers(name, values, counts):
     try:
         values = tuple(values)
     except TypeError:
         values = (values,)
-    if len(values) != 2 or any(isinstance(v, bool) or not isinstance(v, Real) or not math.isfinite(v) for v in values):
-        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end")
-    return float(values[0]), float(values[1])
+    if len(values) not in counts or any(isinstance(v, bool) or not isinstance(v, Real) or not math.isfinite(v) for v in values):
+        more = ", or three with the one half-way" if 3 in counts else ""
+        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{more}")
+    return tuple(float(value) for value in values)
+
+
+def _polynomial(crack):
+    """Coefficients of the open part, or of its square, by the place t in 0..1 along the crack's width: constant first."""
+    first, *middle, last = (end**2 for end in crack.ends) if crack.rounded else crack.ends
+    if not middle:
+        return first, last - first, 0.0
+    return first, 4 * middle[0] - 3 * first - last, 2 * (first + last - 2 * middle[0])
+
+
+def extremes(crack):
+    """Least and largest open part (of a `rounded` crack its square) between the crack's ends."""
+    constant, linear, square = _polynomial(crack)
+    places = [0.0, 1.0]
+    if square and 0 < -linear / (2 * square) < 1:
+        places.append(-linear / (2 * square))
+    values = [constant + t * (linear + t * square) for t in places]
+    return min(values), max(values)
 
 
 def open_part(crack, b, z):
     """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
     low, high = crack.width or (0.0, b)
-    part = crack.ends[0] + (crack.ends[1] - crack.ends[0]) * (np.asarray(z, dtype=float) - low) / (high - low)
-    return np.where((z >= low) & (z <= high), part, 0.0)
+    return np.where((z >= low) & (z <= high), front(crack, b, z)[0], 0.0)
+
+
+def front(crack, b, z):
+    """Open part of the crack's length at heights `z` [mm], beyond the ends that of the nearer end, and its slope [1/mm]."""
+    low, high = crack.width or (0.0, b)
+    constant, linear, square = _polynomial(crack)
+    place = (np.asarray(z, dtype=float) - low) / (high - low)
+    t = np.clip(place, 0.0, 1.0)
+    part = np.clip(constant + t * (linear + t * square), 0.0, 1.0)
+    slope = np.where(place == t, linear + 2 * t * square, 0.0) / (high - low)
+    if not crack.rounded:
+        return part, slope
+    root = np.sqrt(part)
+    return root, slope / (2 * np.maximum(root, SLACK))
 
 
 def crack_in_band(crack, b, first, last):
@@ -137,7 +188,8 @@ def crack_in_band(crack, b, first, last):
         return crack
     low, high = crack.width or (0.0, b)
     low, high = max(low, min(first, last)), min(high, max(first, last))
-    ends = tuple(open_part(crack, b, np.array([low, high])).tolist())
+    places = np.linspace(low, high, len(crack.ends))
+    ends = tuple(open_part(crack, b, places).tolist())
     if not (low < high and max(ends) > 0):
         return None
     width, band = (low - first, high - first), abs(last - first)
@@ -220,7 +272,7 @@ def check_through(cracks, what):
         if not crack.through:
             raise ValueError(
                 f"crack open from z = {crack.width or 'end to end'} mm over parts {crack.ends} of its length, but {what} has "
-                "only cracks through the whole width: use method = 'fe3d' of mesh_stiffness"
+                "only cracks through the whole width: use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
             )
 
 

@@ -7,14 +7,16 @@ opposite beta.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..damage.crack import open_part
+from ..damage.crack import check_apart, check_single, open_part
+from ..damage.front import bends, deepest, whole
 from ..tooth.gear import Gear
+from .front import follow
 from .outline import spaced
-from .quads import QuadSection, quad_section
+from .quads import QuadSection, jacobian, quad_section
 
 # local nodes of scikit-fem's ElementHexS2, whose vertex 0 is at (1, 1, 1): (corner or middle of the quad, level); the level is
 # 0 at the bottom of a layer, 2 at its top and 1 half-way
@@ -42,6 +44,8 @@ class Solid:
     faces : dict of str to ndarray, shape (8, k)
         Faces by name: ``held``, ``flank 0`` (of each loaded tooth), ``crack 0 body`` and ``crack 0 tooth`` (facing each
         other, column by column). Corners counter-clockwise in (along the section's edge, z), then the middles of 01, 12, 23, 30.
+    fronts : dict of int to Front
+        By crack, where its depth changes along the width, the front that the elements follow.
     """
 
     gear: Gear
@@ -51,6 +55,7 @@ class Solid:
     section: QuadSection
     held: np.ndarray
     faces: dict
+    fronts: dict = field(default_factory=dict)
 
     def flank(self, tooth):
         """Faces ``(8, edges, layers)`` of a loaded flank, edges from root to tip."""
@@ -73,8 +78,8 @@ def layers(b, size, *, breaks=(), fine=()):
 def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None, fine=()):
     """Mesh a whole gear, all teeth and the true rim.
 
-    The front of a crack that changes along the width follows the element faces: a sloping one is a staircase of layers and
-    crack edges.
+    The elements follow the front of a straight crack whose depth changes along the width (`geometry.mesh.front`); that of a
+    crack that has turned is a staircase of element faces.
 
     Parameters
     ----------
@@ -94,16 +99,62 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     """
     if not (math.isfinite(layer) and layer > 0):
         raise ValueError(f"layer = {layer} mm, but it must be positive")
-    section = quad_section(gear, loaded=loaded, cracks=cracks, patches=patches, refine=refine, sizes=sizes)
+    check_apart(gear, cracks)
+    check_single(gear, cracks)
+    shapes = [crack if bends(crack) else whole(crack) for crack in cracks]
+    section = quad_section(gear, loaded=loaded, cracks=shapes, patches=patches, refine=refine, sizes=sizes)
+    moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or bends(crack))}
     breaks = [z for crack in cracks for z in crack.width or ()]
+    breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
-    made = extrude(section, levels, gear.twist_rate)
+    made = extrude(section, levels, gear.twist_rate, moves.values())
+    made = replace(made, fronts={k: front for k, (_, front) in moves.items()})
     for number, cut in enumerate(section.cuts):
         made = _open(made, cut, number + 1, cracks)
     return made
 
 
-def extrude(section, levels, rate):
+def follow_front(section, number, crack):
+    """How the section follows the front of its crack: the shift ``(2, n)`` [mm] of all nodes, and the `Front`."""
+    quads, corners = section.quads, section.corners
+    ends = np.array([quads[:4], np.roll(quads[:4], -1, axis=0)]).reshape(2, -1)
+    middle = quads[4:].ravel()
+    once = np.bincount(middle, minlength=section.points.shape[1])[middle] == 1
+    lines = [
+        (k, cut.edges[:, cut.crack == k], cut.depth[cut.crack == k])
+        for cut in section.cuts
+        for k in set(cut.crack.tolist()) - {-1}
+    ]
+    others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
+    (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
+    triangles = np.hstack([quads[[0, 1, 2]], quads[[0, 2, 3]]])
+    arm = section.points[:, ends[1]] - section.points[:, ends[0]]
+    place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
+
+    def every(moved):
+        out = np.zeros(section.points.shape)
+        out[:, :corners] = moved
+        out[:, middle] = (1 - place) * moved[:, ends[0]] + place * moved[:, ends[1]]
+        return out
+
+    def folds(points):
+        return jacobian(replace(section, points=section.points + every(points - section.points[:, :corners]))).min() <= 0
+
+    fixed = np.concatenate([ends[:, once].ravel(), *others])
+    shift, front = follow(
+        section.gear, crack, section.gear.b, section.points[:, :corners], triangles, outline=fixed, line=line, folds=folds
+    )
+    return every(shift), front
+
+
+def _chain(section, ends, depth):
+    """Vertices of a crack from mouth to tip."""
+    ends = ends[:, np.argsort(depth)]
+    near = ends if ends.shape[1] < 2 or ends[1, 0] in ends[:, 1] else ends[::-1]
+    return np.append(near[0], near[1, -1])
+
+
+def extrude(section, levels, rate, moves=()):
     """Twisted hexahedra over a section, without its cracks.
 
     Parameters
@@ -113,6 +164,8 @@ def extrude(section, levels, rate):
         Heights [mm].
     rate : float
         Clockwise turn [rad/mm].
+    moves : iterable of (ndarray, Front)
+        Of `follow_front`.
 
     Returns
     -------
@@ -120,7 +173,8 @@ def extrude(section, levels, rate):
     """
     count, corners, tall = section.points.shape[1], section.corners, levels.size
     middle = (levels[1:] + levels[:-1]) / 2
-    points = np.hstack([_turned(section.points, levels, rate), _turned(section.points[:, :corners], middle, rate)])
+    whole = [_moved(section.points, heights, moves) for heights in (levels, middle)]
+    points = np.hstack([_turned(whole[0], levels, rate), _turned(whole[1][:, :, :corners], middle, rate)])
 
     def number(nodes, layer, level):
         return tall * count + layer * corners + nodes if level == 1 else (layer + level // 2) * count + nodes
@@ -141,11 +195,19 @@ def extrude(section, levels, rate):
     return Solid(section.gear, points, cells, levels, section, held, {name: f.reshape(8, -1) for name, f in faces.items()})
 
 
+def _moved(points, heights, moves):
+    """Section points at all heights ``(2, heights, n)``."""
+    out = np.repeat(points[:, None, :], heights.size, axis=1)
+    for shift, front in moves:
+        out = out + (front.depth(heights)[0] - 1)[:, None] * shift[:, None, :]
+    return out
+
+
 def _turned(points, heights, rate):
-    """Section points ``(2, n)`` at all heights: ``(3, heights * n)``, height by height."""
+    """Section points ``(2, heights, n)`` turned with their heights: ``(3, heights * n)``, height by height."""
     cos, sin = np.cos(rate * heights)[:, None], np.sin(rate * heights)[:, None]
     x, y = points
-    z = np.broadcast_to(heights[:, None], (heights.size, x.size))
+    z = np.broadcast_to(heights[:, None], x.shape)
     return np.array([cos * x + sin * y, cos * y - sin * x, z]).reshape(3, -1)
 
 
@@ -158,7 +220,11 @@ def _open(made, cut, part, cracks):
     for number in set(cut.crack.tolist()) - {-1}:
         own = cut.crack == number
         length = cut.depth[own].max()
-        reach = open_part(cracks[number], made.gear.b, height)
+        if number in made.fronts:
+            reach = sum((height > low) & (height < high) for low, high in made.fronts[number].open())
+        else:
+            crack = cracks[number]
+            reach = open_part(crack, made.gear.b, height) / (1.0 if bends(crack) else deepest(crack))
         opened |= own[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():

@@ -250,7 +250,8 @@ def test_what_half_a_crack_adds_is_that_of_hexahedra(beta):
 @pytest.mark.parametrize(
     ("cracks", "message"),
     [
-        ((gf.Crack(level=0.5, ends=(1.0, 0.5)),), "cracks of one depth"),
+        ((gf.Crack(level=0.5, ends=(1.0, 0.5)), gf.Crack(level=0.3, ends=(1.0, 0.5), side="unloaded")), "follows one front"),
+        ((gf.Crack(level=0.7, turning=True, ends=(1.0, 0.5)),), "only straight cracks"),
         ((gf.Crack(level=0.5, width=(0, 3)), gf.Crack(level=0.3, width=(6, 9))), "cracks of different shape"),
     ],
 )

@@ -26,16 +26,16 @@ HELICAL = gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=BETA, **RACK), gf.Gear(z=27
 RING = gf.GearPair(gf.Gear(z=31, r_bore=11.4, **RACK), gf.Gear(z=84, r_rim=95.0, addendum=0.8, tip_radius=0.2, **RACK))
 PIT = gf.Pit(radius=21.0, z=1.0, axes=(0.2, 0.4), depth=0.1)
 FORCE = 200.0
-SLOW = {("ritz3d", "crack"), ("ritz3d", "crack of part of the width"), ("ritz3d", "ring")}
+SLOW = {("ritz3d", "crack"), ("ritz3d", "crack of part of the width"), ("ritz3d", "sloping crack"), ("ritz3d", "ring")}
 # what a method may take: options, and whether its row says so
 INPUTS = {
     "nothing": ({}, lambda row: True),
     "crack": ({"damage": {"pinion": [gf.Crack(level=0.3)]}}, lambda row: bool(row.cracks)),
     "crack of part of the width": (
         {"damage": {"pinion": [gf.Crack(level=0.3, width=(0.0, 1.0))]}},
-        lambda row: row.cracks in ("part of the width", "sloping"),
+        lambda row: row.cracks == "any",
     ),
-    "sloping crack": ({"damage": {"wheel": [gf.Crack(level=0.3, ends=(1.0, 0.4))]}}, lambda row: row.cracks == "sloping"),
+    "sloping crack": ({"damage": {"wheel": [gf.Crack(level=0.3, ends=(1.0, 0.4))]}}, lambda row: row.cracks == "any"),
     "pit": ({"damage": {"pinion": [PIT]}}, lambda row: row.pits),
     "ring": ({"pair": RING}, lambda row: row.rings == "yes"),
     "ring without its body": ({"pair": RING, "variants": {"foundation": "external"}}, lambda row: row.rings in RING_FOUNDATIONS),

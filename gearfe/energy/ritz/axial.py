@@ -19,6 +19,7 @@ OPEN = 6, 1.6  # degree of the opening along a part of the width: at least, and 
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
+FRONT = 8  # more Gauss points where the section follows a crack's front
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +27,10 @@ class Axial:
     """Functions along the width, and sets of them.
 
     `mass`, `mixed`, `slope` (n, n): integrals of f f', f df' and df df'. `sets` are index arrays: the first the modes over
-    the whole width, then for each crack those of its opening, those of forces that push its faces apart, and those of the nodes
-    near it, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its faces may touch, and `at`
-    the values (points, functions of the force) there.
+    the whole width, then for each crack those of its opening, of forces that push its faces apart, of the nodes near it, and of
+    those that move with its front, then the modes up to degree 0, 1, ... . `points` of each crack are heights [mm] where its
+    faces may touch, and `at` the values (points, functions of the force) there. `z`, `weight` [mm] (q,) integrate over the
+    width; `value`, `rise` (q, n) are the functions and their slopes at `z`.
     """
 
     mass: np.ndarray
@@ -37,9 +39,13 @@ class Axial:
     sets: tuple
     points: tuple
     at: tuple
+    z: np.ndarray
+    weight: np.ndarray
+    value: np.ndarray
+    rise: np.ndarray
 
 
-def axial(width, degree, parts=(), m_n=1.0):
+def axial(width, degree, parts=(), m_n=1.0, fronts=()):
     """`Axial` of a gear.
 
     Parameters
@@ -52,15 +58,25 @@ def axial(width, degree, parts=(), m_n=1.0):
         Of each crack: None if it is open over the whole width, or the parts of the width where it is, apart from each other [mm].
     m_n : float
         Normal module [mm]; the degree of the openings follows from it.
+    fronts : sequence of None or Front
+        Of each crack, if its depth changes along the width: nodes near it have its depth as a function too.
     """
+    fronts = tuple(fronts) or (None,) * len(parts)
+    kinks = [z for front in fronts if front for z in front.kinks()]
     bands = sorted({band for own in parts if own for band in own})
     degrees = [max(OPEN[0], math.ceil(OPEN[1] * (high - low) / m_n) + 2) for low, high in bands]
-    fine = {
-        (band, k): _steps(band, k, width, m_n) for band in bands for k in (0, 1) if 1e-9 * width < band[k] < width * (1 - 1e-9)
+    shallow = {
+        end for front, own in zip(fronts, parts, strict=True) if front for end in np.ravel(own or ()) if front.runs_out(end)
     }
-    ends = np.unique([0.0, width, *(end for band in bands for end in band), *(at for found in fine.values() for at in found)])
+    fine = {
+        (band, k): _steps(band, k, width, m_n, band[k] in shallow)
+        for band in bands
+        for k in (0, 1)
+        if 1e-9 * width < band[k] < width * (1 - 1e-9)
+    }
+    ends = np.unique([0.0, width, *kinks, *(end for band in bands for end in band), *(at for own in fine.values() for at in own)])
     ends = ends[np.append(True, np.diff(ends) > 1e-12 * width)]
-    gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1)
+    gauss, weight = legendre.leggauss(max([degree, *degrees]) + 1 + (FRONT if kinks else 0))
     half = np.diff(ends)[:, None] / 2
     z = (ends[:-1, None] + half * (1 + gauss)).ravel()
     weight = (half * weight).ravel()[:, None]
@@ -82,21 +98,31 @@ def axial(width, degree, parts=(), m_n=1.0):
         short.setdefault(band, []).append(number)
         inside.setdefault(band, []).append(number[own])
         first += own.size
+    depths = {}
+    for i, front in enumerate(fronts):
+        if front and front.sharp:
+            made = _depth(z, weight, front, columns[0], slopes[0])
+            columns.append(made[0])
+            slopes.append(made[1])
+            depths[i] = [first]
+            first += 1
     value, rise = np.hstack(columns), np.hstack(slopes)
     every = np.arange(degree + 1)
     sets, points, at = [every], [], []
-    for own in parts:
+    for i, own in enumerate(parts):
         own = own or ()
         sets.append(np.concatenate([part for band in own for part in (opening[band], *inside.get(band, ()))]) if own else every)
         sets.append(np.concatenate([pushing[band] for band in own]) if own else every[: PUSHING + 1])
-        sets.append(np.concatenate([every, *(part for band in own for part in short.get(band, ()))]))
+        sets.append(np.concatenate([every, *(part for band in own for part in short.get(band, ())), depths.get(i, every[:0])]))
+        sets.append(np.append(every, depths.get(i, every[:0])))
         place, matrix = _points(own or ((0.0, width),), [degrees[bands.index(band)] for band in own] or [min(degree, PUSHING)])
         points.append(place)
         at.append(matrix)
     sets += [every[: k + 1] for k in range(degree + 1)]
     mass = value.T @ (weight * value)
     mass[: degree + 1, : degree + 1] = np.eye(degree + 1)
-    return Axial(mass, value.T @ (weight * rise), rise.T @ (weight * rise), tuple(sets), tuple(points), tuple(at))
+    mixed, slope = value.T @ (weight * rise), rise.T @ (weight * rise)
+    return Axial(mass, mixed, slope, tuple(sets), tuple(points), tuple(at), z, weight[:, 0], value, rise)
 
 
 def _whole(z, width, degree):
@@ -125,19 +151,24 @@ def _open(z, band, degree, width):
     return np.hstack(value) * inside * math.sqrt(2 / length), np.hstack(rise) * inside * math.sqrt(2 / length)
 
 
-def _steps(band, k, width, m_n):
-    """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end."""
+def _steps(band, k, width, m_n, shallow):
+    """Places about one end of a band, between which the short cubics change [mm]: closer together towards the end.
+
+    They are as close as a ligament beyond is narrow, unless the crack is `shallow` there.
+    """
     end, inwards = band[k], 1 - 2 * k
     # short cubics of both ends that met would hold a cubic over the whole band, which is an opening already
     inside, outside = min(ENDS[0] * m_n, 0.4 * (band[1] - band[0])), min(ENDS[0] * m_n, 0.9 * (width - end if k else end))
-    nearest = ENDS[1] * min(inside, outside)
-    steps = [side * _graded(nearest, reach) for side, reach in ((inwards, inside), (-inwards, outside))]
-    return np.sort(end + np.concatenate([[0.0], *steps]))
+    nearest = ENDS[1] * (inside if shallow else min(inside, outside))
+    steps = [side * _graded(min(nearest, reach), reach) for side, reach in ((inwards, inside), (-inwards, outside))]
+    return np.unique(end + np.concatenate([[0.0], *steps]))
 
 
 def _graded(nearest, reach):
     """Distances from `nearest` to `reach` [mm], each at most 1 / `ENDS[1]` times the one before."""
-    count = max(1, math.ceil(math.log(reach / nearest) / -math.log(ENDS[1]) - 1e-9))
+    count = math.ceil(math.log(reach / nearest) / -math.log(ENDS[1]) - 1e-9)
+    if count < 1:
+        return np.array([reach])
     return nearest * (reach / nearest) ** (np.arange(count + 1) / count)
 
 
@@ -155,6 +186,15 @@ def _short(z, places, end, inwards):
         rise += [np.where(there, slope * 2 / (high - low), 0.0) for slope in (-2 * t, 1 - 3 * t**2)]
         own += [inwards * ((low + high) / 2 - end) > 0] * 2
     return (np.column_stack(value), np.column_stack(rise)), np.array(own)
+
+
+def _depth(z, weight, front, whole, rise):
+    """The depth of a crack's front and its slope ``(n, 1)``, what polynomials over the width carry left out."""
+    value, slope = front.depth(z)
+    own = whole.T @ (weight[:, 0] * value)
+    value, slope = value - whole @ own, slope - rise @ own
+    size = math.sqrt((weight[:, 0] * value**2).sum())
+    return value[:, None] / size, slope[:, None] / size
 
 
 def _pushing(z, band, degree):

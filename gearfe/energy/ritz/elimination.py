@@ -9,6 +9,8 @@ from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
+from .bent import BentTriangles
+
 
 @dataclass(frozen=True, slots=True)
 class SectorBody:
@@ -41,6 +43,10 @@ class SectorBody:
         Which set each number has.
     size : ndarray, shape (k,)
         How many unknowns each number stands for.
+    bent : BentTriangles or None
+        The triangles that move with a crack's front, whose `section` is not used.
+    bent_factors : dict or None
+        `factors` with those of `bent` after them.
     """
 
     numbers: np.ndarray
@@ -56,6 +62,8 @@ class SectorBody:
     factors: dict
     kind: np.ndarray
     size: np.ndarray
+    bent: BentTriangles | None = None
+    bent_factors: dict | None = None
 
 
 def all_nodes(numbers, count, order):
@@ -65,7 +73,7 @@ def all_nodes(numbers, count, order):
     return every, count + triangles * inside
 
 
-def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None):
+def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None, bent=None):
     """`SectorBody` of the triangles.
 
     Parameters
@@ -81,6 +89,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
     seams : sequence of (ndarray, ndarray)
     kinds : ndarray, shape (nodes + loads,), optional
         Default: all have the polynomials over the whole width.
+    bent : BentTriangles, optional
     """
     nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]
     owner = np.full(nodes, numbers.shape[1])
@@ -95,6 +104,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
     kind = np.zeros(nodes + loads, dtype=int) if kinds is None else kinds
     used = np.unique(kind).tolist()
     each = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
+    sets = {(a, b): (axial.sets[a], axial.sets[b]) for a in used for b in used}
     return SectorBody(
         numbers=numbers,
         touch=touch,
@@ -106,9 +116,11 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None)
         stays=stays,
         there=there,
         section=section,
-        factors={(a, b): _factors(axial, axial.sets[a], axial.sets[b]) for a in used for b in used},
+        factors={pair: _factors(axial, *own) for pair, own in sets.items()},
         kind=kind,
         size=each * np.array([own.size for own in axial.sets])[kind],
+        bent=bent,
+        bent_factors=bent and {pair: np.concatenate([_factors(axial, *own), bent.factors(*own)]) for pair, own in sets.items()},
     )
 
 
@@ -221,10 +233,14 @@ def leaf(body, own, gone, rest, blocks):
     nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
     index = np.full(body.first_load, -1)
     index[raw] = np.arange(raw.size)
-    plane = np.zeros((4, 3 * raw.size, 3 * raw.size))
+    moved = body.bent is not None and (body.bent.index[own] >= 0).any()
+    plane = np.zeros((4 + (body.bent.terms if moved else 0), 3 * raw.size, 3 * raw.size))
     for triangle in own:
         at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        plane[(slice(None), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
+        if moved and body.bent.index[triangle] >= 0:
+            plane[(slice(4, None), *np.ix_(at, at))] += body.bent.matrices(triangle)
+        else:
+            plane[(slice(4), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
     plane[2] = plane[1].T
     here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
     turn = _seamed(body, raw, nodes)
@@ -252,7 +268,7 @@ def _seamed(body, raw, nodes):
 
 
 def _times(body, plane, here, ids, gone, blocks):
-    """The section's matrices ``(4, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
+    """The section's matrices ``(4 or more, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
 
     Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """
@@ -265,7 +281,8 @@ def _times(body, plane, here, ids, gone, blocks):
         if own.start >= nodes:
             break  # loads have nothing to do with each other
         for others, other, columns in runs[k:]:
-            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
+            factors = (body.factors if len(plane) == 4 else body.bent_factors)[one, other]
+            coupled = plane[:, _three(own), _three(others)]
             if others.start >= nodes:
                 factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
             block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)

@@ -12,6 +12,7 @@ nodes, the distance those of the opening.
 """
 
 import math
+from functools import partial
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -21,6 +22,7 @@ from geometry.mesh.triangle import BULGE, jacobians, lagrange, table
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .axial import axial
+from .bent import bent_triangles
 from .depth import degrees
 from .dissection import dissect
 from .elimination import all_nodes, body_of, front, places
@@ -31,7 +33,7 @@ CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends alo
 NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
-def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tree=None):
+def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), bends=(), tree=None):
     """Reduce a sector to its two helicoidal sides.
 
     Parameters
@@ -49,6 +51,8 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tr
         Of the polynomials in the section and along the width.
     parts : tuple
         Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
+    bends : tuple of None or (ndarray, Front)
+        How the section follows their fronts (`bent.bent`), at most one of them; default: all are parallel to the teeth.
     tree : tuple, optional
         Of `dissection.dissect`.
 
@@ -61,7 +65,8 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tr
     """
     every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order)
     parts = parts or (None,) * len(sector.faces)
-    along = axial(width, degree, parts, gear.m_n)
+    bends = tuple(bends) or (None,) * len(parts)
+    along = axial(width, degree, parts, gear.m_n, [bend and bend[1] for bend in bends])
     apart, owner = _apart(sector, chain, load.shape[0])
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
@@ -69,9 +74,12 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), tr
     nodes = int(every.max()) + 1
     own_degrees = degrees(gear, sector, every, sides, width, degree, order)
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
-    kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, [right for _, right in seams])
-    kinds[nodes + knots.shape[1] :] = [2 + 3 * i for i in owner]
-    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds)
+    kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
+    kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
+    moving = None
+    for bend in filter(None, bends):
+        moving = _moving(gear, sector, material, bend, along, every, order)
+    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds, bent=moving)
     ids, matrix = front(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
@@ -127,13 +135,29 @@ def section_of(gear, sector, material, knots, order, *, plane=False):
     return every, section, load, sides, held, chain
 
 
-def _kinds(gear, sector, numbers, degree, sides, parts, right):
-    """Which set of `axial.Axial` each node has: by its degree, but near and on the faces of cracks over parts of the width."""
-    whole = 1 + 3 * len(parts) + degree
-    out = whole.copy()
-    for i, face in zip([i for i, own in enumerate(parts) if own], right, strict=True):
-        out[_near(gear, sector, numbers, sector.faces[i])] = 3 + 3 * i
-        out[face] = 1 + 3 * i
+def _moving(gear, sector, material, bend, along, every, order):
+    """`BentTriangles` of a sector, short edges bound."""
+    matrices = partial(_moved_section, sector, order, material, gear.twist_rate)
+    out = bent_triangles(sector, *bend, along, matrices)
+    if order == ORDER:
+        moved = out.index >= 0
+        edges, none = quadratic_edges(gear, sector)[:, moved], np.zeros((int(every.max()) + 1, 3, 0))
+        for part in (out.even, out.mixed):
+            bind(part, none, every[:, moved], edges)
+    return out
+
+
+def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
+    """Which set of `axial.Axial` each node has: by its degree, but near and on cracks that change along the width."""
+    whole = 1 + 4 * len(parts) + degree
+    out, right = whole.copy(), iter(right)
+    for i, (own, bend) in enumerate(zip(parts, bends, strict=True)):
+        if bend:
+            moved = (np.abs(bend[0]) > 0).any(axis=0)[sector.triangles].any(axis=0)
+            out[np.unique(numbers[:, moved])] = 4 + 4 * i
+        if own:
+            out[_near(gear, sector, numbers, sector.faces[i])] = 3 + 4 * i
+            out[next(right)] = 1 + 4 * i
     out[sides] = whole[sides]
     return out
 
@@ -214,6 +238,55 @@ def _between(material, twist):
     stiffness[:3, :3] += material.lame("plane strain")[0]
     pairs = (flat, flat), (flat, along), (along, along)
     return np.array([np.einsum("ij,icf,jdg->cdfg", stiffness, one, two) for one, two in pairs])
+
+
+def _moved_section(sector, order, material, twist, triangles, points, shift):
+    """A_0, A_1, A_2, B_0, B_1, C of `bent` of some triangles with their vertices at `points`: ``(6, m, 3 nodes, 3 nodes)``."""
+    flat, along, carried = _strains(sector, order, twist, triangles, points, shift)
+    flat_stress, along_stress, carried_stress = (_stress(part, material) for part in (flat, along, carried))
+    both = flat_stress @ _rows(carried)
+    return np.array([
+        flat_stress @ _rows(flat), both + both.transpose(0, 2, 1), carried_stress @ _rows(carried),
+        flat_stress @ _rows(along), carried_stress @ _rows(along), along_stress @ _rows(along),
+    ])  # fmt: skip
+
+
+def _strains(sector, order, twist, triangles, points, shift):
+    """Strains of v, of v_z, and of what a front's slope carries along `shift`, times the root of the weights.
+
+    Each is ``(m, 3 nodes, 6, q)``: xx, yy, zz, xy, xz, yz at the quadrature points.
+    """
+    basis, corners = table(order), sector.triangles[:, triangles]
+    bulges = sector.edge_bulges()[..., triangles]
+    (xx, xy), (yx, yy) = jacobians(points, corners, bulges, order).transpose(1, 2, 0, 3)
+    area = xx * yy - xy * yx
+    first, second = basis.slope
+    dx = (yy / area)[:, None] * first - (yx / area)[:, None] * second
+    dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first
+    place = np.einsum("cq,dcm->dmq", basis.corner, points[:, corners])
+    x, y = place + np.einsum("kqg,kdgm->dmq", basis.bulge, bulges, optimize=True)
+    value = np.broadcast_to(basis.value, dx.shape)
+    flat, along, carried = (np.zeros((6, 3, *dx.shape)) for _ in range(3))
+    flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
+    flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
+    flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * (y[:, None] * dx - x[:, None] * dy)
+    flat[4, 1], flat[5, 0] = twist * value, -twist * value
+    along[2, 2] = along[4, 0] = along[5, 1] = value
+    p, q = np.einsum("cq,dcm->dmq", basis.corner, shift[:, corners])
+    carried[2, 2] = carried[4, 0] = carried[5, 1] = -(p[:, None] * dx + q[:, None] * dy)
+    weight, shape = np.sqrt(area * basis.weight)[:, None], (len(area), 3 * basis.count, 6, -1)
+    return [(part * weight).transpose(2, 3, 1, 0, 4).reshape(shape) for part in (flat, along, carried)]
+
+
+def _stress(strain, material):
+    """Stresses ``(m, 3 nodes, 6 q)`` of strains ``(m, 3 nodes, 6, q)``."""
+    stiffness = material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
+    stiffness[:3, :3] += material.lame("plane strain")[0]
+    return (stiffness @ strain).reshape(*strain.shape[:2], -1)
+
+
+def _rows(strain):
+    return strain.reshape(*strain.shape[:2], -1).transpose(0, 2, 1)
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):

@@ -12,10 +12,12 @@ from numbers import Integral
 import numpy as np
 
 from geometry.damage.crack import crack_in_band
+from geometry.damage.front import whole
 from geometry.mesh.sector import sector
 
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
 from ...flexibility.solved import solved_gears
+from .bent import bent
 from .dissection import dissect
 from .join import join
 from .panel3d import panel3d
@@ -46,7 +48,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
         held over the whole width, the end faces free.
     material : Material
     cracks : tuple of Crack
-        Parallel to the teeth, open over the whole width or parts of it, not sloping. Their `tooth` counts to the loaded side of
+        Of any depth along the width, but one that changes follows a straight crack. Their `tooth` counts to the loaded side of
         this gear.
     width : float, optional
         [mm], default ``gear.b``.
@@ -68,7 +70,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     Raises
     ------
     ValueError
-        If an option is out of range, or a crack's depth changes along the width.
+        If an option is out of range, or a tooth has cracks that the model has not.
     """
     width = float(gear.b if width is None else width)
     if not (math.isfinite(width) and width > 0):
@@ -79,7 +81,7 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
     options = (width, int(order), int(axial), float(refine))
-    case = (gear, material, _even(cracks), min(neighbours, gear.z - 1), *options)
+    case = (gear, material, tuple(cracks), min(neighbours, gear.z - 1), *options)
     kept = solved_gears(cache)
     return kept.get(("ritz3d", *case), partial(_mirrored if gear.beta < 0 else _solved, *case, kept))
 
@@ -115,35 +117,33 @@ def _solved(gear, material, cracks, neighbours, width, order, axial, refine, cac
     return _joined(gear, material, panels, one, own, healthy, **options)
 
 
-def _even(cracks):
-    """Cracks open over their whole length; ValueError if one is not so over all of its width."""
-    for crack in cracks:
-        if crack.ends != (1.0, 1.0):
-            raise ValueError(
-                f"crack open over parts {crack.ends} of its length, but the energy model has cracks of one depth: give "
-                "ends = (1, 1) and the level they have there, or use method = 'fe3d'"
-            )
-    return tuple(cracks)
-
-
 def _seams(cracks):
-    """Cracks of one tooth as the section has them, and where along the width each is open (None: everywhere).
+    """Cracks of one tooth as the section has them, where along the width each is open (None: everywhere), and their fronts.
+
+    A front is a crack whose depth changes along the width, or None.
 
     Raises
     ------
     ValueError
-        If cracks on one side of a tooth are not parts of one crack.
+        If cracks on one side of a tooth are not parts of one crack, or more than one has a front.
     """
     found = {}
     for crack in cracks:
-        found.setdefault(replace(crack, width=None), []).append(crack.width)
+        found.setdefault(whole(crack), []).append(crack)
     sides = [crack.side for crack in found]
     if len(set(sides)) < len(sides):
         raise ValueError(
             f"cracks of different shape on the {sides[0]} side of a tooth: the energy model has one section for all of them; "
             "give them the same level, start and angle, or use method = 'fe3d'"
         )
-    return tuple(found), tuple(None if None in widths else tuple(widths) for widths in found.values())
+    fronts = [None if all(crack.even for crack in own) else own[0] for own in found.values()]
+    if len(fronts) - fronts.count(None) > 1 or any(front and len(found[whole(front)]) > 1 for front in fronts):
+        raise ValueError(
+            f"tooth {cracks[0].tooth} has several cracks, and the depth of more than one may change along the width: the energy "
+            "model follows one front; give the others ends = (1, 1) on the other side, or use method = 'fe3d'"
+        )
+    parts = ([crack.width for crack in own] for own in found.values())
+    return tuple(found), [None if None in own else tuple(own) for own in parts], fronts
 
 
 def solid_sector(gear, material, cracks, *, width, order, axial, refine, cache=True):
@@ -151,9 +151,16 @@ def solid_sector(gear, material, cracks, *, width, order, axial, refine, cache=T
     kept = solved_gears(cache)
 
     def solve():
-        shapes, parts = _seams(cracks)
+        shapes, parts, fronts = _seams(cracks)
         section, tree = _sector(gear, shapes, refine, kept)
-        return panel3d(gear, section, material, hats(gear), width, order=order, degree=axial, parts=parts, tree=tree)
+        bends = [None] * len(fronts)
+        for i, crack in enumerate(fronts):
+            if crack:
+                bends[i] = bent(gear, section, i, crack, width)
+                parts[i] = bends[i][1].open()
+                parts[i] = None if parts[i] == ((0.0, width),) else parts[i]
+        options = {"order": order, "degree": axial, "parts": tuple(parts), "bends": tuple(bends), "tree": tree}
+        return panel3d(gear, section, material, hats(gear), width, **options)
 
     return kept.get(("ritz3d sector", gear, material, cracks, width, order, axial, refine), solve)
 

@@ -259,7 +259,7 @@ def test_what_a_method_does_not_model_is_refused(damage, options, message):
         ({"width": (0.0, math.nan)}, "two finite numbers"),
         ({"width": 3.0}, "two finite numbers"),
         ({"width": (0.0, 1.0, 2.0)}, "two finite numbers"),
-        ({"ends": (0.0, 0.0)}, "not both 0"),
+        ({"ends": (0.0, 0.0)}, "not all 0"),
         ({"ends": (0.5, 1.2)}, "from 0 to 1"),
         ({"ends": (-0.1, 1.0)}, "from 0 to 1"),
     ],

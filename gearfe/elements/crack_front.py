@@ -1,0 +1,145 @@
+"""Stress intensities along the front of a root crack of a gear of finite width: hexahedra of the whole gear."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.damage.crack import Crack, check_apart, crack_path, open_part
+from geometry.damage.front import bends, deepest, whole
+from geometry.mesh.solid import solid
+from geometry.tooth.gear import Gear
+
+from ..material import Material
+from ..threads import single
+from .front_integral import front_intensity
+from .line_load import check_spread, contact_line, strip, under_line
+from .loaded_tooth import check_line_load, edge_lengths
+
+# edge lengths in modules, see `geometry.mesh.quads.SIZES`
+SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25, "crack tip": 0.03}
+LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
+TUBE = 0.2, 0.5  # radius of the widest tube of the integral [m_n], and at most in the least depth
+
+
+@dataclass(frozen=True, slots=True)
+class FrontIntensity:
+    """Stress intensities along a crack front.
+
+    Attributes
+    ----------
+    z : ndarray, shape (n,)
+        Heights [mm].
+    depth : ndarray, shape (n,)
+        Of the crack there, along it in the transverse section [mm].
+    K_I, K_II, K_III : ndarray, shape (n,)
+        [MPa sqrt(mm)]; K_I < 0 means that the faces are pressed together (in truth they touch, and no opening mode exists).
+    unknowns : int
+    """
+
+    z: NDArray[np.float64]
+    depth: NDArray[np.float64]
+    K_I: NDArray[np.float64]
+    K_II: NDArray[np.float64]
+    K_III: NDArray[np.float64]
+    unknowns: int
+
+
+@single
+def stress_intensity_along_front(
+    gear: Gear,
+    crack: Crack,
+    radius: float,
+    line_load: float | Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    material: Material,
+    *,
+    refine: float = 1.0,
+) -> FrontIntensity:
+    """Stress intensities K_I, K_II, K_III along the front of a crack of tooth 0, whose depth may change along the width.
+
+    The load lies on the contact line through `radius` at half the width, as of `gearfe.root_stress_along_width`. The elements
+    follow the front; the interaction integral is taken over three tubes around it and carried to radius zero
+    (`gearfe.elements.front_integral`). Crack faces may pass through each other: where K_I < 0 they would touch.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its bore (of a ring the outside) is held over the whole width.
+    crack : Crack
+        Of tooth 0, straight.
+    radius : float
+        Radius of the loaded flank point at half the width [mm].
+    line_load : float or callable
+        Load normal to the flank per width [N/mm], or as a function of the height z [mm].
+    material : Material
+    refine : float
+        Divides all edge lengths.
+
+    Returns
+    -------
+    FrontIntensity
+        At the layers where the mesh follows the front: a front that runs out is left out where it is less than a quarter (or
+        0.4, 0.6 if the mesh needs it) as deep as where it is deepest. The values at the first and the last place are means with
+        a one-sided weight.
+
+    Raises
+    ------
+    ValueError
+        If the load is not positive, the point is off the flank, or the crack is not a straight one of tooth 0.
+    RuntimeError
+        If the mesh folds, or the system does not fit into memory.
+    """
+    if not callable(line_load):
+        check_line_load(line_load)
+    if not isinstance(crack, Crack):
+        raise ValueError(f"crack = {crack!r}, but give a Crack")
+    if crack.tooth % gear.z or bends(crack):
+        raise ValueError(f"crack of tooth {crack.tooth}, turning = {crack.turning}: give a straight crack of tooth 0")
+    check_apart(gear, [crack])
+    edge_lengths(gear, {}, refine)
+    spread, roll = check_spread(gear), contact_line(gear, radius)
+    layer = min(LAYER * gear.m_n, gear.b / LAYERS)
+    fine = [(z, z, END_LAYER * layer) for z in (0.0, gear.b, *(crack.width or ()))]
+    patches = [strip(gear, roll, spread, refine)]
+    mesh = solid(gear, layer=layer, cracks=[crack], patches=patches, refine=refine, sizes=SIZES, fine=fine)
+    moved, unknowns = under_line(mesh, roll, line_load, material, spread)
+    z, part, least = _followed(mesh, crack)
+    mouth, tip = crack_path(gear, whole(crack)).T
+    length = math.dist(mouth, tip)
+    axes = _axes(gear, mouth, tip, z, part)
+    tube = min(TUBE[0] * gear.m_n, TUBE[1] * least * length)
+    found = front_intensity(mesh.points, mesh.cells, moved.T, material, *axes, tube)
+    return FrontIntensity(z, part[0] * length, *found, unknowns)
+
+
+def _followed(mesh, crack):
+    """Heights of the layers at which the mesh follows the front, depth there in the deepest with its slope, and the least."""
+    low, high = crack.width or (0.0, mesh.gear.b)
+    z = mesh.levels[(mesh.levels >= low - 1e-9) & (mesh.levels <= high + 1e-9)]
+    if 0 not in mesh.fronts:
+        return z, np.array([np.ones(z.size), np.zeros(z.size)]), 1.0
+    front = mesh.fronts[0]
+    z = z[open_part(crack, mesh.gear.b, z) >= (1 - 1e-9) * front.least * deepest(crack)]
+    part = np.array(front.depth(z))
+    return z, part, float(part[0].min())
+
+
+def _axes(gear, mouth, tip, z, part):
+    """Places of the front in space ``(n, 3)``, unit vectors ahead of it in the crack's surface, and at right angles to that."""
+    turn, rate = gear.twist_rate * z, gear.twist_rate
+    cos, sin = np.cos(turn), np.sin(turn)
+
+    def turned(x, y):
+        return np.array([cos * x + sin * y, cos * y - sin * x])
+
+    place = mouth[:, None] + (tip - mouth)[:, None] * part[0]
+    flat, heading = turned(*place), turned(*np.tile((tip - mouth)[:, None], z.size))
+    rise = heading * part[1] + rate * np.array([flat[1], -flat[0]])
+    along = np.vstack([rise, np.ones(z.size)]).T
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    heading = np.vstack([heading, np.zeros(z.size)]).T
+    ahead = heading - (heading * along).sum(axis=1)[:, None] * along
+    ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+    return np.vstack([flat, z]).T, ahead, np.cross(along, ahead)

@@ -1,0 +1,113 @@
+"""The front of a crack whose depth changes along the width, as meshes follow it.
+
+A mesh cannot follow a front down to depth nothing: below a least depth it stays there, and the crack ends a little further on.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from .crack import Crack, crack_path, extremes, front
+
+LEAST = 0.25, 0.4, 0.6  # least depth that a mesh follows, in the deepest: the first at which it does not fold
+# A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
+# before if the front is straight there.
+END = 2 / 3
+SAMPLES = 801  # heights at which a front is looked at first
+
+
+def deepest(crack):
+    """Largest open part of a crack's length."""
+    high = extremes(crack)[1]
+    return math.sqrt(high) if crack.rounded else high
+
+
+def whole(crack):
+    """The crack as a section through its deepest place has it: open over the whole width.
+
+    Raises
+    ------
+    ValueError
+        If it has a bend, and another depth than that of its full length.
+    """
+    part, even = deepest(crack), replace(crack, width=None, ends=(1.0, 1.0), rounded=False)
+    if part == 1 and crack.even:
+        return even
+    if bends(crack):
+        raise ValueError(
+            f"turning crack of level {crack.level} over parts {crack.ends} of its length: only straight cracks change their "
+            "depth along the width; give turning = False, or ends = (1, 1)"
+        )
+    size = {"length": part * crack.length} if crack.level is None else {"level": part * crack.level}
+    return even if part == 1 else replace(even, **size)
+
+
+def bends(crack):
+    """Whether a crack has turned at the tooth's centre-line: its path is not straight."""
+    return crack.turning and crack.level > 0.5
+
+
+def path_length(gear, crack):
+    """Length of a straight crack where it is deepest [mm]."""
+    return float(np.hypot(*np.diff(crack_path(gear, whole(crack)), axis=1)).sum())
+
+
+@dataclass(frozen=True, slots=True)
+class Front:
+    """The front of a crack as a mesh follows it.
+
+    Attributes
+    ----------
+    crack : Crack
+    width : float
+        Of the face [mm].
+    least : float
+        The least depth followed, in the deepest.
+    """
+
+    crack: Crack
+    width: float
+    least: float
+
+    @property
+    def ends(self):
+        """Heights at which the crack is said to end [mm]."""
+        return self.crack.width or (0.0, self.width)
+
+    def depth(self, z):
+        """Depth at heights `z` [mm] in the deepest, at least `least`, and its slope [1/mm]."""
+        part, slope = front(self.crack, self.width, z)
+        top = deepest(self.crack)
+        deep = part > self.least * top
+        return np.where(deep, part / top, self.least), np.where(deep, slope / top, 0.0)
+
+    def kinks(self):
+        """Heights at which the depth followed has a kink [mm]."""
+        return (*self.ends, *self.crossings(self.least))
+
+    def open(self):
+        """Parts of the width where the crack is open: ``((low, high), ...)`` [mm]."""
+        places = [self.ends[0], *self.crossings(END * self.least), self.ends[1]]
+        middles = (np.array(places[1:]) + places[:-1]) / 2
+        there = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
+        return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], there, strict=True) if inside)
+
+    def runs_out(self, end):
+        """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""
+        return end not in self.ends
+
+    @property
+    def sharp(self):
+        """Whether the depth is no polynomial of second degree over the width."""
+        return self.crack.rounded or self.crack.width is not None or len(self.kinks()) > 2
+
+    def crossings(self, part):
+        """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
+        z = np.linspace(*self.ends, SAMPLES)
+        value = self._over(z, part)
+        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(value[1:] * value[:-1] < 0)]
+
+    def _over(self, z, part):
+        return front(self.crack, self.width, z)[0] - part * deepest(self.crack)

@@ -1,0 +1,82 @@
+"""Cracks whose depth changes along the width, in the energy model in three dimensions: limits, mirror images, hexahedra."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements import fe3d
+from gearfe.energy.ritz import solid as ritz3d
+from gearfe.energy.ritz.join import join
+from gearfe.flexibility import solid as flexibility3d
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
+SPUR = gf.Gear(z=18, r_bore=9.0, b=6.0, **RACK)
+HELICAL = replace(SPUR, beta=math.radians(16))
+RING = gf.Gear(z=48, r_rim=60.0, b=6.0, beta=math.radians(16), tip_radius=0.3, addendum=0.85, **RACK)
+HAT = 5  # the patch that is looked at
+
+
+def compliance(gear, crack, *, order=2, modes=3):
+    """Influence ``(modes, modes)`` [mm per N/mm] of the first modes along the width under one patch."""
+    size = {"width": gear.b, "order": order, "axial": 6, "refine": 1.0}
+    healthy = ritz3d.solid_sector(gear, STEEL, (), **size)
+    panels = {0: ritz3d.solid_sector(gear, STEEL, (crack,), **size) if crack else healthy, 1: healthy}
+    at = HAT * 7 + np.arange(modes)
+    return join(gear, panels, healthy)[0][0, 0][np.ix_(at, at)]
+
+
+@pytest.mark.parametrize("gear", [HELICAL, pytest.param(RING, marks=pytest.mark.slow)], ids=["helical", "ring"])
+def test_a_front_that_hardly_slopes_is_one_parallel_to_the_teeth(gear):
+    """The section that moves with the front gives what a section with that crack gives."""
+    want = compliance(gear, gf.Crack(level=0.35))
+    assert_allclose(compliance(gear, gf.Crack(level=0.5, ends=(0.7, 0.7))), want, rtol=1e-12, err_msg="an even one is meshed so")
+    pinned = gf.Crack(level=0.5, ends=(1.0, 1.0 - 1e-9))
+    assert_allclose(compliance(gear, pinned), compliance(gear, gf.Crack(level=0.5)), rtol=2e-3)
+
+
+def test_a_front_seen_from_the_other_end():
+    """On a spur gear the modes of even degree are the same, those between even and odd ones change sign."""
+    one, other = (compliance(SPUR, gf.Crack(level=0.5, ends=ends)) for ends in ((1.0, 0.3), (0.3, 1.0)))
+    sign = np.array([1.0, -1.0, 1.0])
+    assert_allclose(one, sign[:, None] * other * sign, rtol=2e-3, atol=1e-3 * one[0, 0])
+    assert one[0, 1] < -0.01 * one[0, 0], "more compliant at the end at z = 0, where it is deep"
+
+
+def test_the_depths_at_which_matrices_are_computed_are_enough(monkeypatch):
+    crack = gf.Crack(level=0.5, ends=(1.0, 0.3))
+    want = compliance(SPUR, crack)
+    monkeypatch.setattr("gearfe.energy.ritz.bent.DEPTHS", 10)
+    found = compliance(replace(SPUR, r_bore=SPUR.r_bore + 1e-12), crack)  # another key, so that it is solved anew
+    assert_allclose(found, want, rtol=1e-4, atol=1e-6 * want[0, 0])
+
+
+FRONTS = {
+    "sloping": gf.Crack(level=0.5, ends=(1.0, 0.3)),
+    "runs out": gf.Crack(level=0.5, ends=(1.0, 0.0)),
+    "parabola": gf.Crack(level=0.5, ends=(1.0, 0.0), rounded=True),
+    "half an ellipse": gf.Crack(level=0.5, width=(1.0, 5.0), ends=(0.0, 1.0, 0.0), rounded=True),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FRONTS)
+@pytest.mark.parametrize("gear", [SPUR, HELICAL, RING], ids=["spur", "helical", "ring"])
+def test_what_a_front_adds_is_that_of_hexahedra(gear, name):
+    """Even load and load that rises along the width; the hexahedra follow the front too and are a little too stiff."""
+    crack = FRONTS[name]
+    knots = flexibility3d.hats(gear)[:, HAT : HAT + 1]
+    patches, scale = fe3d.Patches((0,), knots, 2), np.sqrt((2 * np.arange(2) + 1) * gear.b)
+    model = [compliance(gear, own, order=3, modes=2) for own in (None, crack)]
+    fine = [(0.0, 0.0, 0.3), (gear.b, gear.b, 0.3)]
+    hexes = [
+        fe3d.influence(fe3d.mesh_patches(gear, patches, cracks=own, refine=0.8, fine=fine), STEEL, patches).matrix[0, 0, :, 0, 0]
+        for own in ((), (crack,))
+    ]
+    added = [found[1] - found[0] for found in (model, [scale[:, None] * one * scale for one in hexes])]
+    print(name, np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds;", added[1][0, 0] / model[0][0, 0])
+    assert_allclose(np.diag(added[0]), np.diag(added[1]), rtol=0.03)
