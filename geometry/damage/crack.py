@@ -188,8 +188,9 @@ def crack_in_band(crack, b, first, last):
         return crack
     low, high = crack.width or (0.0, b)
     low, high = max(low, min(first, last)), min(high, max(first, last))
-    places = np.linspace(low, high, len(crack.ends))
-    ends = tuple(open_part(crack, b, places).tolist())
+    ends = crack.ends
+    if (low, high) != (crack.width or (0.0, b)):
+        ends = tuple(open_part(crack, b, np.linspace(low, high, len(ends))).tolist())
     if not (low < high and max(ends) > 0):
         return None
     width, band = (low - first, high - first), abs(last - first)

@@ -47,6 +47,17 @@ def test_a_front_seen_from_the_other_end():
     assert one[0, 1] < -0.01 * one[0, 0], "more compliant at the end at z = 0, where it is deep"
 
 
+def test_a_front_on_a_gear_of_the_other_hand_is_the_mirrored_one():
+    """`flexibility3d` solves that gear as a mirror image; the section of its own gives the same."""
+    other, crack = replace(HELICAL, beta=-HELICAL.beta), gf.Crack(level=0.5, ends=(1.0, 0.3))
+    at = HAT * 5 + np.arange(3)
+    size = {"order": 2, "axial": 6}
+    found, healthy = (ritz3d.flexibility3d(other, STEEL, own, **size).near[0][np.ix_(at, at)] for own in ((crack,), ()))
+    want = compliance(other, crack) - compliance(other, None)
+    assert_allclose(found - healthy, want, rtol=1e-7, atol=1e-7 * want[0, 0])
+    assert want[0, 1] < -0.01 * want[0, 0], "more compliant at the end at z = 0, where it is deep"
+
+
 def test_the_depths_at_which_matrices_are_computed_are_enough(monkeypatch):
     crack = gf.Crack(level=0.5, ends=(1.0, 0.3))
     want = compliance(SPUR, crack)

@@ -51,6 +51,8 @@ class BentTriangles:
         Terms that are symmetric, and those that come with their transposed.
     along, along_mixed : ndarray, shape (t, k, k)
         Their factors: integrals of functions along the width.
+    sets : tuple of ndarray
+        Of `Axial`.
     """
 
     index: np.ndarray
@@ -58,21 +60,7 @@ class BentTriangles:
     mixed: np.ndarray
     along: np.ndarray
     along_mixed: np.ndarray
-
-    @property
-    def terms(self):
-        """How many products there are."""
-        return len(self.even) + 2 * len(self.mixed)
-
-    def matrices(self, triangle):
-        """Of the section, of one triangle: ``(terms, 3 n, 3 n)``."""
-        k = self.index[triangle]
-        return np.concatenate([self.even[:, k], self.mixed[:, k], self.mixed[:, k].transpose(0, 2, 1)])
-
-    def factors(self, one, other):
-        """Their factors between two sets of functions along the width: ``(terms, f, g)``."""
-        every = (self.along, self.along_mixed, self.along_mixed.transpose(0, 2, 1))
-        return np.concatenate([part[(slice(None), *np.ix_(one, other))] for part in every])
+    sets: tuple
 
 
 def bent_triangles(sector, shift, front, along, section):
@@ -110,5 +98,51 @@ def bent_triangles(sector, shift, front, along, section):
     even = [integrals(0, value, value), integrals(1, value, value), integrals(2, value, value), integrals(0, rise, rise)]
     mixed = [integrals(0, value, rise), integrals(1, value, rise)]
     return BentTriangles(
-        index, np.concatenate(parts[[0, 1, 2, 5]]), np.concatenate(parts[[3, 4]]), np.concatenate(even), np.concatenate(mixed)
+        index=index,
+        even=np.concatenate(parts[[0, 1, 2, 5]]),
+        mixed=np.concatenate(parts[[3, 4]]),
+        along=np.concatenate(even),
+        along_mixed=np.concatenate(mixed),
+        sets=along.sets,
     )
+
+
+def moved_products(bent, own, at, size):
+    """Terms of the matrix of a few triangles: those that move add these, times `moved_factors`.
+
+    Parameters
+    ----------
+    bent : BentTriangles
+    own : ndarray, shape (k,)
+        Triangles.
+    at : ndarray, shape (k, n)
+        Places of their nodes.
+    size : int
+        How many nodes there are.
+
+    Returns
+    -------
+    ndarray, shape (t, 3 size, 3 size)
+        t = 0 if none of them moves.
+    """
+    moved = np.flatnonzero(bent.index[own] >= 0)
+    if not moved.size:
+        return np.zeros((0, 3 * size, 3 * size))
+    rows = (3 * at[moved][:, :, None] + np.arange(3)).reshape(moved.size, -1)
+    even, mixed = (_added(part[:, bent.index[own[moved]]], rows, 3 * size) for part in (bent.even, bent.mixed))
+    return np.concatenate([even, mixed, mixed.transpose(0, 2, 1)])
+
+
+def moved_factors(bent, one, other):
+    """Factors ``(t, f, g)`` of `moved_products`: integrals of the sets `one` and `other` of functions along the width."""
+    rows, columns = bent.sets[one][:, None], bent.sets[other]
+    mixed, turned = bent.along_mixed[:, rows, columns], bent.along_mixed[:, columns[:, None], rows[:, 0]]
+    return np.concatenate([bent.along[:, rows, columns], mixed, turned.transpose(0, 2, 1)])
+
+
+def _added(parts, at, size):
+    """Matrices ``(t, k, n, n)`` of k triangles added up at their places ``(k, n)``: ``(t, size, size)``."""
+    out = np.zeros((parts.shape[0], size, size))
+    for own, place in zip(parts.transpose(1, 0, 2, 3), at, strict=True):
+        out[(slice(None), *np.ix_(place, place))] += own
+    return out

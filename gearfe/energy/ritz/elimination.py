@@ -9,7 +9,7 @@ from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
-from .bent import BentTriangles
+from .bent import BentTriangles, moved_factors, moved_products
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class SectorBody:
     stays, there : ndarray of bool, shape (k,)
         What is not eliminated, and what is not held.
     section : ndarray, shape (3, m, 3 n, 3 n)
-        ``K00, K01, K11`` of the triangles.
+        ``K00, K01, K11`` of the triangles; zero of those that move with a crack's front.
     factors : dict of (int, int) to ndarray, shape (4, f, g)
         ``M, C, C', Dz`` between two sets of functions along the width.
     kind : ndarray, shape (k,)
@@ -44,9 +44,7 @@ class SectorBody:
     size : ndarray, shape (k,)
         How many unknowns each number stands for.
     bent : BentTriangles or None
-        The triangles that move with a crack's front, whose `section` is not used.
-    bent_factors : dict or None
-        `factors` with those of `bent` after them.
+        The triangles that move with a crack's front.
     """
 
     numbers: np.ndarray
@@ -63,7 +61,6 @@ class SectorBody:
     kind: np.ndarray
     size: np.ndarray
     bent: BentTriangles | None = None
-    bent_factors: dict | None = None
 
 
 def all_nodes(numbers, count, order):
@@ -104,7 +101,6 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None,
     kind = np.zeros(nodes + loads, dtype=int) if kinds is None else kinds
     used = np.unique(kind).tolist()
     each = np.append(np.full(nodes, 3), np.ones(loads, dtype=int))
-    sets = {(a, b): (axial.sets[a], axial.sets[b]) for a in used for b in used}
     return SectorBody(
         numbers=numbers,
         touch=touch,
@@ -116,11 +112,10 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None,
         stays=stays,
         there=there,
         section=section,
-        factors={pair: _factors(axial, *own) for pair, own in sets.items()},
+        factors={(a, b): _factors(axial, axial.sets[a], axial.sets[b]) for a in used for b in used},
         kind=kind,
         size=each * np.array([own.size for own in axial.sets])[kind],
         bent=bent,
-        bent_factors=bent and {pair: np.concatenate([_factors(axial, *own), bent.factors(*own)]) for pair, own in sets.items()},
     )
 
 
@@ -233,15 +228,13 @@ def leaf(body, own, gone, rest, blocks):
     nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
     index = np.full(body.first_load, -1)
     index[raw] = np.arange(raw.size)
-    moved = body.bent is not None and (body.bent.index[own] >= 0).any()
-    plane = np.zeros((4 + (body.bent.terms if moved else 0), 3 * raw.size, 3 * raw.size))
+    plane = np.zeros((4, 3 * raw.size, 3 * raw.size))
     for triangle in own:
         at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        if moved and body.bent.index[triangle] >= 0:
-            plane[(slice(4, None), *np.ix_(at, at))] += body.bent.matrices(triangle)
-        else:
-            plane[(slice(4), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
+        plane[(slice(None), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
     plane[2] = plane[1].T
+    if body.bent is not None:
+        plane = np.concatenate([plane, moved_products(body.bent, own, index[body.numbers[:, own]].T, raw.size)])
     here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
     turn = _seamed(body, raw, nodes)
     here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
@@ -268,7 +261,7 @@ def _seamed(body, raw, nodes):
 
 
 def _times(body, plane, here, ids, gone, blocks):
-    """The section's matrices ``(4 or more, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
+    """The section's matrices ``(t, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
 
     Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
     """
@@ -281,10 +274,11 @@ def _times(body, plane, here, ids, gone, blocks):
         if own.start >= nodes:
             break  # loads have nothing to do with each other
         for others, other, columns in runs[k:]:
-            factors = (body.factors if len(plane) == 4 else body.bent_factors)[one, other]
-            coupled = plane[:, _three(own), _three(others)]
+            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
             if others.start >= nodes:
                 factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
+            elif len(plane) > len(factors):
+                factors = np.concatenate([factors, moved_factors(body.bent, one, other)])
             block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)
             block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
             target = blocks[(own.start >= gone) + (others.start >= gone)]

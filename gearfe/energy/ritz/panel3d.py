@@ -63,10 +63,13 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
         innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
         at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
-    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order)
     parts = parts or (None,) * len(sector.faces)
     bends = tuple(bends) or (None,) * len(parts)
     along = axial(width, degree, parts, gear.m_n, [bend and bend[1] for bend in bends])
+    bent = None
+    for bend in filter(None, bends):
+        bent = bent_triangles(sector, *bend, along, partial(_moved_section, sector, order, material, gear.twist_rate))
+    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order, bent=bent)
     apart, owner = _apart(sector, chain, load.shape[0])
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
@@ -76,10 +79,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
-    moving = None
-    for bend in filter(None, bends):
-        moving = _moving(gear, sector, material, bend, along, every, order)
-    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds, bent=moving)
+    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds, bent=bent)
     ids, matrix = front(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
@@ -101,7 +101,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     )
 
 
-def section_of(gear, sector, material, knots, order, *, plane=False):
+def section_of(gear, sector, material, knots, order, *, plane=False, bent=None):
     """The section of a sector with its loads, short edges bound.
 
     Parameters
@@ -110,6 +110,8 @@ def section_of(gear, sector, material, knots, order, *, plane=False):
         As in `panel3d`.
     plane : bool
         As if it were a spur gear's.
+    bent : BentTriangles, optional
+        The triangles that move with a front: bound too, and left out of `section`.
 
     Returns
     -------
@@ -129,22 +131,12 @@ def section_of(gear, sector, material, knots, order, *, plane=False):
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     every, _ = all_nodes(numbers, count, order)
     section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
+    if bent is not None:
+        section[:, bent.index >= 0] = 0.0
     held = chain(sector.held)
     if order == ORDER:
-        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
+        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector), bent))
     return every, section, load, sides, held, chain
-
-
-def _moving(gear, sector, material, bend, along, every, order):
-    """`BentTriangles` of a sector, short edges bound."""
-    matrices = partial(_moved_section, sector, order, material, gear.twist_rate)
-    out = bent_triangles(sector, *bend, along, matrices)
-    if order == ORDER:
-        moved = out.index >= 0
-        edges, none = quadratic_edges(gear, sector)[:, moved], np.zeros((int(every.max()) + 1, 3, 0))
-        for part in (out.even, out.mixed):
-            bind(part, none, every[:, moved], edges)
-    return out
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
@@ -206,55 +198,20 @@ def polar(gear, sizes, matrix, components=3):
 
 def _section(sector, order, material, twist):
     """``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
-    basis = table(order)
-    bulges = sector.edge_bulges()
-    (xx, xy), (yx, yy) = jacobians(sector.points, sector.triangles, bulges, order).transpose(1, 2, 0, 3)
-    area = xx * yy - xy * yx
-    first, second = basis.slope
-    dx = (yy / area)[:, None] * first - (yx / area)[:, None] * second
-    dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first
-    place = np.einsum("cq,dcm->dmq", basis.corner, sector.points[:, sector.triangles])
-    x, y = place + np.einsum("kqg,kdgm->dmq", basis.bulge, bulges, optimize=True)
-    around = y[:, None] * dx - x[:, None] * dy
-    weight = np.sqrt(area * basis.weight)[:, None]
-    base = np.stack([part * weight for part in (dx, dy, around, np.broadcast_to(basis.value, dx.shape))], axis=1)
-    base = base.reshape(area.shape[0], 4 * basis.count, -1)
-    gram = (base @ base.transpose(0, 2, 1)).reshape(-1, 4, basis.count, 4, basis.count).transpose(1, 3, 0, 2, 4)
-    between = _between(material, twist)
-    out = (between.reshape(27, 16) @ gram.reshape(16, -1)).reshape(3, 3, 3, *gram.shape[2:])
-    return out.transpose(0, 3, 4, 1, 5, 2).reshape(3, area.shape[0], 3 * basis.count, 3 * basis.count)
-
-
-def _between(material, twist):
-    """Energy ``(3, 3, 3, 4, 4)`` of K00, K01, K11 between components, in products of N_X, N_Y, Y N_X - X N_Y and N."""
-    dx, dy, around, value = np.eye(4)
-    flat, along = np.zeros((6, 3, 4)), np.zeros((6, 3, 4))  # strains xx, yy, zz, xy, xz, yz of v and of v_z
-    flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
-    flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
-    flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * around
-    flat[4, 1], flat[5, 0] = twist * value, -twist * value
-    along[2, 2] = along[4, 0] = along[5, 1] = value
-    stiffness = material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
-    stiffness[:3, :3] += material.lame("plane strain")[0]
-    pairs = (flat, flat), (flat, along), (along, along)
-    return np.array([np.einsum("ij,icf,jdg->cdfg", stiffness, one, two) for one, two in pairs])
+    gram = _gram(sector, order, slice(None), sector.points)
+    return _energies(gram, _between(material, twist)[:3, ..., :4, :4])
 
 
 def _moved_section(sector, order, material, twist, triangles, points, shift):
     """A_0, A_1, A_2, B_0, B_1, C of `bent` of some triangles with their vertices at `points`: ``(6, m, 3 nodes, 3 nodes)``."""
-    flat, along, carried = _strains(sector, order, twist, triangles, points, shift)
-    flat_stress, along_stress, carried_stress = (_stress(part, material) for part in (flat, along, carried))
-    both = flat_stress @ _rows(carried)
-    return np.array([
-        flat_stress @ _rows(flat), both + both.transpose(0, 2, 1), carried_stress @ _rows(carried),
-        flat_stress @ _rows(along), carried_stress @ _rows(along), along_stress @ _rows(along),
-    ])  # fmt: skip
+    gram = _gram(sector, order, triangles, points, shift)
+    return _energies(gram, _between(material, twist)[[0, 3, 4, 1, 5, 2]])
 
 
-def _strains(sector, order, twist, triangles, points, shift):
-    """Strains of v, of v_z, and of what a front's slope carries along `shift`, times the root of the weights.
+def _gram(sector, order, triangles, points, shift=None):
+    """Integrals ``(k, k, m, nodes, nodes)`` of products of N_X, N_Y, Y N_X - X N_Y, N and, with a `shift`, -shift . grad N.
 
-    Each is ``(m, 3 nodes, 6, q)``: xx, yy, zz, xy, xz, yz at the quadrature points.
+    N are the functions of the `triangles`, with their vertices at `points`.
     """
     basis, corners = table(order), sector.triangles[:, triangles]
     bulges = sector.edge_bulges()[..., triangles]
@@ -265,28 +222,46 @@ def _strains(sector, order, twist, triangles, points, shift):
     dy = (xx / area)[:, None] * second - (xy / area)[:, None] * first
     place = np.einsum("cq,dcm->dmq", basis.corner, points[:, corners])
     x, y = place + np.einsum("kqg,kdgm->dmq", basis.bulge, bulges, optimize=True)
-    value = np.broadcast_to(basis.value, dx.shape)
-    flat, along, carried = (np.zeros((6, 3, *dx.shape)) for _ in range(3))
+    parts = [dx, dy, y[:, None] * dx - x[:, None] * dy, np.broadcast_to(basis.value, dx.shape)]
+    if shift is not None:
+        p, q = np.einsum("cq,dcm->dmq", basis.corner, shift[:, corners])
+        parts.append(-(p[:, None] * dx + q[:, None] * dy))
+    weight = np.sqrt(area * basis.weight)[:, None]
+    base = np.stack([part * weight for part in parts], axis=1).reshape(area.shape[0], len(parts) * basis.count, -1)
+    gram = (base @ base.transpose(0, 2, 1)).reshape(-1, len(parts), basis.count, len(parts), basis.count)
+    return gram.transpose(1, 3, 0, 2, 4)
+
+
+def _energies(gram, between):
+    """Matrices ``(n, m, 3 nodes, 3 nodes)`` of `_gram` and of n energies of `_between`."""
+    n, k, (_, _, m, nodes, _) = len(between), len(gram), gram.shape
+    out = (between.reshape(9 * n, k**2) @ gram.reshape(k**2, -1)).reshape(n, 3, 3, m, nodes, nodes)
+    return out.transpose(0, 3, 4, 1, 5, 2).reshape(n, m, 3 * nodes, 3 * nodes)
+
+
+def _between(material, twist):
+    """Energies ``(6, 3, 3, 5, 5)`` between components, in products of the functions of `_gram`.
+
+    Of strains of v, of v_z and of what a front's slope carries along: those of v, of v and v_z (K01), of v_z; of v with what is
+    carried and of that with v, of what is carried, and of that with v_z.
+    """
+    dx, dy, around, value, carries = np.eye(5)
+    flat, along, carried = np.zeros((3, 6, 3, 5))  # strains xx, yy, zz, xy, xz, yz
     flat[0, 0] = flat[3, 1] = flat[4, 2] = dx
     flat[1, 1] = flat[3, 0] = flat[5, 2] = dy
-    flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * (y[:, None] * dx - x[:, None] * dy)
+    flat[2, 2] = flat[4, 0] = flat[5, 1] = -twist * around
     flat[4, 1], flat[5, 0] = twist * value, -twist * value
     along[2, 2] = along[4, 0] = along[5, 1] = value
-    p, q = np.einsum("cq,dcm->dmq", basis.corner, shift[:, corners])
-    carried[2, 2] = carried[4, 0] = carried[5, 1] = -(p[:, None] * dx + q[:, None] * dy)
-    weight, shape = np.sqrt(area * basis.weight)[:, None], (len(area), 3 * basis.count, 6, -1)
-    return [(part * weight).transpose(2, 3, 1, 0, 4).reshape(shape) for part in (flat, along, carried)]
-
-
-def _stress(strain, material):
-    """Stresses ``(m, 3 nodes, 6 q)`` of strains ``(m, 3 nodes, 6, q)``."""
+    carried[2, 2] = carried[4, 0] = carried[5, 1] = carries
     stiffness = material.shear_modulus * np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 1.0])
     stiffness[:3, :3] += material.lame("plane strain")[0]
-    return (stiffness @ strain).reshape(*strain.shape[:2], -1)
 
+    def energy(one, two):
+        return np.einsum("ij,icf,jdg->cdfg", stiffness, one, two)
 
-def _rows(strain):
-    return strain.reshape(*strain.shape[:2], -1).transpose(0, 2, 1)
+    both = energy(flat, carried) + energy(carried, flat)
+    plain = energy(flat, flat), energy(flat, along), energy(along, along)
+    return np.array([*plain, both, energy(carried, carried), energy(carried, along)])
 
 
 def _hats(gear, sector, chain, count, knots, order, tilt):

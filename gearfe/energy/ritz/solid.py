@@ -185,8 +185,9 @@ def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial
         influence[tooth, tooth] = influence[tooth, tooth] + np.kron(missing, np.eye(degree + 1))
     even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
     for tooth, own in cracks.items():
-        if all(crack.through for crack in own):
-            influence[tooth, tooth][even] += _missing(gear, material, own, order, refine, cache) - missing
+        if all(crack.even and crack.width is None for crack in own):
+            shapes = tuple(whole(crack) for crack in own)
+            influence[tooth, tooth][even] += _missing(gear, material, shapes, order, refine, cache) - missing
     unknowns = sum(p.unknowns for p in panels.values())
     made = parted(gear, material, width, degree, influence, unknowns, healthy, cache=cache)
     if not cracks:

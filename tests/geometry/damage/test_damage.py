@@ -305,3 +305,5 @@ def test_bands_see_their_part_of_a_crack_from_their_own_end():
     assert crack_in_band(gf.Crack(level=0.6), 30.0, 30.0, 18.0) == gf.Crack(level=0.6)
     out = crack_in_band(gf.Crack(level=0.6, ends=(1.0, 0.0)), 30.0, 30.0, 18.0)
     assert (out.width, out.ends) == (None, (0.0, 0.4))
+    arc = gf.Crack(level=0.6, ends=(0.3, 0.7, 0.5), rounded=True)
+    assert crack_in_band(arc, 30.0, 30.0, 0.0) == replace(arc, ends=(0.5, 0.7, 0.3)), "the whole face: exactly"
