@@ -16,8 +16,8 @@ RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer 
 PER_HAT = 4  # edges across a hat
 LAYER = 2.0  # height of the element layers [m_n], at most a sixth of the width
 END = 0.25  # height of the layers at the end faces, where loads and modes change most, against that
-# edge lengths in modules, see `geometry.mesh.quads.SIZES`
-SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.25, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
+# edge lengths in modules, see `geometry.mesh.quads.SIZES`; the section costs little: layers times teeth fill the memory
+SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.33, "far": 0.8, "crack": 0.2, "crack tip": 0.04}
 
 
 def axial_modes(width, m_n):

@@ -16,12 +16,13 @@ from gearfe.motion.response import acceleration
 from gearfe.motion.simulate import simulate
 
 from ..shared import machine
-from ..shared.kept_rows import kept
+from ..shared.kept_rows import check, kept
 from ..shared.places import PAGES
 from ..shared.speed_page import save
 from ..shared.stages import article, compound, helical, machines, shaken, spur, stage
 
 PAGE = PAGES / "dynamics.md"
+KEPT = ("dynamics_integrators", "dynamics_steps", "dynamics_chatter", "dynamics_speed")  # tables of rows
 DURATION = 0.01  # of the comparison; the fast path is timed over one second
 RATES = (2e3, 5e3, 1e4, 2.5e4, 5e4)  # of the output [Hz]; the last holds all others
 SPAN = 0.03  # of the chattering stage [s]
@@ -237,6 +238,7 @@ def herringbone_exact():
 def run(parts=()):
     """Write `dynamics.md` and print it; `parts`: beginnings of the rows that are computed anew (``all``: every one)."""
     again = ("",) if "all" in parts else tuple(parts)
+    check(again, *KEPT)
     lines = [TITLE.format(machine=machine.describe())]
     for head, rows in ((FIRST, integrators), (HEAD, accuracy), (CHATTER, chatter), (SPEED, speeds)):
         lines += [*head, *rows(again)]

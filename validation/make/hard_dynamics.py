@@ -22,7 +22,7 @@ from gearfe.motion.steady import steady_state
 from gearfe.motion.step_control import chosen_step, difference
 
 from ..shared import machine
-from ..shared.kept_rows import kept
+from ..shared.kept_rows import check, kept
 from ..shared.places import PAGES
 
 PAGE = PAGES / "hard_dynamics.md"
@@ -172,6 +172,7 @@ def long_run():
 def run(parts=()):
     """Write `hard_dynamics.md`, print it; `parts`: beginnings of the cases that are run anew (``all``: every one)."""
     again = ("",) if "all" in parts else tuple(parts)
+    check(again, "hard_dynamics")
     lines = [
         "# Hard cases of the dynamics",
         "",

@@ -25,7 +25,7 @@ COLUMNS = ("pair", "case", "refine", "dofs 1", "dofs 2", "seconds", "phase", "k 
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 100.0  # [N/mm]
 PHASES = 12  # of a mesh cycle, over the whole engagement of the damaged tooth
-MAIN, COARSE, FINE = 1.2, 0.8, 1.75  # resolutions, each about 1.45 times the one before
+MAIN, COARSE, FINE = 0.8, 0.55, 1.16  # resolutions, each about 1.45 times the one before
 CASES = ("healthy", "crack 30 %", "crack 60 %", "7 pits")
 TWO = ("healthy", "crack 60 %")  # cases with two resolutions
 THREE = (("18/27", "healthy"),)  # with all three

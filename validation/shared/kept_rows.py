@@ -15,6 +15,14 @@ def stored(name):
     return {row["row"]: row for row in map(json.loads, lines)}
 
 
+def check(parts, *names):
+    """Raise ValueError if a beginning of `parts` is that of no row of the tables `names`; with what rows there are."""
+    known = [key for name in names for key in stored(name)]
+    lost = [part for part in parts if part and not any(key.startswith(part) for key in known)]
+    if known and lost:
+        raise ValueError(f"no row begins with {', '.join(lost)}; there are: {'; '.join(known)}")
+
+
 def kept(name, key, make, again=()):
     """Row `key` of table `name`: the one on file, or ``make()``, a dict, which is then put on file.
 
