@@ -174,9 +174,11 @@ def pair_stiffness3d(
                 found |= zip(group, _solved(contact, phase, within), strict=True)
         return [found[i] for i in range(len(forces))]
 
-    solved = solve(model or energy(order, 0))
+    with part("", 0.0, 0.6 if error else 1.0):
+        solved = solve(model or energy(order, 0))
     if error:
-        coarse = solve(energy(order - 1, 2))
+        with part("", 0.6, 1.0):
+            coarse = solve(energy(order - 1, 2))
         solved = [replace(one, error=np.abs(less.k - one.k)) for one, less in zip(solved, coarse, strict=True)]
     return solved if np.ndim(force) else solved[0]
 

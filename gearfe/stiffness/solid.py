@@ -81,18 +81,21 @@ def wide_curves(
     with part("contact", 0.0, 0.6 if error else 1.0):
         found = pair_stiffness3d(pair, list(forces), materials, phase, error=error and not brute, **options)
     seconds = time.perf_counter() - started
-    curves = []
-    with part("estimate of the error", 0.6, 1.0):
-        for force, one in zip(steps(forces), found, strict=True):
-            doubt, own = None, meta | {"force_N": force, "dofs": list(one.dofs), "seconds_contact": seconds}
-            if error:
-                less = (refine, cache, tell) if brute else None
-                doubt, ratio = _doubt((pair, force, materials), phase, one, options, less)
-                own |= {"error_refine": ratio * refine} if brute else {}
-            if any(cracks) and not brute:
-                own |= {"crack_closed_phases": phase[list(one.closed)].tolist()}
-            curves.append(_curve(one, doubt, own, flanks is not None))
-    return curves
+    metas = [
+        meta | {"force_N": force, "dofs": list(one.dofs), "seconds_contact": seconds}
+        for force, one in zip(forces, found, strict=True)
+    ]
+    doubts = [None] * len(found)
+    if error:
+        less = (refine, cache, tell) if brute else None
+        with part("estimate of the error", 0.6, 1.0):
+            for i, one in enumerate(steps(found)):
+                doubts[i], ratio = _doubt((pair, forces[i], materials), phase, one, options, less)
+                metas[i] |= {"error_refine": ratio * refine} if brute else {}
+    if any(cracks) and not brute:
+        for own, one in zip(metas, found, strict=True):
+            own |= {"crack_closed_phases": phase[list(one.closed)].tolist()}
+    return [_curve(*own, flanks is not None) for own in zip(found, doubts, metas, strict=True)]
 
 
 def _curve(found, doubt, meta, modified):

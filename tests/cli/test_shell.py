@@ -72,10 +72,11 @@ def test_a_full_disk_is_said():
     assert (done.returncode, done.stderr) == (1, "gearfe: cannot read or write: No space left on device\n")
 
 
-def test_interrupted_work_leaves_one_line_and_no_file(tmp_path):
+def test_interrupted_work_leaves_one_line_and_no_file(tmp_path, tmp_path_factory):
     target = tmp_path / "k.csv"
     command = [*COMMAND, "stiffness", "planetary_pitting", "--method", "fe", "--refine", "8", "-o", str(target)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT) as process:
+    environment = ENVIRONMENT | {"GEARFE_CACHE": str(tmp_path_factory.mktemp("empty"))}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as process:
         process.stdout.readline()  # it has begun
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)
