@@ -132,32 +132,20 @@ def test_newman_and_raju_at_their_limits():
     assert_allclose(newman_raju(1.0, 1.0, 1e4, 1e4, math.pi / 2), 1.04 * 2 / math.sqrt(math.pi), rtol=0.002)
 
 
-CURVED = 0.11  # widest tube, in the front's radius of curvature, up to which what is left of the curvature is below 1 %
-
-
-def gently(body, radius):
-    """Where the front is curved so gently that the tube is narrow against it."""
-    a, c = body.a, body.c
-    curve = (c**2 * np.sin(body.phi) ** 2 + a**2 * np.cos(body.phi) ** 2) ** 1.5 / (a * c)
-    return radius / curve <= CURVED
-
-
 @pytest.mark.slow
 def test_an_ellipse_in_a_large_body():
-    body = Quarter(1.0, 2.0, 10.0, 20.0, 15.0, pieces=8)
+    body = Quarter(1.0, 2.0, 10.0, 20.0, 15.0, pieces=12, tip=0.01)
     found = body.intensity(body.pulled(free_surface=False), 0.2)[0]
-    away = found / embedded(1.0, 2.0, body.phi) - 1
-    print(np.round(100 * away, 2), "%")
-    assert np.abs(away[gently(body, 0.2)]).max() < 0.01
+    print(np.round(100 * (found / embedded(1.0, 2.0, body.phi) - 1), 2), "%")
+    assert_allclose(found, embedded(1.0, 2.0, body.phi), rtol=0.01)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("c", "radius", "tip"), [(1.0, 0.1, 0.01), (2.5, 0.2, 0.015)])
-def test_surface_cracks_of_newman_and_raju(c, radius, tip):
-    """A fifth as deep as the plate is thick; they say that their equation is within 5 % of their finite elements."""
-    body = Quarter(1.0, c, 5.0, 8 * c, 8 * c, pieces=10, tip=tip)
-    found = body.intensity(body.pulled(free_surface=True), radius)[0]
-    away = found / newman_raju(1.0, c, 5.0, 8 * c, body.phi) - 1
-    print(f"a/c = {1 / c:g}:", np.round(100 * away, 2), "%")
-    assert gently(body, radius).sum() >= 6
-    assert np.abs(away[gently(body, radius)]).max() < 0.03
+@pytest.mark.parametrize(("c", "deep"), [(1.0, 5.0), (2.5, 5.0), (2.5, 2.0)])
+def test_surface_cracks_of_newman_and_raju(c, deep):
+    """Within 3 % along the whole front; they say that their equation is within 5 % of their finite elements."""
+    body = Quarter(1.0, c, deep, 8 * c, 8 * c, pieces=12, tip=0.01)
+    found = body.intensity(body.pulled(free_surface=True), 0.2)[0]
+    want = newman_raju(1.0, c, deep, 8 * c, body.phi)
+    print(f"a/c = {1 / c:g}, a/t = {1 / deep:g}:", np.round(100 * (found / want - 1), 2), "%")
+    assert_allclose(found, want, rtol=0.03)
