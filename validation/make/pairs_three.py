@@ -51,10 +51,10 @@ at the ends of the path, 0.3 %. CalculiX has none of them: [outsider_three.md](o
 The hexahedra are too stiff by their own discretisation, most of it in the section. With one quad through the rim, as before,
 the section of a ring alone (plane strain, against the energy model's) was 0.2 to 1.3 % too stiff at resolution 0.55 to 1, and
 no less at the finer of two, since dividing the edges of the teeth put no more quads into the rim they stand on: the 0.6 % by
-which pairs with rings differed, and of which a refinement showed 0.09 %. With two quads through the rim and resolution {MAIN:g}
-it is 0.05 to 0.1 %. Edges of 0.03 instead of 0.1 modules at the tip corners change k of 12/20 by 0.04 %. The losses by damage,
-in which such errors cancel, agree within 3 % of themselves. The largest differences of cracked teeth are beside the phases left
-out.
+which pairs with rings differed, and of which a refinement showed 0.09 %. With two quads through the
+rim and edges two thirds as long it is 0.05 to 0.1 %. Edges of 0.03 instead of 0.1 modules at the tip corners change k of
+12/20 by 0.04 %. The losses by damage, in which such errors cancel, agree within 1 % of themselves. The largest differences of
+cracked teeth are beside the phases left out.
 """
 
 
