@@ -86,8 +86,8 @@ def _tell(text):
     print(f"  {text}", flush=True)
 
 
-def compute():
-    """Compute both tables and write them."""
+def every_case():
+    """Compute the table of every case by every method and write it."""
     scene = gf.load_scene(SCENE)
     print("every case by every method")
     table = case_table(scene, printed_cases(scene), progress=print)
@@ -104,7 +104,11 @@ def compute():
     header += ["largest drop", "drop of mean", "drop of the damaged tooth", "estimate", "seconds"]
     save(SCENE, header, rows)
     save(f"{SCENE}_run", ["machine"], [[machine.describe()]])
-    jobs = [{"variation": name, "pair": pair} for pair in scene.pairs for name in VARIATIONS]
+
+
+def sensitivities():
+    """Compute the table of other assumptions and write it."""
+    jobs = [{"variation": name, "pair": pair} for pair in gf.load_scene(SCENE).pairs for name in VARIATIONS]
     done = gf.batch(jobs, work=sensitivity, progress=lambda n, of: print(f"  sensitivity {n}/{of}", flush=True))
     for found in done.results:
         if isinstance(found, Exception):
@@ -115,7 +119,8 @@ def compute():
 
 def run():
     """Compute the tables, draw the picture, write the page."""
-    compute()
+    every_case()
+    sensitivities()
     picture(TABLES / f"{SCENE}_sensitivity.png")
     with written(PAGES / f"{SCENE}.md") as name:
         Path(name).write_text(page(), encoding="utf-8")
