@@ -76,7 +76,8 @@ def reference():
             print(f"{name} {case or 'healthy'}: finite elements", flush=True)
             pair = scene.pairs[name]
             phase = damage_cycle(pair)
-            one = case_curve(pair, case, "fe3d", phase, error=True, refine=REFINE[name], tell=_tell)
+            # of the ring pair a coarser mesh cannot carry the patches, and a finer one does not fit into 24 GB
+            one = case_curve(pair, case, "fe3d", phase, error=name != "planet_ring", refine=REFINE[name], tell=_tell)
             kept[name, case] = phase, one.k, one.tooth, one.estimate, one.seconds
             write_curves(scene, kept, Path(stored_file(scene)))
             print(f"  {one.seconds:.0f} s, mean {one.mean:.4e} N/m, estimate {100 * one.estimate:.2f} %", flush=True)
