@@ -217,8 +217,8 @@ def test_degrees_the_layers_do_not_carry_are_dropped(steel):
 @pytest.mark.slow
 @pytest.mark.xfail(
     strict=True,
-    reason="At seven of eight phases they do; where the pair begins to touch they differ by 0.350 % and their estimates together say "
-    "0.349 %. Each estimate is from one coarser solve and sees only what that refinement takes away.",
+    reason="At seven of eight phases they do; where the pair begins to touch they differ by 0.350 % and their estimates together "
+    "say 0.349 %. Each estimate is from one coarser solve and sees only what that refinement takes away.",
 )
 def test_error_estimate_covers_the_difference_from_the_energy_model(steel):
     """The error estimates of `fe3d` and `ritz3d` together cover their difference at every phase."""
