@@ -44,11 +44,11 @@ to `fe3d` and `ritz3d`; the faces of a crack may pass through each other in `fe3
 
 {errors}
 
-`ritz3d` is within {mean:.2f} % of the finite elements in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} % at
-every phase; no constant of it is fitted to any gear. Of the ring pair the layers along the width are the coarsest that carry the patches: the
-planet alone is 0.1 % too stiff in them under even loads and 0.7 % under the fourth mode along the width, and the ring's own share
-is not known, as finer layers of it do not fit into 24 GB. Smaller pairs with a ring, on finer meshes, are within 0.25 %
-([pairs](pairs_three.md)).
+`ritz3d` is within {mean:.2f} % of the finite elements in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} %
+at every phase; no constant of it is fitted to any gear. Of the ring pair the layers along the width are the coarsest that
+carry the patches: the planet alone is 0.1 % too stiff in them under even loads and 0.7 % under the fourth mode along the
+width, and the ring's own share is not known, as finer layers of it do not fit into 24 GB. Smaller pairs with a ring, on finer
+meshes, are within 0.25 % ([pairs](pairs_three.md)).
 
 {seconds}
 
