@@ -57,7 +57,7 @@ class Shaft:
     >>> from gearfe import Material
     >>> shaft = Shaft(segments=[(100, 20)], bearings=(0, 100), gear=50, material=Material(E=207e3, nu=0.3))
     >>> round(shaft.support().radial), round(48 * 207e3 * math.pi * 10**4 / 4 / 100**3)
-    (71725, 78038)
+    (71725, 78037)
     """
 
     segments: Any
