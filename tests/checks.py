@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from gearfe.flexibility.halfspace import pair_kernel
 from geometry.tooth.profile import fillet, flank, form_point
 
 
@@ -29,3 +30,9 @@ def pit_loss(pair, *, count, diameter, radius=None):
         return count * 2 * np.sqrt(np.maximum(diameter**2 / 4 - along**2, 0.0)) / width
 
     return lost
+
+
+def line_kernel(start, stop, x):
+    """`halfspace.pair_kernel` of all pairs of cells of one line ``(n, n)`` [1/mm]."""
+    i, j = (part.ravel() for part in np.indices((start.size, start.size)))
+    return pair_kernel((start, stop), i, j, x).reshape(start.size, start.size)

@@ -32,7 +32,7 @@ class SharedLines:
     """Cells of contact lines that can push but not pull, in many contact problems at once; solves them for any loads.
 
     Cells of one line act on each other and themselves as the half-space does, each a strip of Hertz's pressure
-    (`halfspace.line_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the
+    (`halfspace.pair_kernel`). The strips' widths follow from the loads of the step before, averaged along the line so that the
     load at an end of contact converges with the cells (each step gains a digit or more; what is left after `WIDTHS` steps is
     let be), with an active set; if that does not settle, an exact contact problem (`sharing.share`) in every step.
 

@@ -125,31 +125,23 @@ def strip(half_width):
     return half_width / 2 * math.exp(-0.5)
 
 
-def line_kernel(start, stop, x):
-    """Mean of ``1 / sqrt((l - l')**2 + (x**2 + x'**2) / 2)`` over pairs of cells of one line ``(n, n)`` [1/mm].
+def pair_kernel(ends, i, j, x, other=None):
+    """Mean of ``1 / sqrt((l - l')**2 + (x**2 + x'**2) / 2)`` over pairs ``(i, j)`` of cells of one line ``(n,)`` [1/mm].
 
-    It is positive definite whatever the x: a sum of ``exp(-t (l - l')**2) exp(-t x**2 / 2) exp(-t x'**2 / 2)`` over t > 0.
+    The matrix of all pairs is positive definite whatever the x: a sum over t > 0 of
+    ``exp(-t (l - l')**2) exp(-t x**2 / 2) exp(-t x'**2 / 2)``.
 
     Parameters
     ----------
-    start, stop : ndarray, shape (n,)
-        Ends of the cells [mm].
-    x : ndarray, shape (n,)
-        Of `strip` [mm].
+    ends : (ndarray, ndarray)
+        Starts and stops of all cells [mm].
+    i, j : ndarray, shape (n,)
+        Numbers of the cells.
+    x : ndarray
+        Of `strip`, of all cells [mm].
+    other : (ndarray, ndarray), optional
+        Where the cells j begin and end instead, if they are images.
     """
-    least = np.sqrt((x[:, None] ** 2 + x**2) / 2)
-
-    def twice(ends, others):
-        apart = ends[:, None] - others
-        return apart * np.arcsinh(apart / least) - np.hypot(apart, least)
-
-    across = twice(stop, start)
-    kernel = across + across.T - twice(start, start) - twice(stop, stop)
-    return kernel / np.outer(stop - start, stop - start)
-
-
-def pair_kernel(ends, i, j, x, other=None):
-    """`line_kernel` of the pairs ``(i, j)`` of cells only, ``(n,)`` [1/mm]; cells j are those between `other`, if given."""
     (start, stop), (low, high) = ends, other or ends
     least = np.sqrt((x[i] ** 2 + x[j] ** 2) / 2)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from checks import line_kernel
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -149,7 +150,7 @@ def test_loads_satisfy_the_contact_conditions():
         force, approach, _ = both.solve(np.array([load]))[0]
         mean = np.maximum(both.joined.smoother(np.array([load])) @ force, 1e-9 * load / np.diff(edge))
         x = np.minimum(halfspace.strip(half_width(mean, radius, modulus)), both.joined.widest)
-        total = matrix + k * np.where(line[:, None] == line, halfspace.line_kernel(*ends, x), 0.0)
+        total = matrix + k * np.where(line[:, None] == line, line_kernel(*ends, x), 0.0)
         closed = total @ force + gap
         close = (
             1e-5 if (half_width(mean, radius, modulus) < np.diff(edge)).all() else 0.1

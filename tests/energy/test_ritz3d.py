@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from checks import line_kernel
 from numpy.polynomial.legendre import leggauss
 from numpy.testing import assert_allclose
 
@@ -119,7 +120,7 @@ def test_even_load_on_a_wide_gear_is_the_plane_law():
     body = ritz3d.flexibility3d(gear, STEEL, axial=0)
     edge = np.linspace(0, width, 801)
     z = (edge[1:] + edge[:-1]) / 2
-    kernel = body.kernel * halfspace.line_kernel(edge[:-1], edge[1:], halfspace.strip(np.full(z.size, a)))
+    kernel = body.kernel * line_kernel(edge[:-1], edge[1:], halfspace.strip(np.full(z.size, a)))
     kernel = kernel + body.edge * (1 / (z[:, None] + z) + 1 / (2 * width - z[:, None] - z))
     plane = ritz.flexibility(gear, STEEL, order=6)
     for arc in np.linspace(*plane.limits, 9)[2:-1]:
