@@ -271,9 +271,10 @@ def check_through(cracks, what):
     """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
     for crack in cracks:
         if not crack.through:
+            place = f"crack with width = {crack.width} mm, ends = {crack.ends}" if crack.width else f"crack with ends = {crack.ends}"
             raise ValueError(
-                f"crack open from z = {crack.width or 'end to end'} mm over parts {crack.ends} of its length, but {what} has "
-                "only cracks through the whole width: use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
+                f"{place} changes along the width, but {what} has only cracks of one depth through the whole width: "
+                "use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
             )
 
 
