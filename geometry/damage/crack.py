@@ -273,7 +273,7 @@ def check_through(cracks, what):
         if not crack.through:
             place = f"crack with width = {crack.width} mm, ends = {crack.ends}" if crack.width else f"crack with ends = {crack.ends}"
             raise ValueError(
-                f"{place} changes along the width, but {what} has only cracks of one depth through the whole width: "
+                f"{place} changes along the width, but {what} has only cracks through the whole width: "
                 "use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
             )
 
