@@ -271,9 +271,9 @@ def check_through(cracks, what):
     """Raise ValueError if a crack changes along the width, because `what` is a transverse section."""
     for crack in cracks:
         if not crack.through:
-            place = f"crack with width = {crack.width} mm, ends = {crack.ends}" if crack.width else f"crack with ends = {crack.ends}"
+            width = f"width = {crack.width} mm, " if crack.width else ""
             raise ValueError(
-                f"{place} changes along the width, but {what} has only cracks through the whole width: "
+                f"crack with {width}ends = {crack.ends} changes along the width, but {what} has only cracks through the whole width: "
                 "use method = 'ritz3d' or 'fe3d' of mesh_stiffness"
             )
 
