@@ -13,7 +13,7 @@ import matplotlib.pyplot as plt
 
 SITE = Path(__file__).parents[2] / "gearfe" / "docs"
 SCRIPTS = sorted(SITE.glob("tutorials/*.py")) + sorted(SITE.glob("gallery/*.py"))
-SLOW = ("picture_1_section_stress", "picture_2_pitted_tooth")  # they render
+SLOW = ("picture_1_section_stress", "picture_2_pitted_tooth", "tutorial_10_damage_along_the_width")
 RECORD = Path(__file__).parent / "printed"
 NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]\d+)?")
 
