@@ -11,6 +11,7 @@ from .window import drawing_library
 
 GEARS = ("#b9c7d6", "#d6cbb9")  # pinion, wheel
 HURT = "#d55e00"  # pits, and the rims of crack faces
+IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn before what hides them
 NEAR = 1.6  # half height of a close-up against the size of what is shown
 
 
@@ -58,7 +59,9 @@ def render_mesh(
                     plotter.add_mesh(_faces(part, faces), color=HURT, show_edges=True, edge_color="#404040")
                 elif name.startswith("crack") and name.endswith("body"):
                     rim = _faces(part, faces).extract_feature_edges(feature_edges=False, manifold_edges=False)
-                    plotter.add_mesh(rim, color=HURT, line_width=6, lighting=False)
+                    line = plotter.add_mesh(rim, color=HURT, line_width=6, lighting=False)
+                    line.mapper.SetResolveCoincidentTopologyToPolygonOffset()
+                    line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, IN_FRONT)
         plotter.camera.focal_point = focus
         plotter.camera.position = focus + 50 * half * view
         plotter.camera.up = (0.0, 1.0, 0.0)
@@ -85,9 +88,22 @@ def _camera(parts, close_up):
             if faces.size and (name == "pits" if close_up == "pits" else name.startswith("crack") and name.endswith("body")):
                 points = part.points[:, np.unique(faces)]
                 low, high = points.min(axis=1), points.max(axis=1)
-                view = np.array([1.0, 0.25, 0.35 if close_up == "pits" else 1.6])  # on the loaded flank, and its end face
+                if close_up == "crack":
+                    return _at_crack(points)
+                view = np.array([1.0, 0.25, 0.35])  # on the loaded flank
                 return (low + high) / 2, view / np.linalg.norm(view), NEAR * np.linalg.norm(high - low) / 2
     raise ValueError(f"close_up = {close_up!r}, but these meshes have none: give their damage when they are made")
+
+
+def _at_crack(points):
+    """Camera on the end of a crack's faces that spans more of the section: the end face, and the fillet along the mouth."""
+    upper = points[2] > (points[2].min() + points[2].max()) / 2
+    above, below = (np.linalg.norm(np.ptp(points[:2, half], axis=1)) for half in (upper, ~upper))
+    side, length = (1.0 if above >= 0.999 * below else -1.0), np.ptp(points[2])
+    x, y, _ = points.mean(axis=1)
+    end = points[2].max() if side > 0 else points[2].min()
+    view = np.array([1.0, 0.5, 1.2 * side])
+    return np.array([x, y, end - 0.2 * side * length]), view / np.linalg.norm(view), max(2 * max(above, below), 0.35 * length)
 
 
 def _surface(part):
