@@ -114,9 +114,9 @@ def _table(pair, materials, line_load, corner, span, cache):
     loads = loads[loads >= least]
     out = np.zeros((loads.size, away.size))
     there = np.isfinite(mesh.found.gap[:, column])
-    mesh.find_gaps([(i, column, corner) for i in np.flatnonzero(there).tolist()])
-    for i in np.flatnonzero(there).tolist():
-        at = mesh.contacts_at(i, np.array([column]), np.array([corner]))
+    touching = np.flatnonzero(there).tolist()
+    wanted = [(i, np.array([column]), np.array([corner])) for i in touching]
+    for i, at in zip(touching, mesh.contacts_at(wanted), strict=True):
         if not at["gap"].size:  # no point near the corner has a flank before it
             there[i] = False
             continue

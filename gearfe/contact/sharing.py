@@ -155,7 +155,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
 
 
 def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible):
-    """`line_contact` for many independent sets of a few contacts at once, by Newton and an active set.
+    """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
 
@@ -163,7 +163,8 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     ----------
     flexibility : ndarray, shape (sets, n, n)
     gap, radius : ndarray, shape (sets, n)
-    load, coefficient, modulus : float
+    load, modulus : float
+    coefficient : float or ndarray, shape (sets, n)
     possible : ndarray of bool, shape (sets, n)
         Contacts that may carry load; at least one in each set.
 
