@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.blas import dsyrk
 from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
+from ...flexibility.triangular import divide
 from .bent import BentTriangles, moved_factors, moved_products
 
 
@@ -182,7 +183,7 @@ def _eliminated(body, plan, turn, room):
         if failed:
             raise RuntimeError("the triangles of the section fold or nearly do: change refine a little")
         if rest.size:
-            across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
+            divide(across, lower)
             matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
     return rest, matrix
 
