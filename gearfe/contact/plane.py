@@ -13,7 +13,7 @@ from geometry.tooth.profile import arc_at, roll_at_arc
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
 from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
-from .sharing import line_contact, line_contacts
+from .sharing import line_contact, line_contacts, stacked
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
@@ -36,18 +36,9 @@ def _within(contacts, reach):
     return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
 
 
-def _stacked(arrays):
-    """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
-    most = max(array.shape[0] for array in arrays)
-    out = np.zeros((len(arrays), *(most,) * arrays[0].ndim), dtype=arrays[0].dtype)
-    for own, array in zip(out, arrays, strict=True):
-        own[tuple(slice(n) for n in array.shape)] = array
-    return out
-
-
 def _aligned(rows):
     """Rows of hats of different lengths as arrays ``(rows, n)`` and ``(rows, n, n)``, nan as gap after each."""
-    first, second, gap, coefficient, radius, influence = (_stacked([row[k] for row in rows]) for k in range(6))
+    first, second, gap, coefficient, radius, influence = (stacked([row[k] for row in rows]) for k in range(6))
     for k, row in enumerate(rows):
         size = row[0].size
         first[k, size:], second[k, size:], gap[k, size:], radius[k, size:] = row[0][-1], row[1][-1], np.nan, 1.0
@@ -113,8 +104,8 @@ class PairContact:
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach and tangent of contact problems `sets`, and which crack faces touch."""
         names = ("flexibility", "gap", "coefficient", "radius", "column")
-        flexibility, gap, coefficient, radius, column = (_stacked([contacts[name] for contacts in sets]) for name in names)
-        there = _stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
+        flexibility, gap, coefficient, radius, column = (stacked([contacts[name] for contacts in sets]) for name in names)
+        there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
         radius[~there] = 1.0
         case = flexibility, gap, line_load, coefficient, radius, self.modulus, there
         force, approach, tangent, settled = line_contacts(*case)
