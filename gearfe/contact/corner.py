@@ -21,7 +21,7 @@ from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
 from .plane import CORNER, PairContact
-from .sharing import share
+from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 PLACES = 13  # abscissae of the table at each end of the path
@@ -112,29 +112,31 @@ def _table(pair, materials, line_load, corner, span, cache):
     column = int(np.flatnonzero(mesh.found.order == 0)[0])
     loads = line_load * LOADS
     loads = loads[loads >= least]
-    out = np.zeros((loads.size, away.size))
     there = np.isfinite(mesh.found.gap[:, column])
-    mesh.find_gaps([(i, column, corner) for i in np.flatnonzero(there).tolist()])
-    for i in np.flatnonzero(there).tolist():
-        at = mesh.contacts_at(i, np.array([column]), np.array([corner]))
-        if not at["gap"].size:  # no point near the corner has a flank before it
-            there[i] = False
-            continue
-        rolls = mesh.found.roll_1[i, column], mesh.found.roll_2[i, column]
-        smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
-        radius, start = mesh.radius[i, column], None
-        for j, load in enumerate(loads.tolist()):
-            force, approach = share(at["flexibility"], at["gap"], load, start=start)
-            start = force > 0
-            closing = approach - mesh.found.gap[i, column]
-            out[j, i] = (closing / load - smooth) / c - np.log(2 / half_width(load, radius, modulus)) - 0.5
-    away, out = away[there], out[:, there]
+    rows = mesh.contacts_at([(i, np.array([column]), np.array([corner])) for i in np.flatnonzero(there).tolist()])
+    there[there] = [row["gap"].size > 0 for row in rows]  # else no point near the corner has a flank before it
+    rows = [row for row in rows if row["gap"].size]
+    away = away[there]
     if away.size < 2:
         return None
+    rolls = mesh.found.roll_1[there, column], mesh.found.roll_2[there, column]
+    smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
+    closing = pressed(rows, loads) - mesh.found.gap[there, column]
+    width = half_width(loads[:, None], mesh.radius[there, column], modulus)
+    out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 
 
+def pressed(rows, loads):
+    """Approach ``(loads, rows)`` [mm] of rows of hats, with their ``flexibility`` and ``gap``, under line loads [N/mm]."""
+    flexibility, gap = (stacked([row[name] for row in rows]) for name in ("flexibility", "gap"))
+    there = np.arange(gap.shape[1]) < np.array([row["gap"].size for row in rows])[:, None]
+    case = (np.concatenate([values] * loads.size) for values in (flexibility, gap))
+    found = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([there] * loads.size))
+    return found.reshape(loads.size, len(rows))
+
+
 def _read(gear, material, roll, cache):
-    """The plane's S(s, s) [mm per N/mm] at a roll length, as the polynomials of `ritz3d` carry it."""
-    row = carry(gear, np.array([roll]))[0]
-    return float(row @ plane_hats(gear, material, cache=cache) @ row)
+    """The plane's S(s, s) ``(n,)`` [mm per N/mm] at roll lengths, as the polynomials of `ritz3d` carry it."""
+    rows = carry(gear, roll)
+    return np.einsum("ni,ij,nj->n", rows, plane_hats(gear, material, cache=cache), rows)

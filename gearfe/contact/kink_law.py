@@ -14,9 +14,9 @@ from scipy.interpolate import RectBivariateSpline
 from ..energy.ritz.plane import flexibility
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
+from .corner import pressed
 from .kinks import REACH, kink_rows
 from .plane import PairContact
-from .sharing import share
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
 PLACES = 17  # of the table, over the zone of a kink
@@ -77,8 +77,9 @@ def _table(pair, materials, line_load, flanks, nominal, unit, stuck, cache):
         column = int(np.flatnonzero(mesh.found.order == 0)[0])
         there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]))
         where = np.array([there, np.full(there.size, column)]).T
-        for (i, _), row in kink_rows(mesh, where, load).items():
-            closing = share(row[5], row[2], load)[1] - mesh.found.gap[i, column]
-            smooth = float(mesh.matrix[i, column, column])
-            out[j, i] = (closing / load - smooth) / c - np.log(2 / half_width(load, mesh.radius[i, column], mesh.modulus)) - 0.5
+        rows = [{"flexibility": row[5], "gap": row[2]} for row in kink_rows(mesh, where, load).values()]
+        if rows:
+            closing = pressed(rows, np.array([load]))[0] - mesh.found.gap[there, column]
+            width = half_width(load, mesh.radius[there, column], mesh.modulus)
+            out[j, there] = (closing / load - mesh.matrix[there, column, column]) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1]

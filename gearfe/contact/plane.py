@@ -13,7 +13,7 @@ from geometry.tooth.profile import arc_at, roll_at_arc
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
 from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
-from .sharing import line_contact, line_contacts
+from .sharing import line_contact, line_contacts, stacked
 
 # A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
@@ -34,6 +34,15 @@ def _within(contacts, reach):
         return contacts
     kept = {name: values if values is None else values[near] for name, values in contacts.items()}
     return kept | {"flexibility": contacts["flexibility"][np.ix_(near, near)]}
+
+
+def _aligned(rows):
+    """Rows of hats of different lengths as arrays ``(rows, n)`` and ``(rows, n, n)``, nan as gap after each."""
+    first, second, gap, coefficient, radius, influence = (stacked([row[k] for row in rows]) for k in range(6))
+    for k, row in enumerate(rows):
+        size = row[0].size
+        first[k, size:], second[k, size:], gap[k, size:], radius[k, size:] = row[0][-1], row[1][-1], np.nan, 1.0
+    return first, second, gap, coefficient, radius, influence
 
 
 class PairContact:
@@ -68,8 +77,7 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self._known, self._rows, self._gaps = {}, {}, {}
-        self._starts = {}  # line loads found last, by phase
+        self._known, self._gaps = {}, {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
@@ -83,34 +91,45 @@ class PairContact:
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
-        self.find_gaps([(i, column, int(corner[i, column])) for i, column in np.argwhere(corner > 0).tolist()])
+        kinks, corner = kink_rows(self, np.argwhere(kink), line_load), np.where(kink, KINK, corner)
+        open_ = np.flatnonzero(~done)
         closed = []
-        kinks = kink_rows(self, np.argwhere(kink), line_load)
-        for i in np.flatnonzero(~done).tolist():
-            line[i] = pressure[i] = 0.0
-            near = np.flatnonzero(possible[i])
-            rows = kinks if kink[i].any() else None
-            contacts = _within(self.contacts_at(i, near, np.where(kink[i], KINK, corner[i])[near], rows), reach[i])
-            near_by = self._starts.get(i) if i in self._starts else self._starts.get(i - 1)
-            start = near_by if near_by is not None and near_by.size == contacts["gap"].size else None
-            force, approach[i], tangent[i] = self._share(contacts, line_load, start=start)
-            self._starts[i] = force
-            if self.opening is not None and _closing(force @ contacts["opening"]):
-                closed.append(i)
-                force, approach[i], tangent[i] = self._share_closing(contacts, line_load)
-            np.add.at(line[i], contacts["column"], force)
-            single = contacts["coefficient"] > 0
-            peak = peak_pressure(force[single], contacts["radius"][single], self.modulus)
-            pressure[i, contacts["column"][~single]] = np.nan
-            pressure[i, contacts["column"][single]] = peak
-        pressure[(line == 0) & np.isnan(pressure)] = 0.0
+        if open_.size:
+            sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], kinks)
+            sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
+            line[open_], pressure[open_], approach[open_], tangent[open_], closed = self._solved(sets, line_load)
         unloaded = None if self.flanks is None else found.gap.min(axis=1)
-        return Solved(found.order, approach, tangent, line, pressure, tuple(closed), unloaded)
+        return Solved(found.order, approach, tangent, line, pressure, tuple(open_[closed].tolist()), unloaded)
 
-    def _share(self, contacts, line_load, weight=None, start=None):
+    def _solved(self, sets, line_load):
+        """Line loads and pressures by pair, approach and tangent of contact problems `sets`, and which crack faces touch."""
+        names = ("flexibility", "gap", "coefficient", "radius", "column")
+        flexibility, gap, coefficient, radius, column = (stacked([contacts[name] for contacts in sets]) for name in names)
+        there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
+        radius[~there] = 1.0
+        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there
+        force, approach, tangent, settled = line_contacts(*case)
+        closed = []
+        for k, contacts in enumerate(sets):
+            own = force[k, : contacts["gap"].size]
+            if not settled[k]:
+                own[:], approach[k], tangent[k] = self._share(contacts, line_load)
+            if self.opening is not None and _closing(own @ contacts["opening"]):
+                closed.append(k)
+                own[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
+        row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
+        line, pressure = np.zeros((2, len(sets), self.found.order.size))
+        np.add.at(line, (row, column), force)
+        single, hat = coefficient > 0, there & (coefficient == 0)
+        pressure[row[hat], column[hat]] = np.nan
+        pressure[row[single], column[single]] = peak_pressure(force[single], radius[single], self.modulus)
+        pressure[(line == 0) & np.isnan(pressure)] = 0.0
+        return line, pressure, approach, tangent, closed
+
+    def _share(self, contacts, line_load, weight=None):
         names = ("coefficient", "radius")
         case = contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus
-        return line_contact(*case, weight, start)
+        return line_contact(*case, weight)
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
@@ -174,76 +193,76 @@ class PairContact:
         order = self.found.order[column]
         return self.flexibility[corner - 1].tip_of(order if corner == 1 else -order)
 
-    def contacts_at(self, i, near, corner, kinks=None):
-        """Unknowns of the contact problem at one phase.
+    def contacts_at(self, wanted, kinks=None):
+        """Unknowns of the contact problems at some phases.
 
         Parameters
         ----------
-        i : int
-            Number of the phase.
-        near : ndarray of int
-            Columns of the pairs that may touch.
-        corner : ndarray of int
-            For each of them 0, or the gear (1, 2) whose tip corner it touches, or `KINK`: then it is a row of hats.
+        wanted : sequence of (int, ndarray of int, ndarray of int)
+            Number of a phase; columns of the pairs that may touch; for each of them 0, or the gear (1, 2) whose tip corner it
+            touches, or `KINK`: then it is a row of hats.
         kinks : dict, optional
             The rows at kinks, from `gearfe.contact.kinks.kink_rows`: they are those of one load.
 
         Returns
         -------
-        dict
+        list of dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
-        if kinks is not None:
-            return self._built(i, near, corner, kinks)
-        key = i, tuple(near), tuple(corner)
-        if key not in self._known:
-            self._known[key] = self._built(i, near, corner, {})
-        return self._known[key]
+        keys = [(i, tuple(near.tolist()), tuple(corner.tolist())) for i, near, corner in wanted]
+        alike = {}  # phases at which the same pairs touch in the same way
+        for i, near, corner in keys:
+            if KINK in corner or (i, near, corner) not in self._known:
+                alike.setdefault((near, corner), []).append(i)
+        rows = [(i, *one) for pairs, own in alike.items() for one in zip(*pairs, strict=True) for i in own]
+        self.find_gaps([row for row in rows if row[2] in (1, 2)])
+        for (near, corner), own in alike.items():
+            built = self._built(np.array(own), near, corner, kinks)
+            self._known |= {(i, near, corner): contacts for i, contacts in zip(own, built, strict=True)}
+        return [self._known[key] for key in keys]
 
-    def _built(self, i, near, corner, kinks):
+    def _built(self, phases, near, corner, kinks):
         parts = [
-            kinks[i, column] if number == KINK else self._row(i, column, number)
+            _aligned([kinks[i, column] for i in phases.tolist()]) if number == KINK else self._row(phases, column, number)
             for column, number in zip(near, corner, strict=True)
         ]
-        roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts]) for k in range(5))
-        column = np.repeat(near, [part[0].size for part in parts])
+        column = np.repeat(near, [part[0].shape[1] for part in parts])
         order = self.found.order[column]
+        roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts], axis=1) for k in range(5))
         total = self.flexibility[0].matrix(roll_1, order) + self.flexibility[1].matrix(roll_2, -order)
         for part, k in zip(parts, near, strict=True):
+            own = np.flatnonzero(column == k)
             if part[5] is not None:
-                total[np.ix_(column == k, column == k)] = part[5]
+                total[:, own[:, None], own] = part[5]
         opening = self._opening(roll_1, roll_2, order)
         if opening is not None:
-            total = total + opening @ self.stiffness @ opening.T
-        return {
-            "flexibility": total, "gap": gap, "coefficient": coefficient, "radius": radius, "column": column, "opening": opening
-        }  # fmt: skip
+            total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
+        out, there = [], np.isfinite(gap)
+        for k, on in enumerate(there):
+            values = {"gap": gap[k], "coefficient": coefficient[k], "radius": radius[k], "column": column}
+            own = {name: value[on] for name, value in values.items()} | {"flexibility": total[k][on][:, on]}
+            out.append(own | {"opening": None if opening is None else opening[k, on]})
+        return out
 
-    def _row(self, i, column, corner):
-        if (i, column, corner) not in self._rows:
-            self._rows[i, column, corner] = self._made(i, column, corner)
-        return self._rows[i, column, corner]
+    def _row(self, phases, column, corner):
+        """Unknowns ``(phases, n)`` of one pair: roll_1, roll_2, gap, coefficient, radius, and their influence for a corner.
 
-    def _made(self, i, column, corner):
-        """Unknowns of one pair: roll_1, roll_2, gap, coefficient, radius, and the influence among them for a corner."""
+        The gap is nan where a hat has no flank before it.
+        """
         found = self.found
         if corner == 0:
-            single = (found.roll_1, found.roll_2, found.gap, self.radius)
-            roll_1, roll_2, gap, radius = (np.array([values[i, column]]) for values in single)
-            return roll_1, roll_2, gap, np.array([sum(self.coefficients)]), radius, None
+            roll_1, roll_2, gap, radius = (v[phases, column, None] for v in (found.roll_1, found.roll_2, found.gap, self.radius))
+            return roll_1, roll_2, gap, np.full(gap.shape, sum(self.coefficients)), radius, None
         tip, flank = (0, 1) if corner == 1 else (1, 0)
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
-        roll = roll_at_arc(gears[tip], hats.arc)
-        self.find_gaps([(i, int(column), int(corner))])  # unless they are known
-        gap, met = self._gaps[i, int(column), int(corner)]
-        there = np.isfinite(met)
-        there[there] = arc_at(gears[flank], met[there]) < arc_at(gears[flank], gears[flank].roll_a)
-        keep = np.ix_(there, there)
-        arc = arc_at(gears[flank], met[there])
-        middle = np.clip((arc[:, None] + arc[None, :]) / 2, *self.flexibility[flank].limits)
+        gap, met = (np.array(values) for values in zip(*(self._gaps[i, column, corner] for i in phases.tolist()), strict=True))
+        met[np.isnan(met)] = gears[flank].roll_a  # no flank before it
+        arc, top = arc_at(gears[flank], met), arc_at(gears[flank], gears[flank].roll_a)
+        gap[~(arc < top)] = np.nan
+        middle = np.clip((arc[:, :, None] + arc[:, None, :]) / 2, *self.flexibility[flank].limits)
         mate = self.flexibility[flank].near_of(tooth[flank])(middle)
-        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots[:, there], hats.knots[:, there])
-        rolls = (roll[there], met[there]) if corner == 1 else (met[there], roll[there])
-        zero = np.zeros(there.sum())
-        return *rolls, gap[there], zero, zero + 1.0, hats.influence[keep] + mate
+        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots, hats.knots)
+        roll = np.broadcast_to(roll_at_arc(gears[tip], hats.arc), met.shape)
+        rolls = (roll, met) if corner == 1 else (met, roll)
+        return *rolls, gap, np.zeros(gap.shape), np.ones(gap.shape), hats.influence + mate

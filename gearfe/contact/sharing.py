@@ -155,7 +155,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
 
 
 def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible):
-    """`line_contact` for many independent sets of a few contacts at once, by Newton and an active set.
+    """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
 
@@ -163,7 +163,9 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     ----------
     flexibility : ndarray, shape (sets, n, n)
     gap, radius : ndarray, shape (sets, n)
-    load, coefficient, modulus : float
+    load : float or ndarray, shape (sets,)
+    modulus : float
+    coefficient : float or ndarray, shape (sets, n)
     possible : ndarray of bool, shape (sets, n)
         Contacts that may carry load; at least one in each set.
 
@@ -173,9 +175,10 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     """
     n = gap.shape[1]
     gap = np.where(possible, gap, 0.0)
-    floor = 1e-9 * load
+    each = np.broadcast_to(load, len(gap))[:, None]
+    floor = 1e-9 * each
     active = possible.copy()
-    force = np.where(active, load / active.sum(axis=1, keepdims=True), 0.0)
+    force = np.where(active, each / active.sum(axis=1, keepdims=True), 0.0)
     settled = np.zeros(len(gap), dtype=bool)
     diagonal = np.arange(n)
     system, right = np.zeros((len(gap), n + 1, n + 1)), np.zeros((len(gap), n + 1))
@@ -195,10 +198,37 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
         new, approach = solution[:, :n], solution[:, n]
         free = gap + np.einsum("pij,pj->pi", flexibility, np.maximum(new, 0.0))
         wanted = np.where(active, new > 0, possible & (free < approach[:, None]))
-        settled = (wanted == active).all(axis=1) & (np.abs(new - force).max(axis=1) < 1e-10 * load)
+        settled = (wanted == active).all(axis=1) & (np.abs(new - force) < 1e-10 * each).all(axis=1)
         if settled.all():
             break
         active, force = wanted, np.where(wanted, np.where(new > 0, new, floor), 0.0)
         active[~active.any(axis=1)] = possible[~active.any(axis=1)]
     tangent = 1 / np.linalg.inv(system)[:, n, n]
     return np.where(active, new, 0.0), approach, tangent, settled
+
+
+def approaches(flexibility, gap, load, possible):
+    """Approach ``(sets,)`` [mm] of many contact problems that `share` solves one by one.
+
+    Parameters
+    ----------
+    flexibility : ndarray, shape (sets, n, n)
+    gap : ndarray, shape (sets, n)
+    load : ndarray, shape (sets,)
+    possible : ndarray of bool, shape (sets, n)
+        Contacts that there are; at least one in each set.
+    """
+    _, found, _, settled = line_contacts(flexibility, gap, load, 0.0, np.ones(gap.shape), 1.0, possible)
+    for k in np.flatnonzero(~settled).tolist():
+        on = possible[k]
+        found[k] = share(flexibility[k][np.ix_(on, on)], gap[k, on], float(load[k]))[1]
+    return found
+
+
+def stacked(arrays):
+    """Arrays ``(n,)`` or ``(n, n)`` of different sizes as one, zeros after each."""
+    most = max(array.shape[0] for array in arrays)
+    out = np.zeros((len(arrays), *(most,) * arrays[0].ndim), dtype=arrays[0].dtype)
+    for own, array in zip(out, arrays, strict=True):
+        own[tuple(slice(n) for n in array.shape)] = array
+    return out

@@ -7,7 +7,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
 from ..damage.crack import crack_path, start_arc
 from ..damage.seam import open_seam
@@ -15,7 +14,7 @@ from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_leng
 from ..tooth.profile import root_half_angle as root_half
 from .mesher import triangulate
 from .outline import spaced
-from .triangle import BULGE, ENDS, jacobians
+from .triangle import BULGE, ENDS, GAUSS, jacobians
 
 # edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
 # root arc, sides and tip, crack, crack tip
@@ -298,7 +297,7 @@ def _rings(centre, radii, taken, lines):
 
 def _bulges(pieces, first, doubles):
     """How the boundary edges depart from their chords; edges at a crack's mouth under both numbers of the mouth."""
-    out, gauss = {}, leggauss(BULGE)[0]
+    out, gauss = {}, GAUSS[0]
     for k, (_, params, place) in enumerate(pieces):
         middle, reach = (params[1:] + params[:-1]) / 2, (params[1:] - params[:-1]) / 2
         points = place(np.append(params, middle[:, None] + reach[:, None] * gauss))

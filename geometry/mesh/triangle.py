@@ -7,6 +7,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 BULGE = 8  # points that describe how an edge departs from its chord
+GAUSS = legendre.leggauss(BULGE)  # these points and their weights
 ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
 
 
@@ -52,7 +53,7 @@ def table(order):
     change = np.linalg.inv(_modes(nodes[1], nodes[2], order)[0])
     value, *slope = (change.T @ part.T for part in _modes(x, y, order))
     corner = np.array([1 - x - y, x, y])
-    bulge_points = legendre.leggauss(BULGE)[0]
+    bulge_points = GAUSS[0]
     to_modes = np.linalg.inv(legendre.legvander(bulge_points, BULGE - 1))
     bulge, bulge_slope = [], []
     gradient = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])  # of the barycentric coordinates

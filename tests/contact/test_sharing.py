@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from gearfe.contact.sharing import line_contact, share
+from gearfe.contact.sharing import approaches, line_contact, line_contacts, share, stacked
 
 
 def brute_force(flexibility, gap, load):
@@ -63,3 +63,28 @@ def test_line_contact_satisfies_its_equations(seed):
     assert (closing[~touch] >= approach * (1 - 1e-6)).all()
     more = line_contact(smooth, gap, load * 1.0001, c, radius, modulus)[1]
     assert_allclose(tangent, 0.0001 * load / (more - approach), rtol=5e-3)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_many_contacts_at_once_are_those_one_by_one(seed):
+    """Rows of hats beside single contacts, of different lengths and under different loads."""
+    rng = np.random.default_rng(seed)
+    c, modulus, cases = 5.6e-6, 1.13e5, []
+    for n in rng.integers(2, 9, size=6).tolist():
+        root = rng.normal(size=(n, n)) * 4e-3
+        gap, coefficient = rng.exponential(size=n) * 0.01, np.where(np.arange(n) < 1, c, 0.0)
+        cases.append((root @ root.T + 2e-5 * np.eye(n), gap - gap.min(), coefficient, rng.uniform(1, 8, size=n)))
+    loads = 10 ** rng.uniform(0, 3.5, size=len(cases))
+    flexibility, gap, coefficient, radius = (stacked(values) for values in zip(*cases, strict=True))
+    there = stacked([np.ones(case[1].size, dtype=bool) for case in cases])
+    force, approach, tangent, settled = line_contacts(
+        flexibility, gap, loads, coefficient, np.where(there, radius, 1.0), modulus, there
+    )
+    assert settled.sum() >= len(cases) - 1
+    found = approaches(flexibility, gap, loads, there)
+    for k, (own, distance, softness, curved) in enumerate(cases):
+        want = line_contact(own, distance, loads[k], softness, curved, modulus)
+        if settled[k]:
+            assert_allclose(force[k], np.pad(want[0], (0, gap.shape[1] - want[0].size)), atol=1e-8 * loads[k])
+            assert_allclose([approach[k], tangent[k]], want[1:], rtol=1e-8)
+        assert_allclose(found[k], share(own, distance, loads[k])[1], rtol=1e-9)

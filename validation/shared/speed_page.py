@@ -82,7 +82,9 @@ def _plot():
         rows = [row for row in load(part) if float(row["max error"]) > 0]
         for number, family in enumerate(dict.fromkeys(row["family"] for row in rows)):
             line = [(float(row["seconds"]), 100 * float(row["max error"])) for row in rows if row["family"] == family]
-            axes.loglog(*zip(*line, strict=True), marker=MARKS[number % len(MARKS)], ms=4, label=family, **look(number))
+            mark = {"marker": MARKS[number % len(MARKS)], "ms": 4 + 2 * (number >= len(MARKS))}
+            mark["mfc"] = "none" if number >= len(MARKS) else None  # after all marks once more, larger and hollow
+            axes.loglog(*zip(*line, strict=True), label=family, **mark, **look(number))
         for row in rows:
             if row["default"] == "1":
                 axes.loglog(float(row["seconds"]), 100 * float(row["max error"]), "o", ms=11, mfc="none", mec="k")

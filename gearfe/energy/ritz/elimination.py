@@ -4,12 +4,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.blas import dsyrk
 from scipy.linalg.lapack import dpotrf
 
 from geometry.mesh.triangle import table
 
-from .bent import BentTriangles, moved_factors, moved_products
+from ...flexibility.triangular import divide
+from .bent import BentTriangles
+from .leaf import leaf
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,9 @@ class SectorBody:
         How many unknowns each number stands for.
     bent : BentTriangles or None
         The triangles that move with a crack's front.
+    parted : bool
+        Whether components in the section and axial ones have different functions, see `parity`: then ``K00, K01, K01', K11``
+        come in two parts each, and as many factors.
     """
 
     numbers: np.ndarray
@@ -61,6 +66,7 @@ class SectorBody:
     kind: np.ndarray
     size: np.ndarray
     bent: BentTriangles | None = None
+    parted: bool = False
 
 
 def all_nodes(numbers, count, order):
@@ -131,8 +137,17 @@ def front(body, tree):
     which they go, so that lower triangles add up to lower triangles; those to be eliminated, the coupling and the rest are arrays
     of their own, in which everything happens in place. The arrays of one set after the other lie in the same memory.
     """
+    return carried_out(body, *planned(body, tree))
+
+
+def planned(body, tree):
+    """Which numbers go with which set of triangles, and when each of them goes: the same whatever they stand for."""
     turn = np.full(body.size.size, body.size.size)
-    plan = _planned(body, tree, turn, [0])
+    return _planned(body, tree, turn, [0]), turn
+
+
+def carried_out(body, plan, turn):
+    """`front` by the plan of `planned`."""
     ids, lower = _eliminated(body, plan, turn, np.empty(_room(body, plan)))
     return ids, np.tril(lower) + np.tril(lower, -1).T
 
@@ -182,7 +197,7 @@ def _eliminated(body, plan, turn, room):
         if failed:
             raise RuntimeError("the triangles of the section fold or nearly do: change refine a little")
         if rest.size:
-            across = dtrsm(1.0, lower, across, side=1, lower=1, trans_a=1, overwrite_b=1)
+            divide(across, lower)
             matrix = dsyrk(-1.0, across, beta=1.0, c=matrix, lower=1, overwrite_c=1)
     return rest, matrix
 
@@ -216,74 +231,3 @@ def places(body, ids, wanted):
     start[ids] = np.cumsum(body.size[ids]) - body.size[ids]
     size = body.size[wanted]
     return np.repeat(start[wanted] - np.cumsum(size) + size, size) + np.arange(size.sum())
-
-
-def leaf(body, own, gone, rest, blocks):
-    """Write the matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
-
-    The section's is assembled first, then multiplied by those of the functions along the width.
-    """
-    ids = np.append(gone, rest)
-    raw = np.unique(body.numbers[:, own])
-    nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
-    index = np.full(body.first_load, -1)
-    index[raw] = np.arange(raw.size)
-    plane = np.zeros((4, 3 * raw.size, 3 * raw.size))
-    for triangle in own:
-        at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
-        plane[(slice(None), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
-    plane[2] = plane[1].T
-    if body.bent is not None:
-        plane = np.concatenate([plane, moved_products(body.bent, own, index[body.numbers[:, own]].T, raw.size)])
-    here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
-    turn = _seamed(body, raw, nodes)
-    here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
-    if np.isin(turn, (0.0, 1.0)).all():
-        at = (3 * turn.argmax(axis=0)[:, None] + np.arange(3)).ravel()
-        plane = plane[:, at[:, None], at]
-    else:
-        turn = np.kron(turn, np.eye(3))
-        plane = turn.T @ plane @ turn
-    _times(body, plane, here, ids, gone.size, [block.T for block in blocks])
-
-
-def _seamed(body, raw, nodes):
-    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves; others are themselves."""
-    out = (raw[:, None] == nodes).astype(float)
-    for left, right in body.seams:
-        mean, apart = (nodes == pair[:, None] for pair in (left, right))
-        for k in np.flatnonzero(mean.any(axis=1)):
-            for side, sign in ((left[k], 0.5), (right[k], -0.5)):
-                row = raw == side
-                if row.any():
-                    out[row] = mean[k] + sign * apart[k]
-    return out
-
-
-def _times(body, plane, here, ids, gone, blocks):
-    """The section's matrices ``(t, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
-
-    Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
-    """
-    nodes, kind, size = here.shape[0] // 3, body.kind[ids], body.size[ids]
-    place, first = np.cumsum(size) - size, int(size[:gone].sum())
-    place[gone:] -= first
-    cuts = np.unique(np.concatenate([[0, gone, nodes, ids.size], 1 + np.flatnonzero(np.diff(kind))]))
-    runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
-    for k, (own, one, rows) in enumerate(runs):
-        if own.start >= nodes:
-            break  # loads have nothing to do with each other
-        for others, other, columns in runs[k:]:
-            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
-            if others.start >= nodes:
-                factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
-            elif len(plane) > len(factors):
-                factors = np.concatenate([factors, moved_factors(body.bent, one, other)])
-            block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)
-            block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
-            target = blocks[(own.start >= gone) + (others.start >= gone)]
-            target[rows, columns].reshape(block.shape)[:] = block
-
-
-def _three(nodes):
-    return slice(3 * nodes.start, 3 * nodes.stop)

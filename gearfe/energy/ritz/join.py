@@ -5,8 +5,10 @@ Sectors in a row are all alike where no load is, so that they are joined by doub
 
 import numpy as np
 from scipy.linalg import LinAlgError
-from scipy.linalg.blas import dsyrk, dtrsm
+from scipy.linalg.blas import dsyrk
 from scipy.linalg.lapack import dpotrf
+
+from ...flexibility.triangular import divide
 
 
 def join(gear, panels, healthy):
@@ -67,17 +69,18 @@ def side_by_side(one, two):
     h = one.shape[0] // 2
     out = np.zeros(one.shape, order="F")
     out[:h, :h], out[h:, h:] = one[:h, :h], two[h:, h:]
-    coupling = np.asfortranarray(np.hstack([one[h:, :h], two[h:, :h].T]))
+    coupling = np.hstack([one[h:, :h], two[h:, :h].T])
     return _added(one[h:, h:] + two[:h, :h], coupling, out, -1.0)
 
 
 def _added(stiffness, loads, out, sign):
-    """``out + sign loads' stiffness**-1 loads``, lower triangles, by Cholesky: only the forward substitution is needed."""
+    """``out + sign loads' stiffness**-1 loads``, lower triangles, by Cholesky, forward only; `loads` are used up."""
     lower, failed = dpotrf(np.asfortranarray(stiffness), lower=1, clean=0, overwrite_a=1)
     if failed:
         raise LinAlgError("the stiffness of the joined sectors is not positive definite")
-    halved = dtrsm(1.0, lower, np.asfortranarray(loads), lower=1, overwrite_b=1)
-    return dsyrk(sign, halved, trans=1, beta=1.0, c=out, lower=1, overwrite_c=1)
+    across = np.asfortranarray(loads.T)
+    divide(across, lower)
+    return dsyrk(sign, across, beta=1.0, c=out, lower=1, overwrite_c=1)
 
 
 def _full(lower):

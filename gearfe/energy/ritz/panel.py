@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 from scipy.sparse import coo_array
 
-from geometry.mesh.triangle import BULGE, ENDS, jacobians, lagrange, lobatto, table
+from geometry.mesh.triangle import BULGE, ENDS, GAUSS, jacobians, lagrange, lobatto, table
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
 from ...flexibility import flamant
@@ -68,13 +67,14 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     numbers, count, chain = numbering(sector, order)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     edge = _unknowns(np.append(sides, chain(sector.held)))
-    parts, extra = _loads(gear, sector, chain, roll, order, modulus, ratio)
+    bulges = sector.edge_bulges()
+    parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio))
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))
     rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
     k = int(columns.max(initial=2 * n - 1)) + 1 - 2 * n
     load = coo_array((values, (rows, columns)), shape=(2 * count, 2 * n + k))
-    local = _local(sector, order, modulus, ratio)
+    local = _local(sector, bulges, order, modulus, ratio)
     centre = sector.points[:, sector.triangles].mean(axis=1)
     total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
@@ -125,9 +125,9 @@ def numbering(sector, order):
     return numbers, vertices + keys.size * (order - 1), chain
 
 
-def _local(sector, order, modulus, ratio):
+def _local(sector, bulges, order, modulus, ratio):
     """Stiffness matrices of the triangles, their insides eliminated."""
-    basis, corners, bulges = table(order), sector.points[:, sector.triangles], sector.edge_bulges()
+    basis, corners = table(order), sector.points[:, sector.triangles]
     lam, mu = modulus * ratio / (1 - ratio**2), modulus / (2 * (1 + ratio))
     local = stiffness(basis.slope, basis.weight, np.einsum("dcm,ce->mde", corners, basis.corner_slope), lam, mu)
     bent = np.flatnonzero(np.abs(bulges).max(axis=(0, 1, 2)) > STRAIGHT * np.ptp(sector.points))
@@ -184,7 +184,7 @@ def _apart(sector, chain, first):
     return rows.astype(np.int64), columns.astype(np.int64), forces
 
 
-def _loads(gear, sector, chain, roll, order, modulus, ratio):
+def _loads(gear, sector, bulges, chain, roll, order, elastic):
     """Forces of the singular fields' tractions and reads of the flank, and what the fields add to the reads ``(n, n)``.
 
     Of the first two unknowns, columns (loads 0 to n, then reads) and values.
@@ -193,8 +193,8 @@ def _loads(gear, sector, chain, roll, order, modulus, ratio):
     if n == 0:
         return [], np.zeros((0, 0))
     where, inward, tip_side = _frames(gear, roll)
-    gauss, weight = leggauss(BULGE)
-    start, stop, bulge = _boundary(sector)
+    gauss, weight = GAUSS
+    start, stop, bulge = _boundary(sector, bulges)
     ends = sector.points[:, start], sector.points[:, stop]
     points = (ends[0][..., None] * (1 - gauss) + ends[1][..., None] * (1 + gauss)) / 2 + (1 - gauss**2) * bulge
     along = (ends[1] - ends[0])[..., None] / 2 + bulge @ _bulge_slope().T
@@ -211,8 +211,8 @@ def _loads(gear, sector, chain, roll, order, modulus, ratio):
     read_rows, read_columns = (np.broadcast_to(one, read.shape).ravel() for one in _places(at, n + np.arange(n)))
     arc = arc_at(gear, roll)
     with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
-        moved = flamant.displacement(where, where, inward, tip_side, modulus, ratio)
-        field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * modulus) * np.log(np.abs(arc[:, None] - arc))
+        moved = flamant.displacement(where, where, inward, tip_side, *elastic)
+        field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
     np.fill_diagonal(field, 0.0)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
 
@@ -225,16 +225,16 @@ def _places(nodes, columns):
 @lru_cache(maxsize=1)
 def _bulge_slope():
     """Matrix from the bulge at the points of an edge to the derivative of ``(1 - s**2) bulge`` there."""
-    gauss, powers = leggauss(BULGE)[0], np.arange(BULGE)
+    gauss, powers = GAUSS[0], np.arange(BULGE)
     slope = (1 - gauss**2)[:, None] * np.where(powers > 0, powers * gauss[:, None] ** np.maximum(powers - 1, 0), 0.0)
     slope = slope - 2 * gauss[:, None] * gauss[:, None] ** powers
     return slope @ np.linalg.inv(np.vander(gauss, increasing=True))
 
 
-def _boundary(sector):
+def _boundary(sector, bulges):
     """Boundary edges as vertices ``(e,)``, ``(e,)`` with the material on the left, and their bulges ``(2, e, BULGE)``."""
     a, b = np.array([sector.triangles[list(ends)] for ends in ENDS]).transpose(1, 0, 2).reshape(2, -1).astype(np.int64)
     count = sector.points.shape[1]
     outer = ~np.isin(a * count + b, b * count + a)
-    bulges = np.moveaxis(sector.edge_bulges(), (1, 2), (0, 1)).reshape(2, BULGE, -1)
+    bulges = np.moveaxis(bulges, (1, 2), (0, 1)).reshape(2, BULGE, -1)
     return a[outer], b[outer], bulges[..., outer].transpose(0, 2, 1)

@@ -27,6 +27,7 @@ from .depth import degrees
 from .dissection import dissect
 from .elimination import all_nodes, body_of, front, places
 from .panel import Panel, numbering
+from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
 
 CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends along the width need
@@ -80,7 +81,8 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
     body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds, bent=bent)
-    ids, matrix = front(body, dissect(sector) if tree is None else tree)
+    even = gear.twist_rate == 0 and degree > 0 and not any(parts) and bent is None
+    ids, matrix = (front_by_parity if even else front)(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
     matrix = matrix[np.ix_(at, at)]
     sizes = body.size[sides] // 3

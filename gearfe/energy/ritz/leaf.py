@@ -1,0 +1,88 @@
+"""The matrix of a few triangles of a section, multiplied by the functions along the width."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from .bent import moved_factors, moved_products
+
+
+def leaf(body, own, gone, rest, blocks):
+    """Write the matrix of a few triangles: between `gone`, between `rest` and `gone`, and between `rest`; lower triangles.
+
+    The section's is assembled first, then multiplied by those of the functions along the width.
+    """
+    ids = np.append(gone, rest)
+    raw = np.unique(body.numbers[:, own])
+    nodes, loads = ids[ids < body.first_load], ids[ids >= body.first_load]
+    index = np.full(body.first_load, -1)
+    index[raw] = np.arange(raw.size)
+    plane = np.zeros((4, 3 * raw.size, 3 * raw.size))
+    for triangle in own:
+        at = (3 * index[body.numbers[:, triangle]][:, None] + np.arange(3)).ravel()
+        plane[(slice(None), *np.ix_(at, at))] += body.section[[0, 1, 1, 2], triangle]
+    plane[2] = plane[1].T
+    if body.bent is not None:
+        plane = np.concatenate([plane, moved_products(body.bent, own, index[body.numbers[:, own]].T, raw.size)])
+    here = np.where(np.isin(body.owner[raw], own)[:, None, None], body.load[raw], 0.0)[:, :, loads - body.first_load]
+    turn = _seamed(body, raw, nodes)
+    here = (turn.T @ here.reshape(raw.size, -1)).reshape(3 * nodes.size, loads.size)
+    if np.isin(turn, (0.0, 1.0)).all():
+        at = (3 * turn.argmax(axis=0)[:, None] + np.arange(3)).ravel()
+        plane = plane[:, at[:, None], at]
+    else:
+        turn = np.kron(turn, np.eye(3))
+        plane = turn.T @ plane @ turn
+    if body.parted:
+        plane = _by_component(plane)
+    _times(body, plane, here, ids, gone.size, [block.T for block in blocks])
+
+
+def _by_component(plane):
+    """The four matrices between components in the section and axial ones apart ``(8, n, n)``; left out is what a twist adds."""
+    axial = np.arange(plane.shape[1]) % 3 == 2
+    rows = np.array([~axial, axial])[:, :, None]
+    alike, apart = rows & (axial[:, None] == axial), rows & (axial[:, None] != axial)
+    return plane[[0, 0, 1, 1, 2, 2, 3, 3]] * np.concatenate([alike, apart, apart, alike])
+
+
+def _seamed(body, raw, nodes):
+    """Matrix ``(raw, nodes)`` from means and distances of facing nodes to the nodes themselves; others are themselves."""
+    out = (raw[:, None] == nodes).astype(float)
+    for left, right in body.seams:
+        mean, apart = (nodes == pair[:, None] for pair in (left, right))
+        for k in np.flatnonzero(mean.any(axis=1)):
+            for side, sign in ((left[k], 0.5), (right[k], -0.5)):
+                row = raw == side
+                if row.any():
+                    out[row] = mean[k] + sign * apart[k]
+    return out
+
+
+def _times(body, plane, here, ids, gone, blocks):
+    """The section's matrices ``(t, n, n)`` and loads multiplied by those of the functions along the width; see `leaf`.
+
+    Numbers in a row with the same functions are taken together. `blocks` are transposed: upper triangles are written, in rows.
+    """
+    nodes, kind, size = here.shape[0] // 3, body.kind[ids], body.size[ids]
+    place, first = np.cumsum(size) - size, int(size[:gone].sum())
+    place[gone:] -= first
+    cuts = np.unique(np.concatenate([[0, gone, nodes, ids.size], 1 + np.flatnonzero(np.diff(kind))]))
+    runs = [(slice(a, b), int(kind[a]), slice(place[a], place[a] + size[a:b].sum())) for a, b in pairwise(cuts.tolist())]
+    for k, (own, one, rows) in enumerate(runs):
+        if own.start >= nodes:
+            break  # loads have nothing to do with each other
+        for others, other, columns in runs[k:]:
+            factors, coupled = body.factors[one, other], plane[:, _three(own), _three(others)]
+            if others.start >= nodes:
+                factors, coupled = factors[:1], here[None, _three(own), others.start - nodes : others.stop - nodes]
+            elif len(plane) > len(factors):
+                factors = np.concatenate([factors, moved_factors(body.bent, one, other)])
+            block = coupled.reshape(len(factors), -1).T @ factors.reshape(len(factors), -1)
+            block = block.reshape(*coupled.shape[1:], *factors.shape[1:]).transpose(0, 2, 1, 3)
+            target = blocks[(own.start >= gone) + (others.start >= gone)]
+            target[rows, columns].reshape(block.shape)[:] = block
+
+
+def _three(nodes):
+    return slice(3 * nodes.start, 3 * nodes.stop)
