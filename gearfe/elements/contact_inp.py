@@ -30,6 +30,7 @@ def write_contact_inp(
     *,
     face: str | None = None,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    holes: bool = True,
     pose: str = "mean",
     flanks: Mapping[str, Flank] | None = None,
     misalignment: Misalignment | None = None,
@@ -66,6 +67,9 @@ def write_contact_inp(
     damage : dict, optional
         With `face`: ``{"pinion": [...], "wheel": [...]}`` as of `gearfe.mesh_stiffness`. Faces of cracks may pass through each
         other. Pits of one tooth of a gear; a crack beside them runs through the whole width.
+    holes : bool
+        False: the pits are full of material, in the same mesh as with holes. The force of this deck is the control that tells
+        what the holes do from what the mesh does.
     pose : {"mean", "pinion", "wheel"}
         Whether both gears turn by half the approach, or one of them against the held other.
     flanks : dict, optional
@@ -110,7 +114,9 @@ def write_contact_inp(
         )
     if face not in ("spur", "helical") or (face == "spur") == bool(pair.gear_1.beta):
         raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
-    rest |= {"damage": damage_by_gear(damage), "forms": flank_forms(pair, flanks, misalignment)}
+    if not holes and not any(isinstance(one, Pit) for own in (damage or {}).values() for one in own):
+        raise ValueError("holes = False, but no pit is given: its mesh would be filled where the pits are; give pits")
+    rest |= {"damage": damage_by_gear(damage), "holes": holes, "forms": flank_forms(pair, flanks, misalignment)}
     return write_contact_solid(
         path, pair, phase, approach, line_load, materials, per_width=per_width or SOLID, layers=layers, **rest
     )

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
-from geometry.mesh.holes import holed_sector
+from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
 from geometry.pair.contacts import Contacts
@@ -112,6 +112,7 @@ def write_contact_solid(
     materials: tuple[Material, Material],
     *,
     damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
+    holes: bool = True,
     forms: tuple[FlankForm, FlankForm] | None = None,
     pose: str = "mean",
     per_width: float = 1.0,
@@ -132,7 +133,7 @@ def write_contact_solid(
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
         if any(isinstance(one, Pit) for one in own):
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
-            body = _holed(gear, own, cut, refine)
+            body = _holed(gear, own, cut, refine, holes)
         else:
             patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
@@ -178,8 +179,8 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
-def _holed(gear: Gear, damage, strips, refine) -> Part:
-    """A whole gear in tets, its pits cut out; its damaged tooth is tooth 0 while it is meshed."""
+def _holed(gear: Gear, damage, strips, refine, holes) -> Part:
+    """A whole gear in tets, its pits cut out or not (`holes`); its damaged tooth is tooth 0 while it is meshed."""
     cracks = [one for one in damage if isinstance(one, Crack)]
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
@@ -188,7 +189,7 @@ def _holed(gear: Gear, damage, strips, refine) -> Part:
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
     made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
-    body = holed_part(made)
+    body = holed_part(made if holes else filled(made, teeth=None))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
     faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
     return replace(body, points=points, faces=faces)

@@ -105,6 +105,26 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
 
 
+def filled(sector, *, teeth=3):
+    """The same mesh with its pits full of material: what the holes do beside it is not of the mesh.
+
+    Parameters
+    ----------
+    sector : Holed
+    teeth : int or None
+        As it was given to `holed_sector`.
+
+    Returns
+    -------
+    Holed
+        Its flanks are whole, and no tet is in a pit.
+    """
+    plug = np.full_like(sector.plug, -1)
+    flat = _twisted(sector.points, -sector.gear.twist_rate)
+    seam = {name: found for name, found in sector.faces.items() if name.startswith("crack")}
+    return replace(sector, plug=plug, faces=_named(sector.gear, flat, sector.cells, plug, teeth) | seam)
+
+
 def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     points, curves, faces = _section(gear, crack, teeth)

@@ -100,6 +100,20 @@ def test_deck_is_whole(damaged):
     assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
 
 
+def test_the_control_is_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
+    with_holes, control = damaged[1], written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, holes=False)
+    cut, whole = with_holes.parts[0], control.parts[0]
+
+    def places(part):
+        return set(map(tuple, np.round(part.points[:, np.unique(part.cells[:4])].T, 9).tolist()))
+
+    assert places(cut) < places(whole)
+    assert cut.cells.shape[1] < whole.cells.shape[1]
+    assert cut.faces["flank 1"].shape[1] < whole.faces["flank 1"].shape[1]
+    assert cut.faces["flank 2"].shape == whole.faces["flank 2"].shape
+    assert control.slaves[1][1].shape == whole.faces["flank 1"].shape
+
+
 def test_nodes_of_tets_lie_on_the_involute(damaged):
     part, gear = damaged[1].parts[0], pair_of(15.0).gear_1
     element, side = sides_of(part.cells, part.faces["flank 1"])
@@ -126,6 +140,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
+        ({"holes": False, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit is given"),
     ],
 )
 def test_impossible_decks_are_refused(tmp_path, options, message):

@@ -19,7 +19,7 @@ from gearfe.stress.holed import pressed_tooth, tooth_field
 from geometry.damage.pit import centre_arc, pit_row
 from geometry.damage.pit_volume import pit_frame, removed_volume
 from geometry.mesh import holes
-from geometry.mesh.holes import holed_sector
+from geometry.mesh.holes import filled, holed_sector
 from geometry.tooth.profile import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -195,6 +195,30 @@ def test_cracks_are_seams(crack):
         return np.einsum("im,im->", np.cross(b - a, c - a, axis=0), d - a) / 6
 
     assert_allclose(volume(made), volume(whole), rtol=5e-3)
+
+
+def test_filled_holes_leave_a_whole_flank_and_the_crack():
+    """Across the pit's rim: the flank's area grows by the pit's opening, the body by the pit's volume, the seam stays."""
+    gear = replace(GEAR, beta=0.3)
+    made = holed_sector(gear, [pit(gear)], gf.Crack(level=0.3), teeth=1, sizes=COARSE)
+    whole = filled(made, teeth=1)
+
+    def area(mesh):
+        a, b, c = mesh.points[:, mesh.faces["flank 0"]].transpose(1, 0, 2)
+        return np.linalg.norm(np.cross(b - a, c - a, axis=0), axis=0).sum() / 2
+
+    assert (made.plug >= 0).any()
+    assert (whole.plug < 0).all()
+    assert whole.points is made.points
+    assert whole.cells is made.cells
+    assert not whole.faces["pits"].size
+    roll = np.array([gear.roll_f, gear.roll_a])
+    straight = np.ptp(roll**2) / (2 * gear.r_b) * gear.b / math.cos(gear.beta_b)  # of the helicoid
+    assert_allclose(area(whole), straight, rtol=5e-3)
+    assert_allclose(area(whole) - area(made), math.pi * 0.5 * 0.8, rtol=0.12)
+    assert whole.faces["crack tooth"] is made.faces["crack tooth"]
+    for name in ("held", "end 0", "flank 0"):
+        assert holes.skin(whole.cells).shape[1] >= whole.faces[name].shape[1] >= made.faces[name].shape[1]
 
 
 def test_tets_are_those_of_scikit_fem(steel):
