@@ -31,6 +31,9 @@ PRESSURE = TABLES / "outsider_three_pressure.csv"
 COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
+CUT, FILLED = "cut out", "filled"  # a case with pits and its control
+STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
+ALL_FINER = {"per_width": 1.0, "refine": 1.5}  # everywhere
 SHOWN = "helical, healthy"  # whose pressure is drawn
 ASKED = 0.005  # largest difference asked for where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -38,12 +41,16 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A pair in contact: `damage` as of `mesh_stiffness`, the phases, and the meshes as options of `write_contact_inp`."""
+    """A pair in contact: `damage` as of `mesh_stiffness`, the phase, and the meshes as options of `write_contact_inp`.
+
+    Without `holes` it is the control of a case with pits: the same mesh with the pits full of material.
+    """
 
     pair: gf.GearPair
     phase: float = 0.45
     damage: dict = field(default_factory=dict)
-    meshes: tuple = ({"per_width": 1.0}, {"per_width": 1.5})
+    holes: bool = True
+    meshes: tuple = STRIP
 
 
 def pinion(degrees=15.0):
@@ -65,26 +72,31 @@ def ring_pair():
 
 
 def pits():
-    """Two pits on the pinion's tooth 0 where it touches: circular and elliptic."""
+    """Two pits with their centres on the contact line of the pinion's tooth 0: circular and elliptic."""
     return [
-        gf.Pit(radius=14.0, z=1.8, axes=(0.4, 0.4), depth=0.2),
-        gf.Pit(radius=14.4, z=4.2, axes=(0.35, 0.7), depth=0.2),
+        gf.Pit(radius=13.13, z=1.8, axes=(0.4, 0.4), depth=0.2),
+        gf.Pit(radius=13.31, z=4.2, axes=(0.35, 0.7), depth=0.2),
     ]
 
 
 def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
-    coarse, main, fine = {"per_width": 1.0}, {"per_width": 1.5}, {"per_width": 2.0, "layers": 4, "refine": 1.2}
     return {
-        "helical, healthy": Case(pair_of(15.0), meshes=(coarse, main, fine)),
+        "helical, healthy": Case(pair_of(15.0), meshes=(*STRIP, {"per_width": 2.25}, ALL_FINER)),
         "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
         "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
         "spur, healthy": Case(pair_of(0.0)),
         "ring, healthy": Case(ring_pair()),
-        "helical, two pits cut out": Case(pair_of(15.0), damage={"pinion": pits()}),
-        "helical, crack 50 % and two pits cut out": Case(pair_of(15.0), damage={"pinion": [crack, *pits()]}),
+        **_with_control("helical, two pits", pits()),
+        **_with_control("helical, crack 50 % and two pits", [crack, *pits()]),
     }
+
+
+def _with_control(name, damage):
+    """A case with pits cut out, and the same mesh with its holes filled."""
+    options = {"damage": {"pinion": damage}, "meshes": (STRIP[0], ALL_FINER)}
+    return {f"{name} {end}": Case(pair_of(15.0), holes=end == CUT, **options) for end in (CUT, FILLED)}
 
 
 def lines():
@@ -145,9 +157,8 @@ def contact_row(name, mesh):
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         ours, approach = stiffness(case)
-        deck = gf.write_contact_inp(
-            folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), face=face, damage=case.damage, **mesh
-        )
+        options = {"face": face, "damage": case.damage, "holes": case.holes, **mesh}
+        deck = gf.write_contact_inp(folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), **options)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
         if name == SHOWN and mesh == case.meshes[-1] and isinstance(deck, SolidDeck):
@@ -159,7 +170,8 @@ def contact_row(name, mesh):
 
 def stiffness(case):
     """Stiffness [N/um] and approach [mm] of a case by `ritz3d`."""
-    run = {"method": "ritz3d", "phases": [case.phase], "damage": case.damage or None}
+    damage = {side: [one for one in own if case.holes or isinstance(one, gf.Crack)] for side, own in case.damage.items()}
+    run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     curve = gf.mesh_stiffness(case.pair, LOAD * case.pair.gear_1.b, STEEL, **run)
     return float(curve.k[0]) / 1e6, 1e3 * float(curve.lte[0])
 
