@@ -129,8 +129,9 @@ def verdict(known):
     last = {name: (theirs, ours) for name, _, theirs, ours in holed(known)}
     for name, (theirs, ours) in last.items():
         off = (1 + ours) / (1 + theirs) - 1
+        said = "within" if abs(off) <= ASKED else "**beyond**"
         yield f"- Pits ({name}): cut out they change k by {100 * theirs:+.2f} % in CalculiX, as lost contact by"
-        yield f"  {100 * ours:+.2f} % in `ritz3d`: {100 * off:+.2f} % apart, {'within' if abs(off) <= ASKED else '**beyond**'} {asked}."
+        yield f"  {100 * ours:+.2f} % in `ritz3d`: {100 * off:+.2f} % apart, {said} {asked}."
         yield f"  k itself is {_itself(away, name)}."
 
 
