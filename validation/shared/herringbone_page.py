@@ -43,9 +43,9 @@ the patches that the flanks are loaded by are common to `fe3d` and `ritz3d`; the
 `fe3d` and are kept apart in `ritz3d`.
 
 Pits cut out: what k loses beyond the lost contact of the same pits when they are holes in the cracked tooth, in the mean over the
-cycle and, in brackets, at the phase where it loses most. Circular pits are the scene's; elliptic ones have their area and are twice as long,
-along the width, as wide. The loads are those of lost contact and do not redistribute, so that these are upper bounds;
-[holed_cracks.md](holed_cracks.md) has the meshes.
+cycle and, in brackets, at the phase where it loses most. Circular pits are the scene's; elliptic ones have their area and are
+twice as long, along the width, as wide. The loads are those of lost contact and do not redistribute, so that these are upper
+bounds; [holed_cracks.md](holed_cracks.md) has the meshes.
 
 {errors}
 
