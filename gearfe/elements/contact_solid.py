@@ -34,6 +34,7 @@ STRETCH = 3.0  # tets are so many times longer along the width
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
+PITS = ("cut", "lost", "filled")
 END = 1.0  # height of the layers at the end faces against that in between
 
 
@@ -112,7 +113,7 @@ def write_contact_solid(
     materials: tuple[Material, Material],
     *,
     damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
-    holes: bool = True,
+    pits: str = "cut",
     forms: tuple[FlankForm, FlankForm] | None = None,
     pose: str = "mean",
     per_width: float = 1.0,
@@ -121,6 +122,8 @@ def write_contact_solid(
     refine: float = 1.0,
 ) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame.
+
+    `pits` is what becomes of them: ``cut`` out, their contact ``lost`` with the material left, or ``filled``, as if not there.
 
     `forms` are the modified flanks of both, which the nodes lie on (`geometry.mesh.relieved_solid`); axes askew are among them.
     """
@@ -133,7 +136,7 @@ def write_contact_solid(
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
         if any(isinstance(one, Pit) for one in own):
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
-            body = _holed(gear, own, cut, refine, holes)
+            body = _holed(gear, own, cut, refine, pits)
         else:
             patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
@@ -179,8 +182,8 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
-def _holed(gear: Gear, damage, strips, refine, holes) -> Part:
-    """A whole gear in tets, its pits cut out or not (`holes`); its damaged tooth is tooth 0 while it is meshed."""
+def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
+    """A whole gear in tets, its pits cut out or not (`PITS`); its damaged tooth is tooth 0 while it is meshed."""
     cracks = [one for one in damage if isinstance(one, Crack)]
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
@@ -189,10 +192,18 @@ def _holed(gear: Gear, damage, strips, refine, holes) -> Part:
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
     made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
-    body = holed_part(made if holes else filled(made, teeth=None))
+    body = holed_part(made if pits == "cut" else filled(made, teeth=None))
+    if pits == "lost":
+        body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
     faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
     return replace(body, points=points, faces=faces)
+
+
+def _uncovered(faces):
+    """Faces with the flanks without what lies above the pits."""
+    above = {tuple(face) for face in faces["pits"].T.tolist()}
+    return {name: found[:, [tuple(face) not in above for face in found.T.tolist()]] for name, found in faces.items()}
 
 
 def _renamed(name, tooth, z):
@@ -232,4 +243,6 @@ def _text(pair, parts, materials, found, turned, penalty):
         yield (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[slave]
     yield from ("*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends)
     yield "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF"
+    for k, slave in enumerate(found.slave):
+        yield (f"*CONTACT PRINT, SLAVE=C{slave + 1}P{k}, MASTER=C{2 - slave}P{k}\nCF")
     yield "*CONTACT FILE\nCDIS\n*END STEP\n"

@@ -117,12 +117,15 @@ def filled(sector, *, teeth=3):
     Returns
     -------
     Holed
-        Its flanks are whole, and no tet is in a pit.
+        Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them.
     """
     plug = np.full_like(sector.plug, -1)
     flat = _twisted(sector.points, -sector.gear.twist_rate)
-    seam = {name: found for name, found in sector.faces.items() if name.startswith("crack")}
-    return replace(sector, plug=plug, faces=_named(sector.gear, flat, sector.cells, plug, teeth) | seam)
+    faces = _named(sector.gear, flat, sector.cells, plug, teeth)
+    bare = {tuple(face) for face in skin(sector.cells[:, sector.plug < 0]).T.tolist()}
+    whole = skin(sector.cells)
+    faces["pits"] = whole[:, [tuple(face) not in bare for face in whole.T.tolist()]]
+    return replace(sector, plug=plug, faces=faces | {name: sector.faces[name] for name in sector.faces if "crack" in name})
 
 
 def _attempt(gear, pits, crack, teeth, size, strips, stretch):

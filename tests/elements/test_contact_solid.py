@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.elements.contact_solid import _uncovered
 from gearfe.elements.hexahedron import gauss, shapes
 from gearfe.elements.solid_deck import FACES, TWENTY, sides_of
 from geometry.mesh.relieved_solid import relieved_points
@@ -100,9 +101,9 @@ def test_deck_is_whole(damaged):
     assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
 
 
-def test_the_control_is_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
-    with_holes, control = damaged[1], written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, holes=False)
-    cut, whole = with_holes.parts[0], control.parts[0]
+def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
+    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled")
+    cut, whole = damaged[1].parts[0], control.parts[0]
 
     def places(part):
         return set(map(tuple, np.round(part.points[:, np.unique(part.cells[:4])].T, 9).tolist()))
@@ -112,6 +113,12 @@ def test_the_control_is_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
     assert cut.faces["flank 1"].shape[1] < whole.faces["flank 1"].shape[1]
     assert cut.faces["flank 2"].shape == whole.faces["flank 2"].shape
     assert control.slaves[1][1].shape == whole.faces["flank 1"].shape
+    lost = _uncovered(whole.faces)["flank 1"]
+
+    def triangles(part, faces):
+        return set(map(tuple, np.round(np.sort(part.points[:, faces].sum(axis=1).T, axis=1), 9).tolist()))
+
+    assert triangles(whole, lost) == triangles(cut, cut.faces["flank 1"])
 
 
 def test_nodes_of_tets_lie_on_the_involute(damaged):
@@ -140,7 +147,8 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
-        ({"holes": False, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit is given"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
     ],
 )
 def test_impossible_decks_are_refused(tmp_path, options, message):
