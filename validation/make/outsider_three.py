@@ -11,9 +11,8 @@ from geometry.tooth.profile import arc_at
 
 from ..shared.outsider import (
     ASKED,
-    CUT,
-    FILLED,
     LOAD,
+    PITS,
     PRESSURE,
     SHOWN,
     STEEL,
@@ -58,8 +57,9 @@ HOLES = """
 ## Pits: holes beside lost contact
 
 Two pits, a circular and an elliptic one, lie with their centres on the contact line of tooth 0. Tets differ from hexahedra, so
-each case has a control: the very same tets, the pits' own included, with the pits full of material. What the holes do is k with
-them over k of the control; what the mesh does is in both and drops out.
+each case has two controls: the very same tets, the pits' own included, with the pits full of material and no contact on them,
+which is what `ritz3d` has, and with the pits filled and touching. What pits do is k over k of the second control; what the mesh
+does is in both and mostly drops out.
 """
 MESHES = """
 ## How far the meshes are from their limit
@@ -104,14 +104,21 @@ def finest(known):
     return {name: found[name] for name in (*cases(), *lines()) if name in found}
 
 
-def holed(known):
-    """Rows (case, mesh, change of k by holes in CalculiX, by lost contact in `ritz3d`) where a control is there."""
+def pitted(known):
+    """What pits do to k, by case and mesh: in CalculiX by what is done with them (`PITS`), and in ``ritz3d``, as lost contact."""
+    out = {}
     for name, case in cases().items():
-        for mesh in map(told, case.meshes if name.endswith(CUT) else ()):
-            base = name.removesuffix(CUT)
-            cut, control = known.get((name, mesh)), known.get((base + FILLED, mesh))
-            if cut and control:
-                yield base.strip(), mesh, *(float(cut[who]) / float(control[who]) - 1 for who in ("theirs", "ours"))
+        if not name.endswith(PITS["filled"]):
+            continue
+        base = name.removesuffix(PITS["filled"])
+        for mesh in map(told, case.meshes):
+            rows = {kind: known[base + end, mesh] for kind, end in PITS.items() if (base + end, mesh) in known}
+            if "filled" in rows and len(rows) > 1:
+                k = {kind: float(row["theirs"]) for kind, row in rows.items()}
+                found = {kind: k[kind] / k["filled"] - 1 for kind in rows if kind != "filled"}
+                ours = next(float(row["ours"]) for kind, row in rows.items() if kind != "filled")
+                out[base.strip(), mesh] = found | {"ritz3d": ours / float(rows["filled"]["ours"]) - 1}
+    return out
 
 
 def verdict(known):
@@ -121,27 +128,26 @@ def verdict(known):
     yield f"`ritz3d` against CalculiX, the finest mesh of each case; asked for: within {asked}."
     yield ""
     for what, names in (("In contact, no pits", cases()), ("Under line loads", lines())):
-        own = {name: away[name] for name in names if name in away and not name.endswith((CUT, FILLED))}
+        own = {name: away[name] for name in names if name in away and not name.endswith(tuple(PITS.values()))}
         within = {name: value for name, value in own.items() if abs(value) <= ASKED}
         yield f"- {what}: {len(within)} of {len(own)} within {asked}: {_listed(within)}."
         if len(within) < len(own):
             yield f"  **Beyond {asked}**: {_listed({name: own[name] for name in own if name not in within})}."
-    last = {name: (theirs, ours) for name, _, theirs, ours in holed(known)}
-    for name, (theirs, ours) in last.items():
-        off = (1 + ours) / (1 + theirs) - 1
-        said = "within" if abs(off) <= ASKED else "**beyond**"
-        yield f"- Pits ({name}): cut out they change k by {100 * theirs:+.2f} % in CalculiX, as lost contact by"
-        yield f"  {100 * ours:+.2f} % in `ritz3d`: {100 * off:+.2f} % apart, {said} {asked}."
-        yield f"  k itself is {_itself(away, name)}."
+    last = {name: (mesh, found) for (name, mesh), found in pitted(known).items()}
+    for name, (mesh, found) in last.items():
+        ours = found["ritz3d"]
+        yield f"- Pits, {name}, {mesh}: as lost contact they change k by {100 * ours:+.2f} % in `ritz3d`."
+        for kind, said in (("lost", "with contact lost and the material left"), ("cut", "cut out")):
+            if kind in found:
+                yield f"  In CalculiX {said}: {100 * found[kind]:+.2f} %, {_judged((1 + ours) / (1 + found[kind]) - 1)}."
+        raw = [f"{end} {100 * away[f'{name} {end}']:+.2f} %" for end in PITS.values() if f"{name} {end}" in away]
+        yield f"  The tets themselves: k of `ritz3d` is {'; '.join(raw)}."
 
 
-def _itself(away, name):
-    """A pitted case's own difference, beside that of the same mesh without holes."""
-    cut, filled = away[f"{name} {CUT}"], away[f"{name} {FILLED}"]
-    said = f"{100 * cut:+.2f} % apart"
-    if abs(cut) > ASKED:
-        said = f"**{said}**"
-    return f"{said}, and {100 * filled:+.2f} % in the same tets without a hole"
+def _judged(off):
+    """A difference with its sign and whether it is as small as asked for."""
+    verb = "within" if abs(off) <= ASKED else "**beyond**"
+    return f"{100 * off:+.2f} % apart, {verb} {100 * ASKED:g} %"
 
 
 def _listed(away):
@@ -149,10 +155,14 @@ def _listed(away):
 
 
 def _against_control(known):
-    yield "| case | mesh | CalculiX, holes | `ritz3d`, lost contact | k apart beside the control |"
-    yield "|---" * 5 + "|"
-    for name, mesh, theirs, ours in holed(known):
-        cells = (name, mesh, *(f"{100 * value:+.2f} %" for value in (theirs, ours, (1 + ours) / (1 + theirs) - 1)))
+    yield "| case | mesh | `ritz3d`, lost contact | CalculiX, lost contact | apart | CalculiX, cut out | apart |"
+    yield "|---" * 7 + "|"
+    for (name, mesh), found in pitted(known).items():
+        cells = [name, mesh, f"{100 * found['ritz3d']:+.2f} %"]
+        for kind in ("lost", "cut"):
+            theirs = found.get(kind)
+            off = None if theirs is None else (1 + found["ritz3d"]) / (1 + theirs) - 1
+            cells += ["" if value is None else f"{100 * value:+.2f} %" for value in (theirs, off)]
         yield "| " + " | ".join(cells) + " |"
 
 

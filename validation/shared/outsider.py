@@ -31,7 +31,7 @@ PRESSURE = TABLES / "outsider_three_pressure.csv"
 COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
-CUT, FILLED = "cut out", "filled"  # a case with pits and its control
+PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
 ALL_FINER = {"per_width": 1.0, "refine": 1.5}  # everywhere
 SHOWN = "helical, healthy"  # whose pressure is drawn
@@ -43,13 +43,13 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 class Case:
     """A pair in contact: `damage` as of `mesh_stiffness`, the phase, and the meshes as options of `write_contact_inp`.
 
-    Without `holes` it is the control of a case with pits: the same mesh with the pits full of material.
+    `pits` as of `write_contact_inp`: a case with pits has two controls in the same mesh.
     """
 
     pair: gf.GearPair
     phase: float = 0.45
     damage: dict = field(default_factory=dict)
-    holes: bool = True
+    pits: str = "cut"
     meshes: tuple = STRIP
 
 
@@ -94,9 +94,9 @@ def cases():
 
 
 def _with_control(name, damage):
-    """A case with pits cut out, and the same mesh with its holes filled."""
+    """A case with pits cut out; in the same mesh with contact lost there but the material left; and with nothing of them."""
     options = {"damage": {"pinion": damage}, "meshes": (STRIP[0], ALL_FINER)}
-    return {f"{name} {end}": Case(pair_of(15.0), holes=end == CUT, **options) for end in (CUT, FILLED)}
+    return {f"{name} {end}": Case(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():
@@ -157,7 +157,7 @@ def contact_row(name, mesh):
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         ours, approach = stiffness(case)
-        options = {"face": face, "damage": case.damage, "holes": case.holes, **mesh}
+        options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
         deck = gf.write_contact_inp(folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), **options)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
@@ -170,7 +170,9 @@ def contact_row(name, mesh):
 
 def stiffness(case):
     """Stiffness [N/um] and approach [mm] of a case by `ritz3d`."""
-    damage = {side: [one for one in own if case.holes or isinstance(one, gf.Crack)] for side, own in case.damage.items()}
+    damage = case.damage
+    if case.pits == "filled":
+        damage = {side: [one for one in own if isinstance(one, gf.Crack)] for side, own in damage.items()}
     run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     curve = gf.mesh_stiffness(case.pair, LOAD * case.pair.gear_1.b, STEEL, **run)
     return float(curve.k[0]) / 1e6, 1e3 * float(curve.lte[0])
