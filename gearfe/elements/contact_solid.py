@@ -48,6 +48,44 @@ class SolidDeck(ContactDeck):
     parts: tuple[Part, Part]
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
 
+    def carried(self, path: str | os.PathLike[str]) -> dict[int, tuple[float, float]]:
+        """What each tooth pair carries, from the ``.dat`` file `path`: force [N] and the height z of its line of action [mm].
+
+        CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
+        point nearest to the middle of the contact area, which is printed too. Pairs that do not touch are left out.
+        """
+        found = contact_sums(path)
+        out = {}
+        for k, (order, (side, _)) in enumerate(self.slaves.items()):
+            if f"C{side + 1}P{k}" in found:
+                force, moment, middle = found[f"C{side + 1}P{k}"]
+                foot = np.cross(force, moment) / (force @ force)
+                z = (foot + (middle - foot) @ force / (force @ force) * force)[2]
+                out[order] = float(np.linalg.norm(force)), float(z)
+        return out
+
+
+def contact_sums(path: str | os.PathLike[str]) -> dict[str, tuple[NDArray[np.float64], ...]]:
+    """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
+
+    Raises
+    ------
+    RuntimeError
+        If the ``.dat`` file has none.
+    """
+    rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines() if line.strip()]
+    out: dict[str, tuple[NDArray[np.float64], ...]] = {}
+    for k, row in enumerate(rows):
+        if row[:4] == ["statistics", "for", "slave", "set"]:
+            first, middle = (np.array(rows[k + step], dtype=float) for step in (2, 4))
+            if first[:3].any():
+                out[row[4].rstrip(",")] = first[:3], first[3:], middle[:3]
+            else:
+                out.pop(row[4].rstrip(","), None)
+    if not out:
+        raise RuntimeError(f"{path} has no contact forces: CalculiX found no equilibrium, or no flanks touch")
+    return out
+
 
 @dataclass(frozen=True, slots=True)
 class Touching:
