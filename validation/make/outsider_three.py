@@ -14,6 +14,8 @@ from ..shared.outsider import (
     LOAD,
     PITS,
     PRESSURE,
+    SHARED,
+    SHARING,
     SHOWN,
     STEEL,
     STRIP,
@@ -21,6 +23,7 @@ from ..shared.outsider import (
     cases,
     lines,
     reference,
+    rows_of,
     stored,
     told,
     wanted,
@@ -79,6 +82,13 @@ enforced at more points than the faces can follow. The approach sees their mean.
 """
 
 
+SHARES = """
+## Load sharing of the healthy helical pair
+
+Force that each tooth pair carries, and where along the width its resultant acts (z from the end that touches last):
+"""
+
+
 def page():
     """The page, from its tables alone."""
     known = stored()
@@ -88,6 +98,7 @@ def page():
     text += [*HOLES.splitlines(), "", *_against_control(known)]
     text += ["", "## Under line loads", "", *_table("deflection [nm/N]", known, lines())]
     text += [*MESHES.splitlines(), "", *_refined(known)]
+    text += list(_shared()) if SHARING.exists() else []
     missing = [f"{name} ({told(mesh)})" for name, mesh in wanted() if (name, told(mesh)) not in known]
     if missing:
         text += ["", f"Not computed yet: {'; '.join(missing)}."]
@@ -183,6 +194,19 @@ def _refined(known):
         yield "| " + " | ".join([name, *cells, end]) + " |"
     yield ""
     yield "There is no order to extrapolate with." if order is None else f"Observed order: {order:.1f}."
+
+
+def _shared():
+    yield from SHARES.splitlines()
+    yield from (
+        "",
+        "| mesh | pair | `ritz3d` [N] | CalculiX [N] | apart | `ritz3d`, z [mm] | CalculiX, z [mm] |",
+        "|---" * 7 + "|",
+    )
+    for row in rows_of(SHARING):
+        ours, theirs, *places = (row[name] for name in SHARED[2:])
+        off = f"{100 * (float(ours) / float(theirs) - 1):+.2f} %"
+        yield "| " + " | ".join([row["mesh"], row["pair"], ours, theirs, off, *places]) + " |"
 
 
 def observed_order(values, widths):

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
@@ -28,6 +29,8 @@ from .places import TABLES
 
 TABLE = TABLES / "outsider_three.csv"
 PRESSURE = TABLES / "outsider_three_pressure.csv"
+SHARING = TABLES / "outsider_three_sharing.csv"
+SHARED = ("mesh", "pair", "ours [N]", "theirs [N]", "ours z [mm]", "theirs z [mm]")
 COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
@@ -161,6 +164,8 @@ def contact_row(name, mesh):
         deck = gf.write_contact_inp(folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), **options)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
+        if name == SHOWN and isinstance(deck, SolidDeck):
+            keep_sharing(case, told(mesh), deck.carried(folder / "pair.dat"))
         if name == SHOWN and mesh == case.meshes[-1] and isinstance(deck, SolidDeck):
             keep_pressure(case, deck, folder / "pair.frd")
     theirs = (first + second) / 2 / approach / 1e3
@@ -185,6 +190,17 @@ def _row(name, mesh, *values):
 def told(mesh):
     """A mesh's options as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
+
+
+def keep_sharing(case, mesh, theirs):
+    """Put the force that each tooth pair carries and the height of its line of action, ours and theirs, into their table."""
+    cells = pair_stiffness3d(case.pair, LOAD * case.pair.gear_1.b, STEEL, [case.phase]).cells[0]
+    rows = [row for row in rows_of(SHARING) if row["mesh"] != mesh]
+    for order, (force, z) in sorted(theirs.items()):
+        load = np.where(cells.order == order, cells.load, 0.0)
+        values = load.sum(), force, (load * cells.z).sum() / load.sum(), z
+        rows.append(dict(zip(SHARED, (mesh, order, *(f"{v:.5g}" for v in values)), strict=True)))
+    _write(rows, SHARING, SHARED)
 
 
 def keep_pressure(case, deck, path):
@@ -227,10 +243,15 @@ def wanted():
 
 def stored():
     """Rows of the table by (case, mesh)."""
-    if not TABLE.exists():
-        return {}
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return {(row["case"], row["mesh"]): row for row in csv.DictReader(file)}
+    return {(row["case"], row["mesh"]): row for row in rows_of(TABLE)}
+
+
+def rows_of(table):
+    """Rows of a table; none if there is no table."""
+    if not table.exists():
+        return []
+    with table.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def refresh():
@@ -262,9 +283,9 @@ def keep(row):
     sys.stdout.flush()
 
 
-def _write(rows):
-    with written(TABLE) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+def _write(rows, table=TABLE, columns=COLUMNS):
+    with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.DictWriter(file, columns, lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
 
