@@ -277,7 +277,7 @@ def test_the_load_is_that_of_the_contact(pressed):
 
     nodes, _, number = second_order(made.sector.points, made.sector.cells)
     lines = holed._lines(pair, made.contact.cells[0], 0, 0, 0)
-    force = holed._pressure(made.sector, nodes, number, lines).reshape(-1, 3).T
+    force = holed._pressure(made.sector, nodes, number, lines, holed.SPREAD * HELICAL.m_n).reshape(-1, 3).T
     total = sum(part[3].sum() for found in lines.values() for part in found)
     assert_allclose(total * math.cos(HELICAL.beta_b), 1500.0, rtol=1e-6)
     assert_allclose(force[2].sum(), total * math.sin(HELICAL.beta_b), rtol=1e-9)
@@ -313,6 +313,11 @@ def test_damage_of_two_gears_is_refused():
     pair = gf.GearPair(GEAR, replace(GEAR, z=27))
     with pytest.raises(ValueError, match="one tooth of one gear"):
         pressed_tooth(pair, 1000.0, gf.Material(), {"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]})
+
+
+def test_a_load_without_width_is_refused(steel):
+    with pytest.raises(ValueError, match="give spread > 0"):
+        pressed_tooth(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, {"pinion": [pit(GEAR)]}, phases=[0.5], spread=0.0)
 
 
 @pytest.mark.slow
