@@ -14,7 +14,7 @@ from geometry.tooth.modified import Flank
 from ..files import suffix_of
 from ..material import Material
 from .contact_deck import PINION, ContactDeck, write_contact_section
-from .contact_solid import write_contact_solid
+from .contact_solid import PITS, write_contact_solid
 
 SIDES = ("pinion", "wheel")
 SECTION, SOLID = 8.0, 1.5  # edges per Hertz half width
@@ -30,6 +30,7 @@ def write_contact_inp(
     *,
     face: str | None = None,
     damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    pits: str = "cut",
     pose: str = "mean",
     flanks: Mapping[str, Flank] | None = None,
     misalignment: Misalignment | None = None,
@@ -66,6 +67,9 @@ def write_contact_inp(
     damage : dict, optional
         With `face`: ``{"pinion": [...], "wheel": [...]}`` as of `gearfe.mesh_stiffness`. Faces of cracks may pass through each
         other. Pits of one tooth of a gear; a crack beside them runs through the whole width.
+    pits : {"cut", "lost", "filled"}
+        What becomes of them, always in the same mesh: cut out as holes; material there, but no contact, as in `ritz3d`; or as
+        if they were not there. The last is the control that tells what pits do from what the mesh does.
     pose : {"mean", "pinion", "wheel"}
         Whether both gears turn by half the approach, or one of them against the held other.
     flanks : dict, optional
@@ -110,7 +114,11 @@ def write_contact_inp(
         )
     if face not in ("spur", "helical") or (face == "spur") == bool(pair.gear_1.beta):
         raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
-    rest |= {"damage": damage_by_gear(damage), "forms": flank_forms(pair, flanks, misalignment)}
+    if pits not in PITS:
+        raise ValueError(f"pits = {pits!r}, but it must be one of {', '.join(PITS)}")
+    if pits != "cut" and not any(isinstance(one, Pit) for own in (damage or {}).values() for one in own):
+        raise ValueError(f"pits = {pits!r}, but there is no pit in damage: give pits, which the mesh follows")
+    rest |= {"damage": damage_by_gear(damage), "pits": pits, "forms": flank_forms(pair, flanks, misalignment)}
     return write_contact_solid(
         path, pair, phase, approach, line_load, materials, per_width=per_width or SOLID, layers=layers, **rest
     )

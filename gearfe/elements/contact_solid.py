@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
-from geometry.mesh.holes import holed_sector
+from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
 from geometry.pair.contacts import Contacts
@@ -34,6 +34,7 @@ STRETCH = 3.0  # tets are so many times longer along the width
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
+PITS = ("cut", "lost", "filled")
 END = 1.0  # height of the layers at the end faces against that in between
 
 
@@ -46,6 +47,44 @@ class SolidDeck(ContactDeck):
 
     parts: tuple[Part, Part]
     slaves: dict[int, tuple[int, NDArray[np.int64]]]
+
+    def carried(self, path: str | os.PathLike[str]) -> dict[int, tuple[float, float]]:
+        """What each tooth pair carries, from the ``.dat`` file `path`: force [N] and the height z of its line of action [mm].
+
+        CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
+        point nearest to the middle of the contact area, which is printed too. Pairs that do not touch are left out.
+        """
+        found = contact_sums(path)
+        out = {}
+        for k, (order, (side, _)) in enumerate(self.slaves.items()):
+            if f"C{side + 1}P{k}" in found:
+                force, moment, middle = found[f"C{side + 1}P{k}"]
+                foot = np.cross(force, moment) / (force @ force)
+                z = (foot + (middle - foot) @ force / (force @ force) * force)[2]
+                out[order] = float(np.linalg.norm(force)), float(z)
+        return out
+
+
+def contact_sums(path: str | os.PathLike[str]) -> dict[str, tuple[NDArray[np.float64], ...]]:
+    """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
+
+    Raises
+    ------
+    RuntimeError
+        If the ``.dat`` file has none.
+    """
+    rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines() if line.strip()]
+    out: dict[str, tuple[NDArray[np.float64], ...]] = {}
+    for k, row in enumerate(rows):
+        if row[:4] == ["statistics", "for", "slave", "set"]:
+            first, middle = (np.array(rows[k + step], dtype=float) for step in (2, 4))
+            if first[:3].any():
+                out[row[4].rstrip(",")] = first[:3], first[3:], middle[:3]
+            else:
+                out.pop(row[4].rstrip(","), None)
+    if not out:
+        raise RuntimeError(f"{path} has no contact forces: CalculiX found no equilibrium, or no flanks touch")
+    return out
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +151,7 @@ def write_contact_solid(
     materials: tuple[Material, Material],
     *,
     damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
+    pits: str = "cut",
     forms: tuple[FlankForm, FlankForm] | None = None,
     pose: str = "mean",
     per_width: float = 1.0,
@@ -120,6 +160,8 @@ def write_contact_solid(
     refine: float = 1.0,
 ) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame.
+
+    `pits` is what becomes of them: ``cut`` out, their contact ``lost`` with the material left, or ``filled``, as if not there.
 
     `forms` are the modified flanks of both, which the nodes lie on (`geometry.mesh.relieved_solid`); axes askew are among them.
     """
@@ -132,7 +174,7 @@ def write_contact_solid(
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
         if any(isinstance(one, Pit) for one in own):
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
-            body = _holed(gear, own, cut, refine)
+            body = _holed(gear, own, cut, refine, pits)
         else:
             patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
@@ -178,8 +220,8 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
-def _holed(gear: Gear, damage, strips, refine) -> Part:
-    """A whole gear in tets, its pits cut out; its damaged tooth is tooth 0 while it is meshed."""
+def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
+    """A whole gear in tets, its pits cut out or not (`PITS`); its damaged tooth is tooth 0 while it is meshed."""
     cracks = [one for one in damage if isinstance(one, Crack)]
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
@@ -188,10 +230,18 @@ def _holed(gear: Gear, damage, strips, refine) -> Part:
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
     made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
-    body = holed_part(made)
+    body = holed_part(made if pits == "cut" else filled(made, teeth=None))
+    if pits == "lost":
+        body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
     faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
     return replace(body, points=points, faces=faces)
+
+
+def _uncovered(faces):
+    """Faces with the flanks without what lies above the pits."""
+    above = {tuple(face) for face in faces["pits"].T.tolist()}
+    return {name: found[:, [tuple(face) not in above for face in found.T.tolist()]] for name, found in faces.items()}
 
 
 def _renamed(name, tooth, z):
@@ -231,4 +281,6 @@ def _text(pair, parts, materials, found, turned, penalty):
         yield (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[slave]
     yield from ("*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends)
     yield "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF"
+    for k, slave in enumerate(found.slave):
+        yield (f"*CONTACT PRINT, SLAVE=C{slave + 1}P{k}, MASTER=C{2 - slave}P{k}\nCF")
     yield "*CONTACT FILE\nCDIS\n*END STEP\n"

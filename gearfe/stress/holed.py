@@ -77,6 +77,7 @@ def pressed_tooth(
     removal=False,
     sizes=None,
     strip=None,
+    spread=SPREAD,
     tell=None,
 ):
     """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
@@ -92,6 +93,8 @@ def pressed_tooth(
         As of `geometry.mesh.holes.holed_sector`.
     strip : float, optional
         Edge length along the loaded contact lines of the damaged tooth [modules]; default: that of the flank.
+    spread : float
+        Of the load to either side of its line, as a hat [modules]; a hat of 1.2 Hertz half widths is as wide as his pressure.
     removal : bool
         Solve the tooth without its holes too, for `Pressed.extra`.
     tell : callable, optional
@@ -108,6 +111,8 @@ def pressed_tooth(
     RuntimeError
         If a hole was not cut as it should, or the system does not fit.
     """
+    if not spread > 0:
+        raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
     materials = two_materials(material)
     face = face or ("helical" if pair.gear_1.beta else "spur")
     cracks, pits = by_gear(pair, damage)
@@ -122,12 +127,13 @@ def pressed_tooth(
     with part("contact", 0.0, 0.2):
         contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
-    strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine)
+    spread *= gear.m_n
+    strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
     with part("mesh", 0.2, 0.5):
         sector = holed_sector(gear, own_pits, crack, teeth=teeth, refine=refine, sizes=sizes, strips=strips)
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
-    loads = np.column_stack([_pressure(sector, nodes, number, found) for found in lines])
+    loads = np.column_stack([_pressure(sector, nodes, number, found, spread) for found in lines])
     held = _held(sector, number)
     with part("stress", 0.5, 1.0):
         moved, unknowns = _moved(nodes, kept, materials[side], held, loads, tell)
@@ -218,14 +224,14 @@ def _lines(pair, cells, side, tooth, half):
     return out
 
 
-def _strips(gear, lines, edge):
+def _strips(gear, lines, edge, spread):
     """Loaded contact lines of tooth 0 in the frame that turns with the helix, for a mesh with edges of a length [mm] there."""
     out = []
     for found in lines:
         for z, _, roll, load in found.get(0, ()):
             if (load > 0).sum() > 1:
                 radius, angle = flank(gear, roll[load > 0])
-                out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * SPREAD * gear.m_n, edge))
+                out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * spread, edge))
     return out
 
 
@@ -252,15 +258,14 @@ def _moved(nodes, cells, material, held, loads, tell):
     return moved, rows.size
 
 
-def _pressure(sector, nodes, number, lines):
+def _pressure(sector, nodes, number, lines, spread):
     """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
 
-    On each line the pressure is its line load times a hat of `SPREAD` along the profile, at small triangles of the flank; it is
-    scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
+    On each line the pressure is its line load times a hat of `spread` [mm] along the profile, at small triangles of the flank; it
+    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
     """
     gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))
-    spread = SPREAD * gear.m_n
     bary = _thirds()
     shape = np.vstack([bary * (2 * bary - 1), 4 * bary[[0, 1, 0]] * bary[[1, 2, 2]]])
     for tooth, found in lines.items():

@@ -105,6 +105,29 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")
 
 
+def filled(sector, *, teeth=3):
+    """The same mesh with its pits full of material: what the holes do beside it is not of the mesh.
+
+    Parameters
+    ----------
+    sector : Holed
+    teeth : int or None
+        As it was given to `holed_sector`.
+
+    Returns
+    -------
+    Holed
+        Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them.
+    """
+    plug = np.full_like(sector.plug, -1)
+    flat = _twisted(sector.points, -sector.gear.twist_rate)
+    faces = _named(sector.gear, flat, sector.cells, plug, teeth)
+    bare = {tuple(face) for face in skin(sector.cells[:, sector.plug < 0]).T.tolist()}
+    whole = skin(sector.cells)
+    faces["pits"] = whole[:, [tuple(face) not in bare for face in whole.T.tolist()]]
+    return replace(sector, plug=plug, faces=faces | {name: sector.faces[name] for name in sector.faces if "crack" in name})
+
+
 def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
     points, curves, faces = _section(gear, crack, teeth)

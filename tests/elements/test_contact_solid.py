@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.elements.contact_solid import SolidDeck, _uncovered
 from gearfe.elements.hexahedron import gauss, shapes
 from gearfe.elements.solid_deck import FACES, TWENTY, sides_of
 from geometry.mesh.relieved_solid import relieved_points
@@ -86,7 +87,7 @@ def test_deck_is_whole(damaged):
     text = path.read_text()
     tets, bricks = (part.cells.shape[1] for part in deck.parts)
     assert (len(deck.parts[0].cells), len(deck.parts[1].cells)) == (10, 20)
-    assert text.count("*CONTACT PAIR") == len(deck.slaves) == 2
+    assert text.count("*CONTACT PAIR") == text.count("*CONTACT PRINT") == len(deck.slaves) == 2
     rows = text.split("*ELEMENT, TYPE=C3D20R")[1].split("*MATERIAL")[0].splitlines()[1::2]
     assert [int(row.split(",")[0]) for row in rows] == list(range(tets + 1, tets + bricks + 1))
     for part in deck.parts:  # every face of a flank is a side of one element
@@ -98,6 +99,26 @@ def test_deck_is_whole(damaged):
                 assert (np.sort(part.cells[corners, element], axis=0).sum() == faces.sum()).all()
     assert deck.parts[1].faces["crack 0 body"].shape == deck.parts[1].faces["crack 0 tooth"].shape
     assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
+
+
+def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
+    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled")
+    cut, whole = damaged[1].parts[0], control.parts[0]
+
+    def places(part):
+        return set(map(tuple, np.round(part.points[:, np.unique(part.cells[:4])].T, 9).tolist()))
+
+    assert places(cut) < places(whole)
+    assert cut.cells.shape[1] < whole.cells.shape[1]
+    assert cut.faces["flank 1"].shape[1] < whole.faces["flank 1"].shape[1]
+    assert cut.faces["flank 2"].shape == whole.faces["flank 2"].shape
+    assert control.slaves[1][1].shape == whole.faces["flank 1"].shape
+    lost = _uncovered(whole.faces)["flank 1"]
+
+    def triangles(part, faces):
+        return set(map(tuple, np.round(np.sort(part.points[:, faces].sum(axis=1).T, axis=1), 9).tolist()))
+
+    assert triangles(whole, lost) == triangles(cut, cut.faces["flank 1"])
 
 
 def test_nodes_of_tets_lie_on_the_involute(damaged):
@@ -126,6 +147,8 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
     ],
 )
 def test_impossible_decks_are_refused(tmp_path, options, message):
@@ -148,6 +171,35 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
 
 def test_page_is_made_from_its_table():
     assert outsider_three.PAGE.read_text(encoding="utf-8") == outsider_three.page()
+
+
+PRINTED = """ statistics for slave set C1P{k}, master set C2P{k} and time  0.1000000E+01
+
+   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)
+
+   {wrench}
+
+   center of gravity and mean normal
+
+   {middle} 8.81E-01  4.05E-01 -2.43E-01
+"""
+
+
+def test_what_pairs_carry_is_read_from_forces_and_moments(tmp_path):
+    """A force at a place has its moment; where the line of action is nearest to the area's middle is that place's height."""
+    place, force, middle = np.array([-1.6, 13.1, 2.9]), np.array([-1070.0, -490.0, 296.0]), np.array([-1.6, 13.1, 2.9])
+    aside = np.cross(force, [1.0, 2.0, 3.0])  # the area's middle is off the line, at right angles
+    wrench = [*force, *np.cross(place, force)]
+    rows = [PRINTED.format(k=k, wrench=" ".join(f"{v:.6E}" for v in own), middle="{:.6E} {:.6E} {:.6E}".format(*(middle + aside)))
+            for k, own in ((0, wrench), (1, 6 * [0.0]))]  # fmt: skip
+    (tmp_path / "p.dat").write_text("\n".join(rows), encoding="ascii")
+    deck = SolidDeck((), (), (), (), {0: (0, None), 1: (0, None)})
+    found = deck.carried(tmp_path / "p.dat")
+    assert list(found) == [0]  # the other does not touch
+    np.testing.assert_allclose(found[0], (np.linalg.norm(force), 2.9), rtol=1e-5)
+    (tmp_path / "p.dat").write_text("")
+    with pytest.raises(RuntimeError, match="no contact forces"):
+        deck.carried(tmp_path / "p.dat")
 
 
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")

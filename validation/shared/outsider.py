@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
+from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
@@ -28,9 +29,14 @@ from .places import TABLES
 
 TABLE = TABLES / "outsider_three.csv"
 PRESSURE = TABLES / "outsider_three_pressure.csv"
+SHARING = TABLES / "outsider_three_sharing.csv"
+SHARED = ("mesh", "pair", "ours [N]", "theirs [N]", "ours z [mm]", "theirs z [mm]")
 COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
+PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
+STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
+ALL_FINER = {"per_width": 1.0, "refine": 1.5}  # everywhere
 SHOWN = "helical, healthy"  # whose pressure is drawn
 ASKED = 0.005  # largest difference asked for where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -38,12 +44,16 @@ RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A pair in contact: `damage` as of `mesh_stiffness`, the phases, and the meshes as options of `write_contact_inp`."""
+    """A pair in contact: `damage` as of `mesh_stiffness`, the phase, and the meshes as options of `write_contact_inp`.
+
+    `pits` as of `write_contact_inp`: a case with pits has two controls in the same mesh.
+    """
 
     pair: gf.GearPair
     phase: float = 0.45
     damage: dict = field(default_factory=dict)
-    meshes: tuple = ({"per_width": 1.0}, {"per_width": 1.5})
+    pits: str = "cut"
+    meshes: tuple = STRIP
 
 
 def pinion(degrees=15.0):
@@ -65,26 +75,31 @@ def ring_pair():
 
 
 def pits():
-    """Two pits on the pinion's tooth 0 where it touches: circular and elliptic."""
+    """Two pits with their centres on the contact line of the pinion's tooth 0: circular and elliptic."""
     return [
-        gf.Pit(radius=14.0, z=1.8, axes=(0.4, 0.4), depth=0.2),
-        gf.Pit(radius=14.4, z=4.2, axes=(0.35, 0.7), depth=0.2),
+        gf.Pit(radius=13.13, z=1.8, axes=(0.4, 0.4), depth=0.2),
+        gf.Pit(radius=13.31, z=4.2, axes=(0.35, 0.7), depth=0.2),
     ]
 
 
 def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
-    coarse, main, fine = {"per_width": 1.0}, {"per_width": 1.5}, {"per_width": 2.0, "layers": 4, "refine": 1.2}
     return {
-        "helical, healthy": Case(pair_of(15.0), meshes=(coarse, main, fine)),
+        "helical, healthy": Case(pair_of(15.0), meshes=(*STRIP, {"per_width": 2.25}, ALL_FINER)),
         "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
         "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
         "spur, healthy": Case(pair_of(0.0)),
         "ring, healthy": Case(ring_pair()),
-        "helical, two pits cut out": Case(pair_of(15.0), damage={"pinion": pits()}),
-        "helical, crack 50 % and two pits cut out": Case(pair_of(15.0), damage={"pinion": [crack, *pits()]}),
+        **_with_control("helical, two pits", pits()),
+        **_with_control("helical, crack 50 % and two pits", [crack, *pits()]),
     }
+
+
+def _with_control(name, damage):
+    """A case with pits cut out; in the same mesh with contact lost there but the material left; and with nothing of them."""
+    options = {"damage": {"pinion": damage}, "meshes": (STRIP[0], ALL_FINER)}
+    return {f"{name} {end}": Case(pair_of(15.0), pits=kind, **options) for kind, end in PITS.items()}
 
 
 def lines():
@@ -145,11 +160,12 @@ def contact_row(name, mesh):
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         ours, approach = stiffness(case)
-        deck = gf.write_contact_inp(
-            folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), face=face, damage=case.damage, **mesh
-        )
+        options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
+        deck = gf.write_contact_inp(folder / "pair.inp", pair, case.phase, approach, LOAD, (STEEL, STEEL), **options)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
+        if name == SHOWN and isinstance(deck, SolidDeck):
+            keep_sharing(case, told(mesh), deck.carried(folder / "pair.dat"))
         if name == SHOWN and mesh == case.meshes[-1] and isinstance(deck, SolidDeck):
             keep_pressure(case, deck, folder / "pair.frd")
     theirs = (first + second) / 2 / approach / 1e3
@@ -159,7 +175,10 @@ def contact_row(name, mesh):
 
 def stiffness(case):
     """Stiffness [N/um] and approach [mm] of a case by `ritz3d`."""
-    run = {"method": "ritz3d", "phases": [case.phase], "damage": case.damage or None}
+    damage = case.damage
+    if case.pits == "filled":
+        damage = {side: [one for one in own if isinstance(one, gf.Crack)] for side, own in damage.items()}
+    run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
     curve = gf.mesh_stiffness(case.pair, LOAD * case.pair.gear_1.b, STEEL, **run)
     return float(curve.k[0]) / 1e6, 1e3 * float(curve.lte[0])
 
@@ -171,6 +190,17 @@ def _row(name, mesh, *values):
 def told(mesh):
     """A mesh's options as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
+
+
+def keep_sharing(case, mesh, theirs):
+    """Put the force that each tooth pair carries and the height of its line of action, ours and theirs, into their table."""
+    cells = pair_stiffness3d(case.pair, LOAD * case.pair.gear_1.b, STEEL, [case.phase]).cells[0]
+    rows = [row for row in rows_of(SHARING) if row["mesh"] != mesh]
+    for order, (force, z) in sorted(theirs.items()):
+        load = np.where(cells.order == order, cells.load, 0.0)
+        values = load.sum(), force, (load * cells.z).sum() / load.sum(), z
+        rows.append(dict(zip(SHARED, (mesh, order, *(f"{v:.5g}" for v in values)), strict=True)))
+    _write(rows, SHARING, SHARED)
 
 
 def keep_pressure(case, deck, path):
@@ -213,10 +243,15 @@ def wanted():
 
 def stored():
     """Rows of the table by (case, mesh)."""
-    if not TABLE.exists():
-        return {}
-    with TABLE.open(encoding="utf-8", newline="") as file:
-        return {(row["case"], row["mesh"]): row for row in csv.DictReader(file)}
+    return {(row["case"], row["mesh"]): row for row in rows_of(TABLE)}
+
+
+def rows_of(table):
+    """Rows of a table; none if there is no table."""
+    if not table.exists():
+        return []
+    with table.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
 
 
 def refresh():
@@ -248,9 +283,9 @@ def keep(row):
     sys.stdout.flush()
 
 
-def _write(rows):
-    with written(TABLE) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+def _write(rows, table=TABLE, columns=COLUMNS):
+    with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.DictWriter(file, columns, lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
 

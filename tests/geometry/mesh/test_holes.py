@@ -19,7 +19,7 @@ from gearfe.stress.holed import pressed_tooth, tooth_field
 from geometry.damage.pit import centre_arc, pit_row
 from geometry.damage.pit_volume import pit_frame, removed_volume
 from geometry.mesh import holes
-from geometry.mesh.holes import holed_sector
+from geometry.mesh.holes import filled, holed_sector
 from geometry.tooth.profile import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
@@ -197,6 +197,31 @@ def test_cracks_are_seams(crack):
     assert_allclose(volume(made), volume(whole), rtol=5e-3)
 
 
+def test_filled_holes_leave_a_whole_flank_and_the_crack():
+    """Across the pit's rim: the flank's area grows by the pit's opening, the body by the pit's volume, the seam stays."""
+    gear = replace(GEAR, beta=0.3)
+    made = holed_sector(gear, [pit(gear)], gf.Crack(level=0.3), teeth=1, sizes=COARSE)
+    whole = filled(made, teeth=1)
+
+    def area(mesh):
+        a, b, c = mesh.points[:, mesh.faces["flank 0"]].transpose(1, 0, 2)
+        return np.linalg.norm(np.cross(b - a, c - a, axis=0), axis=0).sum() / 2
+
+    assert (made.plug >= 0).any()
+    assert (whole.plug < 0).all()
+    assert whole.points is made.points
+    assert whole.cells is made.cells
+    assert not set(map(tuple, whole.faces["pits"].T.tolist())) & set(map(tuple, made.faces["flank 0"].T.tolist()))
+    assert whole.faces["pits"].shape[1] + made.faces["flank 0"].shape[1] == whole.faces["flank 0"].shape[1]
+    roll = np.array([gear.roll_f, gear.roll_a])
+    straight = np.ptp(roll**2) / (2 * gear.r_b) * gear.b / math.cos(gear.beta_b)  # of the helicoid
+    assert_allclose(area(whole), straight, rtol=5e-3)
+    assert_allclose(area(whole) - area(made), math.pi * 0.5 * 0.8, rtol=0.12)
+    assert whole.faces["crack tooth"] is made.faces["crack tooth"]
+    for name in ("held", "end 0", "flank 0"):
+        assert holes.skin(whole.cells).shape[1] >= whole.faces[name].shape[1] >= made.faces[name].shape[1]
+
+
 def test_tets_are_those_of_scikit_fem(steel):
     mesh = MeshTet().refined(1)
     mesh = mesh.translated((0.1, 0.2, 0.3)).scaled((1.0, 1.3, 0.8))
@@ -252,7 +277,7 @@ def test_the_load_is_that_of_the_contact(pressed):
 
     nodes, _, number = second_order(made.sector.points, made.sector.cells)
     lines = holed._lines(pair, made.contact.cells[0], 0, 0, 0)
-    force = holed._pressure(made.sector, nodes, number, lines).reshape(-1, 3).T
+    force = holed._pressure(made.sector, nodes, number, lines, holed.SPREAD * HELICAL.m_n).reshape(-1, 3).T
     total = sum(part[3].sum() for found in lines.values() for part in found)
     assert_allclose(total * math.cos(HELICAL.beta_b), 1500.0, rtol=1e-6)
     assert_allclose(force[2].sum(), total * math.sin(HELICAL.beta_b), rtol=1e-9)
@@ -288,6 +313,11 @@ def test_damage_of_two_gears_is_refused():
     pair = gf.GearPair(GEAR, replace(GEAR, z=27))
     with pytest.raises(ValueError, match="one tooth of one gear"):
         pressed_tooth(pair, 1000.0, gf.Material(), {"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]})
+
+
+def test_a_load_without_width_is_refused(steel):
+    with pytest.raises(ValueError, match="give spread > 0"):
+        pressed_tooth(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, {"pinion": [pit(GEAR)]}, phases=[0.5], spread=0.0)
 
 
 @pytest.mark.slow
