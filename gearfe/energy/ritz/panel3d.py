@@ -15,10 +15,9 @@ import math
 from functools import partial
 
 import numpy as np
-from numpy.polynomial import legendre
 from scipy.linalg import block_diag
 
-from geometry.mesh.triangle import BULGE, jacobians, lagrange, table
+from geometry.mesh.triangle import GAUSS, jacobians, lagrange, table
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
 from .axial import axial
@@ -272,19 +271,19 @@ def _hats(gear, sector, chain, count, knots, order, tilt):
     The inward normal of the helicoid is ``(-cos(beta_b) n, sin(beta_b))``, n the section's outward normal with moment r_b:
     it is at right angles to the profile's tangent and to the trace ``(w Y, -w X, 1)``.
     """
-    gauss, weight = legendre.leggauss(BULGE)
+    gauss, weight = GAUSS
     arcs = arc_at(gear, sector.roll)
-    out = np.zeros((count, 3, knots.shape[1]))
-    for i, (start, top, stop) in enumerate(knots.T):
-        for k in range(arcs.size - 1):
-            ends = np.unique(np.clip([start, top, stop], arcs[k], arcs[k + 1]))
-            nodes = chain(sector.flank[k : k + 2])
-            for a, b in zip(ends[:-1], ends[1:], strict=True):
-                arc = (a + b) / 2 + (b - a) / 2 * gauss
-                roll = roll_at_arc(gear, arc)
-                place = 2 * (roll - sector.roll[k]) / (sector.roll[k + 1] - sector.roll[k]) - 1
-                height = 2 / (stop - start) * np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
-                normal = np.vstack([-math.cos(tilt) * flank_normal(gear, roll), np.full(arc.size, math.sin(tilt))])
-                shapes = lagrange(order, tuple(place.tolist()))
-                out[nodes, :, i] += (shapes * (weight * (b - a) / 2 * height)) @ normal.T
-    return out
+    clipped = np.clip(knots[:, :, None], arcs[:-1], arcs[1:])  # (knots, hats, edges)
+    side, hat, edge = np.nonzero(clipped[1:] > clipped[:-1])  # parts of edges over which a hat is straight
+    a, b = (ends[side, hat, edge, None] for ends in (clipped[:-1], clipped[1:]))
+    start, top, stop = knots[:, hat, None]
+    arc = (a + b) / 2 + (b - a) / 2 * gauss
+    roll = roll_at_arc(gear, arc)
+    low, high = sector.roll[edge, None], sector.roll[edge + 1, None]
+    height = 2 / (stop - start) * np.minimum((arc - start) / (top - start), (stop - arc) / (stop - top))
+    normal = np.concatenate([-math.cos(tilt) * flank_normal(gear, roll), np.full((1, *arc.shape), math.sin(tilt))])
+    shapes = lagrange(order, tuple((2 * (roll - low) / (high - low) - 1).ravel().tolist())).reshape(-1, *arc.shape)
+    force = np.einsum("npg,pg,cpg->pnc", shapes, weight * (b - a) / 2 * height, normal)
+    out = np.zeros((count, knots.shape[1], 3))
+    np.add.at(out, (chain(np.array([sector.flank[edge], sector.flank[edge + 1]])).T, hat[:, None]), force)
+    return out.transpose(0, 2, 1)
