@@ -36,7 +36,7 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
-ALL_FINER = {"per_width": 1.0, "refine": 1.5}  # everywhere
+ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
 SHOWN = "helical, healthy"  # whose pressure is drawn
 ASKED = 0.005  # largest difference asked for where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}

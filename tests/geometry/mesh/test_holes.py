@@ -222,6 +222,17 @@ def test_filled_holes_leave_a_whole_flank_and_the_crack():
         assert holes.skin(whole.cells).shape[1] >= whole.faces[name].shape[1] >= made.faces[name].shape[1]
 
 
+def test_no_face_of_a_flank_is_lost_near_the_base_circle():
+    """Where nodes lie inside of the flank and the involute bends most, a spline that is off it would lose faces of the flank."""
+    gear = gf.Gear(z=13, x=0.3, beta=math.radians(15), r_bore=8.0, **RACK)
+    assert gear.r_form - gear.r_b < 0.02 * gear.m_n
+    made = filled(holed_sector(gear, [pit(gear, radius=13.13, axes=(0.4, 0.4))], teeth=1, sizes=COARSE), teeth=1)
+    a, b, c = made.points[:, made.faces["flank 0"]].transpose(1, 0, 2)
+    area = np.linalg.norm(np.cross(b - a, c - a, axis=0), axis=0).sum() / 2
+    whole = (gear.roll_a**2 - gear.roll_f**2) / (2 * gear.r_b) * gear.b / math.cos(gear.beta_b)
+    assert_allclose(area, whole, rtol=1e-2)
+
+
 def test_tets_are_those_of_scikit_fem(steel):
     mesh = MeshTet().refined(1)
     mesh = mesh.translated((0.1, 0.2, 0.3)).scaled((1.0, 1.3, 0.8))
