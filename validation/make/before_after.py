@@ -22,6 +22,8 @@ ROUNDS, PHASES = 2, 64
 CASES = {  # scene, pair, case, options; and the options of the finest solution
     "S4 sun-planet, crack and pits (case 4)": ("herringbone", "sun_planet", "case4", {"method": "ritz3d"}, {"order": 4}),
     "S3 pair, healthy": ("helical_pitting", "pinion_wheel", None, {"method": "ritz3d"}, {"order": 4}),
+    "S4, the same, order 2": ("herringbone", "sun_planet", "case4", {"method": "ritz3d", "order": 2}, {"order": 4}),
+    "S3, the same, order 2": ("helical_pitting", "pinion_wheel", None, {"method": "ritz3d", "order": 2}, {"order": 4}),
     "section, new pair": ("planetary_pitting", "sun_planet", None, {"method": "ritz"}, {"method": "fe", "refine": 3.0}),
     "section, crack 50 %": ("planetary_pitting", "sun_planet", 0.5, {"method": "ritz"}, {"method": "fe", "refine": 3.0}),
     "section, finite elements": ("planetary_pitting", "sun_planet", None, {"method": "fe"}, {"method": "fe", "refine": 3.0}),
