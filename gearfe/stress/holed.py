@@ -46,8 +46,8 @@ class Pressed:
     stress : ndarray, shape (phases, 6, n)
         xx, yy, zz, xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume.
     extra : ndarray, shape (phases,)
-        By how much the removed material adds to the approach of the pair under the same loads, relative: an upper bound of the
-        change of k, because a load that may choose anew chooses no worse. Empty if not asked for.
+        By how much the removed material adds to the approach of the pair under the same loads, relative; empty if not asked for.
+        The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it less, too.
     unknowns : int
     """
 

@@ -224,9 +224,8 @@ def numbers_of(gear, teeth):
 def _half(gear, side, mark):
     """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
     sign = 1 if side == "loaded" else -1
-    rolls = np.linspace(
-        gear.roll_a, gear.roll_f, 17
-    )  # even in roll: even in arc a spline is off the involute near the base circle
+    # even in roll: even in arc a spline would be off the involute near the base circle
+    rolls = np.linspace(gear.roll_a, gear.roll_f, 17)
     arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
     fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]
     tip, half = gear.half_thickness(gear.r_a), math.pi / gear.z
