@@ -1,6 +1,7 @@
 """The front of a crack whose depth changes along the width, as meshes follow it.
 
-A mesh cannot follow a front down to depth nothing: below a least depth it stays there, and the crack ends a little further on.
+A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a little
+further on.
 """
 
 import math
@@ -9,9 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import Crack, crack_path, extremes, front
+from .crack import SLACK, Crack, crack_path, extremes, front
 
-LEAST = 0.25, 0.4, 0.6  # least depth that a mesh follows, in the deepest: the first at which it does not fold
+LEAST = 0.1, 0.15, 0.2, 0.25  # down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold
 # A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
 # before if the front is straight there.
 END = 2 / 3
@@ -22,6 +23,13 @@ def deepest(crack):
     """Largest open part of a crack's length."""
     high = extremes(crack)[1]
     return math.sqrt(high) if crack.rounded else high
+
+
+def shallowest(crack):
+    """Least depth between the crack's ends, in the largest; 0 if it runs out."""
+    low, high = (max(value, 0.0) for value in extremes(crack))
+    part = low / high if low > SLACK else 0.0
+    return math.sqrt(part) if crack.rounded else part
 
 
 def whole(crack):
@@ -106,8 +114,8 @@ class Front:
     def crossings(self, part):
         """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
-        value = self._over(z, part)
-        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(value[1:] * value[:-1] < 0)]
+        over = self._over(z, part) > 0
+        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(over[1:] != over[:-1])]
 
     def _over(self, z, part):
         return front(self.crack, self.width, z)[0] - part * deepest(self.crack)

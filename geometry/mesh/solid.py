@@ -127,7 +127,7 @@ def follow_front(section, number, crack):
     ]
     others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
     (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
-    triangles = np.hstack([quads[[0, 1, 2]], quads[[0, 2, 3]]])
+    triangles = np.hstack([quads[list(own)] for own in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
     arm = section.points[:, ends[1]] - section.points[:, ends[0]]
     place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
 
