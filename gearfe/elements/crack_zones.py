@@ -1,4 +1,4 @@
-"""Zones of a crack's faces in a mesh of hexahedra: forces that push them apart, so that contact can keep them from passing through.
+"""Zones of a crack's faces in hexahedra, and forces that push them apart: so contact keeps faces from passing through each other.
 
 Faces that touch each other push by an even pressure on zones, and the mean opening of a zone is not negative: what a zone does is
 what it reads, so that the influence matrix stays symmetric.

@@ -89,9 +89,9 @@ class Influence:
     """Influence matrix between patches.
 
     `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], as loaded and read; `moved` the displacements (3, nodes,
-    teeth * arcs * modes) [mm/N] if they were kept; `dofs` the unknowns, `plan` how they were solved for. `opening` (k, teeth, arcs,
-    modes) is that of zones of crack faces under the patches, `mutual` (k, k) that under unit forces that push the zones' faces
-    apart [mm/N], if asked for.
+    teeth * arcs * modes) [mm/N] if they were kept; `dofs` the unknowns, `plan` how they were solved for. `opening` (k, teeth,
+    arcs, modes) is that of zones of crack faces under the patches, `mutual` (k, k) that under unit forces that push the zones'
+    faces apart [mm/N], if asked for.
     """
 
     matrix: np.ndarray

@@ -1,7 +1,7 @@
 """The front of a crack whose depth changes along the width, as meshes follow it.
 
-A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a little
-further on.
+A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a
+little further on.
 """
 
 import math
@@ -12,10 +12,12 @@ from scipy.optimize import brentq
 
 from .crack import SLACK, Crack, crack_path, extremes, front
 
-LEAST = 0.1, 0.15, 0.2, 0.25  # down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold
+# Down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold.
+LEAST = 0.1, 0.15, 0.2, 0.25
 # A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
 # before if the front is straight there.
 END = 2 / 3
+STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
 SAMPLES = 801  # heights at which a front is looked at first
 
 
@@ -105,6 +107,11 @@ class Front:
     def runs_out(self, end):
         """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""
         return end not in self.ends
+
+    def steep(self):
+        """Heights at which it is `least` deep, and how far it is from there to `STEEP` times that: ``(z, z, distance)`` [mm]."""
+        deeper = self.crossings(STEEP * self.least)
+        return [(z, z, min(abs(z - other) for other in deeper)) for z in self.crossings(self.least) if deeper]
 
     @property
     def sharp(self):

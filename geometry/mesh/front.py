@@ -59,8 +59,8 @@ def follow(gear, crack, width, points, triangles, *, outline, line, folds):
 def shifts(points, triangles, fixed, line, reach):
     """Shift ``(2, n)`` of all vertices per part of the crack's length, everywhere in the crack's direction.
 
-    How far, is carried into the neighbourhood like heat. A crack of the part f of its length makes a triangle's area ``1 + (f - 1)
-    s`` times as large, s the slope of the shift in the crack's direction: triangles with s > 1 resist until they have less.
+    How far, is carried into the neighbourhood like heat. A crack of the part f of its length makes a triangle's area
+    ``1 + (f - 1) s`` times as large, s the slope of the shift in the crack's direction: triangles with s > 1 resist it.
 
     Parameters
     ----------

@@ -106,6 +106,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or bends(crack))}
     breaks = [z for crack in cracks for z in crack.width or ()]
     breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
+    fine = [*fine, *(place for _, front in moves.values() for place in front.steep())]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
     made = extrude(section, levels, gear.twist_rate, moves.values())
     made = replace(made, fronts={k: front for k, (_, front) in moves.items()})

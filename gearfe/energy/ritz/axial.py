@@ -14,7 +14,7 @@ from numpy.polynomial import legendre
 
 from ...flexibility.halfspace import modes
 
-PUSHING = 8  # degree, at most, of forces between faces of a crack over the whole width: they touch at one point more
+PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
 OPEN = 6, 1.6  # degree of the opening along a part of the width: at least, and per normal module
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
