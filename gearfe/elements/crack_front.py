@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack, check_apart, crack_path, open_part
-from geometry.damage.front import bends, deepest, whole
+from geometry.damage.front import bends, deepest, shallowest, whole
 from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
 
@@ -21,6 +21,7 @@ from .loaded_tooth import check_line_load, edge_lengths
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25, "crack tip": 0.03}
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
+SHALLOW = 0.25  # in the largest depth, below which a front that runs out has no room for the tubes
 TUBE = 0.2, 0.5  # radius of the widest tube of the integral [m_n], and at most in the least depth
 
 
@@ -80,16 +81,15 @@ def stress_intensity_along_front(
     Returns
     -------
     FrontIntensity
-        At the layers where the mesh follows the front: a front that runs out is left out where it is less than a quarter (or
-        0.4, 0.6 if the mesh needs it) as deep as where it is deepest. The values at the first and the last place are means with
-        a one-sided weight.
+        At the layers of elements: a front that runs out is left out where it is less than a quarter as deep as where it is
+        deepest. The values at the first and the last place are means with a one-sided weight.
 
     Raises
     ------
     ValueError
         If the load is not positive, the point is off the flank, or the crack is not a straight one of tooth 0.
     RuntimeError
-        If the mesh folds, or the system does not fit into memory.
+        If the mesh cannot follow the front, or the system does not fit into memory.
     """
     if not callable(line_load):
         check_line_load(line_load)
@@ -121,7 +121,8 @@ def _followed(mesh, crack):
     if 0 not in mesh.fronts:
         return z, np.array([np.ones(z.size), np.zeros(z.size)]), 1.0
     front = mesh.fronts[0]
-    z = z[open_part(crack, mesh.gear.b, z) >= (1 - 1e-9) * front.least * deepest(crack)]
+    least = front.least if shallowest(crack) else SHALLOW
+    z = z[open_part(crack, mesh.gear.b, z) >= (1 - 1e-9) * least * deepest(crack)]
     part = np.array(front.depth(z))
     return z, part, float(part[0].min())
 

@@ -89,7 +89,9 @@ class Influence:
     """Influence matrix between patches.
 
     `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], as loaded and read; `moved` the displacements (3, nodes,
-    teeth * arcs * modes) [mm/N] if they were kept; `dofs` the unknowns, `plan` how they were solved for.
+    teeth * arcs * modes) [mm/N] if they were kept; `dofs` the unknowns, `plan` how they were solved for. `opening` (k, teeth,
+    arcs, modes) is that of zones of crack faces under the patches, `mutual` (k, k) that under unit forces that push the zones'
+    faces apart [mm/N], if asked for.
     """
 
     matrix: np.ndarray
@@ -97,6 +99,8 @@ class Influence:
     dofs: int
     plan: object
     moved: np.ndarray | None = None
+    opening: np.ndarray | None = None
+    mutual: np.ndarray | None = None
 
 
 def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
@@ -168,7 +172,7 @@ def _points(ends, cuts, count):
     return interval, local, place, (half * weight).ravel()
 
 
-def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
+def influence(mesh, material, patches, *, solver=None, keep=False, tell=None, zones=None):
     """Influence matrix between all patches.
 
     Parameters
@@ -183,6 +187,8 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
         Whether to return the displacements too.
     tell : callable, optional
         Gets the `gearfe.elements.solver.Plan`, with the expected memory, before anything costly starts.
+    zones : ndarray, shape (3 nodes, k), optional
+        Nodal forces that push apart zones of crack faces, of `gearfe.elements.crack_zones.zone_forces`.
 
     Returns
     -------
@@ -190,10 +196,12 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
     """
     patches.check(mesh.gear)
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
-    made = plan(3 * free.size, columns=len(patches.teeth) * patches.knots.shape[1] * patches.modes, solver=solver)
+    own = len(patches.teeth) * patches.knots.shape[1] * patches.modes
+    zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
+    made = plan(3 * free.size, columns=own + zones.shape[1], solver=solver)
     if tell:
         tell(made)
-    load = np.hstack([patch_loads(mesh, patches, tooth) for tooth in patches.teeth])
+    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     solve = factor(assemble(mesh.points, mesh.cells, material, free), made)
     whole = None
@@ -201,10 +209,11 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None):
         whole = np.zeros(load.shape)
         whole[rows] = solve(load[rows])
         matrix = load.T @ whole
-        whole = whole.reshape(-1, 3, load.shape[1]).transpose(1, 0, 2)
+        whole = whole[:, :own].reshape(-1, 3, own).transpose(1, 0, 2)
     else:
         matrix = solve.gram(load[rows])
     if not np.isfinite(matrix).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
     shape = len(patches.teeth), patches.knots.shape[1], patches.modes
-    return Influence(matrix.reshape(*shape, *shape), patches, rows.size, made, whole)
+    opening, mutual = matrix[own:, :own].reshape(-1, *shape), matrix[own:, own:]
+    return Influence(matrix[:own, :own].reshape(*shape, *shape), patches, rows.size, made, whole, opening, mutual)

@@ -1,13 +1,15 @@
 """`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
 
 import math
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from scipy.linalg import eigh
 
 from ..flexibility.halfspace import half_space
-from ..flexibility.solid import hats, own_distance, parted, solved_teeth
+from ..flexibility.solid import Faces, hats, own_distance, parted, solved_teeth
+from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches
 from .integral import integral_influence
 
@@ -48,7 +50,7 @@ def solid_flexibility(
         Bore or rim are held over the whole width, the end faces free.
     material : Material
     cracks : tuple of Crack
-        Their faces may pass through each other; those of part of the width or sloping ones follow the element faces.
+        Their faces are kept from passing through each other, zone by zone (`gearfe.elements.crack_zones`).
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
@@ -85,7 +87,7 @@ def solid_flexibility(
     layer = min(LAYER * gear.m_n, gear.b / 6)
     fine = [(z, z, END * layer) for z in (0.0, gear.b)]
     mesh = mesh_patches(gear, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)
-    options = {"solver": solver, "tell": tell}
+    options = {"solver": solver, "tell": tell, "zones": zone_forces(mesh)}
     whole_gear = influence if shaft is None else partial(integral_influence, shaft=shaft)
     found = whole_gear(mesh, material, patches, **options)
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
@@ -94,7 +96,11 @@ def solid_flexibility(
     kept = _resolved(gear, material, whole[0, :, 0], degree, refine, cache) if healthy is None else healthy.degree
     own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
     between = {(i, j): whole[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    return parted(gear, material, gear.b, kept, between, found.dofs, healthy, cache=cache)
+    made = parted(gear, material, gear.b, kept, between, found.dofs, healthy, cache=cache)
+    if not found.mutual.size:
+        return made
+    opening = {tooth: (found.opening[:, k].reshape(-1, size) * unit)[:, own] for k, tooth in enumerate(teeth)}
+    return replace(made, seam=Faces(opening, found.mutual))
 
 
 def _resolved(gear, material, own, degree, refine, cache):

@@ -20,7 +20,7 @@ from .hexahedron import assemble
 from .solver import factor, plan
 
 
-def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None):
+def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None, zones=None):
     """`gearfe.elements.fe3d.influence` of a gear on the stubs of its shaft.
 
     Parameters
@@ -29,7 +29,7 @@ def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None
     material : Material
     patches : Patches
     shaft : Shaft
-    solver, tell
+    solver, tell, zones
         As of `gearfe.elements.fe3d.influence`.
 
     Raises
@@ -40,11 +40,13 @@ def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None
     mesh, discs = _on_stubs(mesh, shaft)
     every = np.arange(mesh.points.shape[1])
     free = np.setdiff1d(every, mesh.held)
-    columns = len(patches.teeth) * patches.knots.shape[1] * patches.modes
+    size = len(patches.teeth) * patches.knots.shape[1] * patches.modes
+    zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
+    columns = size + zones.shape[1]
     made = plan(3 * free.size, columns=columns + discs.shape[1], solver=solver)
     if tell:
         tell(made)
-    load = np.hstack([patch_loads(mesh, patches, tooth) for tooth in patches.teeth])
+    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     whole = assemble(mesh.points, mesh.cells, material, every)
     moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # of which the lower triangle is kept
@@ -56,7 +58,10 @@ def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None
     stiff = discs.T @ moved - back + stub_stiffness(shaft, mesh.gear.b)
     total = own + cross[:, used] @ np.linalg.solve(stiff[np.ix_(used, used)], cross[:, used].T)
     shape = len(patches.teeth), patches.knots.shape[1], patches.modes
-    return Influence(((total + total.T) / 2).reshape(*shape, *shape), patches, rows.size, made)
+    total = (total + total.T) / 2
+    opening, mutual = total[size:, :size].reshape(-1, *shape), total[size:, size:]
+    own = total[:size, :size].reshape(*shape, *shape)
+    return Influence(own, patches, rows.size, made, opening=opening, mutual=mutual)
 
 
 def _on_stubs(mesh, shaft):

@@ -92,7 +92,7 @@ def wide_curves(
             for i, one in enumerate(steps(found)):
                 doubts[i], ratio = _doubt((pair, forces[i], materials), phase, one, options, less)
                 metas[i] |= {"error_refine": ratio * refine} if brute else {}
-    if any(cracks) and not brute:
+    if any(cracks):
         for own, one in zip(metas, found, strict=True):
             own |= {"crack_closed_phases": phase[list(one.closed)].tolist()}
     return [_curve(*own, flanks is not None) for own in zip(found, doubts, metas, strict=True)]

@@ -166,7 +166,7 @@ def mesh_stiffness(
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums.
-        But for ``fe3d``, crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
+        Crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
     flanks : dict, optional
         Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods; what
         changes along the width needs ``ritz3d``, ``fe3d`` or a plain sum. The curve's `te` then is the transmission error under

@@ -1,6 +1,7 @@
 """The front of a crack whose depth changes along the width, as meshes follow it.
 
-A mesh cannot follow a front down to depth nothing: below a least depth it stays there, and the crack ends a little further on.
+A mesh cannot follow a front down to depth nothing: where the front runs out it stays at a least depth, and the crack ends a
+little further on.
 """
 
 import math
@@ -9,12 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import Crack, crack_path, extremes, front
+from .crack import SLACK, Crack, crack_path, extremes, front
 
-LEAST = 0.25, 0.4, 0.6  # least depth that a mesh follows, in the deepest: the first at which it does not fold
+# Down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold.
+LEAST = 0.1, 0.15, 0.2, 0.25
 # A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
 # before if the front is straight there.
 END = 2 / 3
+STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
 SAMPLES = 801  # heights at which a front is looked at first
 
 
@@ -22,6 +25,13 @@ def deepest(crack):
     """Largest open part of a crack's length."""
     high = extremes(crack)[1]
     return math.sqrt(high) if crack.rounded else high
+
+
+def shallowest(crack):
+    """Least depth between the crack's ends, in the largest; 0 if it runs out."""
+    low, high = (max(value, 0.0) for value in extremes(crack))
+    part = low / high if low > SLACK else 0.0
+    return math.sqrt(part) if crack.rounded else part
 
 
 def whole(crack):
@@ -98,6 +108,11 @@ class Front:
         """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""
         return end not in self.ends
 
+    def steep(self):
+        """Heights at which it is `least` deep, and how far it is from there to `STEEP` times that: ``(z, z, distance)`` [mm]."""
+        deeper = self.crossings(STEEP * self.least)
+        return [(z, z, min(abs(z - other) for other in deeper)) for z in self.crossings(self.least) if deeper]
+
     @property
     def sharp(self):
         """Whether the depth is no polynomial of second degree over the width."""
@@ -106,8 +121,8 @@ class Front:
     def crossings(self, part):
         """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
-        value = self._over(z, part)
-        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(value[1:] * value[:-1] < 0)]
+        over = self._over(z, part) > 0
+        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(over[1:] != over[:-1])]
 
     def _over(self, z, part):
         return front(self.crack, self.width, z)[0] - part * deepest(self.crack)

@@ -8,15 +8,20 @@ import math
 
 import numpy as np
 
-from ..damage.front import LEAST, Front
+from ..damage.front import LEAST, Front, shallowest
 
 SPARE = 0.8  # a mesh must not fold at this part of the least depth that it follows
 REACH = 1.2, 0.8  # how far from the crack vertices move: in its lengths, and at least [m_n]
 STIFFER = 0.5  # small triangles resist as their area to minus this power: they keep their shape, the large ones give way
+# Triangles that a crack of depth nothing would turn over resist that so many times more; they are looked for so often.
+HARD, ROUNDS = 1000.0, 10
 
 
 def follow(gear, crack, width, points, triangles, *, outline, line, folds):
     """How a section follows the front of a crack: the shift ``(2, n)`` [mm] of its vertices, and the `Front` followed.
+
+    A front that runs out is followed down to the first of `geometry.damage.front.LEAST` at which the mesh does not fold, any
+    other one all the way.
 
     Parameters
     ----------
@@ -40,23 +45,29 @@ def follow(gear, crack, width, points, triangles, *, outline, line, folds):
     """
     length = math.dist(*points[:, np.atleast_2d(line)[0, [0, -1]]].T)
     shift = shifts(points, triangles, outline, line, max(REACH[0] * length, REACH[1] * gear.m_n))
-    for least in LEAST:
+    low = shallowest(crack)
+    for least in LEAST if low == 0 else (low * (1 - 1e-9),):
         if not folds(points + (SPARE * least - 1) * shift):
             return shift, Front(crack, width, least)
-    raise RuntimeError(f"z = {gear.z}, crack over parts {crack.ends} of its length: the mesh folds; change refine a little")
+    remedy = "change refine a little" if low == 0 else "give ends that run out to 0, or a front that is less shallow there"
+    raise RuntimeError(
+        f"z = {gear.z}, crack over parts {crack.ends} of its length: the mesh cannot follow its front down to "
+        f"{least:.2g} of the largest depth without folding; {remedy}"
+    )
 
 
 def shifts(points, triangles, fixed, line, reach):
-    """Shift ``(2, n)`` of all vertices per part of the crack's length.
+    """Shift ``(2, n)`` of all vertices per part of the crack's length, everywhere in the crack's direction.
 
-    Linear elasticity of triangles without Poisson's ratio carries the shift of the crack into its neighbourhood.
+    How far, is carried into the neighbourhood like heat. A crack of the part f of its length makes a triangle's area
+    ``1 + (f - 1) s`` times as large, s the slope of the shift in the crack's direction: triangles with s > 1 resist it.
 
     Parameters
     ----------
     points : ndarray, shape (2, n)
         Vertices [mm].
     triangles : ndarray, shape (3, m)
-        Counter-clockwise.
+        Counter-clockwise; others are left out.
     fixed : ndarray
         Vertices that must not move: the outline.
     line : ndarray, shape (k,) or (2, k)
@@ -67,34 +78,45 @@ def shifts(points, triangles, fixed, line, reach):
     line = np.atleast_2d(line)
     ends = points[:, line[0, [0, -1]]]
     along = ends[:, 1] - ends[:, 0]
-    part = np.clip(along @ (points - ends[:, :1]) / (along @ along), 0.0, 1.0)
-    away = np.hypot(*(points - ends[:, :1] - along[:, None] * part))
-    still = np.union1d(fixed, np.flatnonzero(away > reach))
-    out = np.zeros(points.shape)
-    own = np.unique(line)
-    out[:, own] = points[:, own] - ends[:, :1]
-    out[:, still] = 0.0
-    free = np.setdiff1d(np.arange(points.shape[1]), np.union1d(own, still))
-    matrix = _elastic(points, triangles)
-    rows = (2 * free[:, None] + np.arange(2)).ravel()
-    out = out.T.ravel()
-    out[rows] = np.linalg.solve(matrix[np.ix_(rows, rows)], -(matrix @ out)[rows])
-    return out.reshape(-1, 2).T
+    length = math.hypot(*along)
+    place = along @ (points - ends[:, :1]) / length
+    away = np.hypot(*(points - ends[:, :1] - along[:, None] * np.clip(place / length, 0.0, 1.0)))
+    still, own = np.union1d(fixed, np.flatnonzero(away > reach)), np.unique(line)
+    out = np.zeros(place.size)
+    out[own] = place[own]
+    out[still] = 0.0
+    free = np.setdiff1d(np.arange(place.size), np.union1d(own, still))
+    slope, area = _slopes(points, triangles)
+    good = area > 1e-9 * area.max()
+    slope, area, triangles = slope[..., good], area[good], triangles[:, good]
+    rise = np.einsum("nam,a->nm", slope, along / length)
+    weight = area * (area.max() / area) ** STIFFER
+    plain = _added(np.einsum("nam,kam,m->mnk", slope, slope, weight), triangles, out.size)
+    steep = np.zeros(area.size, dtype=bool)
+    for _ in range(ROUNDS):
+        hard = HARD * weight * steep
+        matrix = plain + _added(np.einsum("nm,km,m->mnk", rise, rise, hard), triangles, out.size)
+        force = np.bincount(triangles.ravel(), (rise * hard).ravel(), out.size)
+        out[free] = 0.0
+        out[free] = np.linalg.solve(matrix[np.ix_(free, free)], (force - matrix @ out)[free])
+        more = steep | ((rise * out[triangles]).sum(axis=0) > 1)
+        if (more == steep).all():
+            break
+        steep = more
+    return along[:, None] / length * out
 
 
-def _elastic(points, triangles):
-    """Stiffness ``(2 n, 2 n)`` of linear triangles with Young's modulus by their area, and no Poisson's ratio."""
+def _slopes(points, triangles):
+    """Slopes ``(3, 2, m)`` of the linear functions of triangles, and their areas."""
     corner = points[:, triangles]
     (xx, xy), (yx, yy) = (corner[:, 1:] - corner[:, :1]).transpose(0, 1, 2)
     area = (xx * yy - xy * yx) / 2
     inverse = np.array([[yy, -xy], [-yx, xx]]) / (2 * area)
-    slope = np.einsum("xam,xn->nam", inverse, np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]]))
-    weight = area * (area.max() / area) ** STIFFER
-    local = np.einsum("aem,bdm,m->madbe", slope, slope, weight)
-    dot = np.einsum("acm,bcm,m->mab", slope, slope, weight)
-    for d in range(2):
-        local[:, :, d, :, d] += dot
-    rows = (2 * triangles[:, None] + np.arange(2)[:, None]).transpose(2, 0, 1).reshape(-1, 6)
-    out = np.zeros((2 * points.shape[1],) * 2)
-    np.add.at(out, (rows[:, :, None], rows[:, None, :]), local.reshape(-1, 6, 6))
+    return np.einsum("xam,xn->nam", inverse, np.array([[-1.0, 1.0, 0.0], [-1.0, 0.0, 1.0]])), area
+
+
+def _added(local, triangles, count):
+    """The sum ``(count, count)`` of matrices ``(m, 3, 3)`` of triangles."""
+    out = np.zeros((count, count))
+    np.add.at(out, (triangles.T[:, :, None], triangles.T[:, None, :]), local)
     return out

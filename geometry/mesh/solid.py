@@ -106,6 +106,7 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
     moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or bends(crack))}
     breaks = [z for crack in cracks for z in crack.width or ()]
     breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
+    fine = [*fine, *(place for _, front in moves.values() for place in front.steep())]
     levels = layers(gear.b, layer / refine, breaks=breaks, fine=[(a, b, size / refine) for a, b, size in fine])
     made = extrude(section, levels, gear.twist_rate, moves.values())
     made = replace(made, fronts={k: front for k, (_, front) in moves.items()})
@@ -127,7 +128,7 @@ def follow_front(section, number, crack):
     ]
     others = [edges[[0, 2]].ravel() for k, edges, _ in lines if k != number]
     (line,) = [_chain(section, edges[[0, 2]], depth) for k, edges, depth in lines if k == number]
-    triangles = np.hstack([quads[[0, 1, 2]], quads[[0, 2, 3]]])
+    triangles = np.hstack([quads[list(own)] for own in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))])  # the corners of all quads
     arm = section.points[:, ends[1]] - section.points[:, ends[0]]
     place = ((section.points[:, middle] - section.points[:, ends[0]]) * arm).sum(axis=0) / (arm**2).sum(axis=0)
 

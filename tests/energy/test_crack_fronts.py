@@ -10,8 +10,13 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.elements import fe3d
 from gearfe.energy.ritz import solid as ritz3d
+from gearfe.energy.ritz.bent import bent
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
+from geometry.damage.front import Front
+from geometry.mesh.quads import quad_section
+from geometry.mesh.sector import sector
+from geometry.mesh.solid import follow_front
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -74,20 +79,80 @@ FRONTS = {
 }
 
 
+def hexahedra(gear, crack, opened=True):
+    """Influence ``(2, 2)`` of the first modes by hexahedra; if not `opened`, those of the same mesh with the crack shut."""
+    knots = flexibility3d.hats(gear)[:, HAT : HAT + 1]
+    patches, scale = fe3d.Patches((0,), knots, 2), np.sqrt((2 * np.arange(2) + 1) * gear.b)
+    fine = [(0.0, 0.0, 0.3), (gear.b, gear.b, 0.3)]
+    mesh = fe3d.mesh_patches(gear, patches, cracks=(crack,), refine=0.8, fine=fine)
+    if not opened:
+        glued = np.arange(mesh.points.shape[1])
+        glued[mesh.faces["crack 0 tooth"]] = mesh.faces["crack 0 body"]
+        kept, cells = np.unique(glued[mesh.cells], return_inverse=True)
+        number = np.searchsorted(kept, glued)
+        faces = {name: number[nodes] for name, nodes in mesh.faces.items()}
+        mesh = replace(
+            mesh, points=mesh.points[:, kept], cells=cells.reshape(mesh.cells.shape), faces=faces, held=number[mesh.held]
+        )
+    return scale[:, None] * fe3d.influence(mesh, STEEL, patches).matrix[0, 0, :, 0, 0] * scale
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FRONTS)
 @pytest.mark.parametrize("gear", [SPUR, HELICAL, RING], ids=["spur", "helical", "ring"])
 def test_what_a_front_adds_is_that_of_hexahedra(gear, name):
-    """Even load and load that rises along the width; the hexahedra follow the front too and are a little too stiff."""
+    """Even load and load that rises along the width; the hexahedra follow the front too and are a little too stiff.
+
+    The contribution of the crack is the difference to the same hexahedra with the crack shut: that of a half ellipse under the
+    load that rises is 3 % of the whole, as much as other layers of elements change it.
+    """
     crack = FRONTS[name]
-    knots = flexibility3d.hats(gear)[:, HAT : HAT + 1]
-    patches, scale = fe3d.Patches((0,), knots, 2), np.sqrt((2 * np.arange(2) + 1) * gear.b)
     model = [compliance(gear, own, order=3, modes=2) for own in (None, crack)]
-    fine = [(0.0, 0.0, 0.3), (gear.b, gear.b, 0.3)]
-    hexes = [
-        fe3d.influence(fe3d.mesh_patches(gear, patches, cracks=own, refine=0.8, fine=fine), STEEL, patches).matrix[0, 0, :, 0, 0]
-        for own in ((), (crack,))
-    ]
-    added = [found[1] - found[0] for found in (model, [scale[:, None] * one * scale for one in hexes])]
-    print(name, np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds;", added[1][0, 0] / model[0][0, 0])
+    hexes = [hexahedra(gear, crack, opened) for opened in (False, True)]
+    added = [found[1] - found[0] for found in (model, hexes)]
+    print(name, np.round(100 * np.diag(added[0] / added[1] - 1), 2), "% of what the crack adds, which is", end=" ")
+    print(np.round(100 * np.diag(added[1] / hexes[0]), 1), "% of the healthy gear's")
     assert_allclose(np.diag(added[0]), np.diag(added[1]), rtol=0.03)
+    assert_allclose(np.diag(model[1]), np.diag(hexes[1]), rtol=0.01)
+
+
+def test_fronts_are_followed_to_their_shallowest_place_or_refused():
+    """A front that does not run out has its own depth at the shallow end, in both meshes; what meshes cannot follow, they say."""
+    crack = gf.Crack(level=0.5)
+    quads, triangles = quad_section(SPUR, cracks=(crack,), refine=0.5), sector(SPUR, (crack,), sizes=ritz3d.SIZES)
+
+    def fronts(low):
+        own = replace(crack, ends=(1.0, low))
+        yield lambda: follow_front(quads, 0, own)[1]
+        yield lambda: bent(SPUR, triangles, 0, own, SPUR.b)[1]
+
+    for low in (0.7, 0.3, 0.2):
+        for follow in fronts(low):
+            assert_allclose(follow().depth(np.array([0.0, 3.0, 6.0]))[0], [1.0, (1 + low) / 2, low], rtol=1e-8)
+            assert follow().open() == ((0.0, 6.0),)
+    for follow in fronts(0.01):
+        with pytest.raises(RuntimeError, match=r"down to 0.01 of the largest depth .* give ends that run out to 0"):
+            follow()
+
+
+def test_the_heights_at_which_a_front_has_a_depth_are_all_found():
+    """Also those that are among the heights looked at first."""
+    front = Front(gf.Crack(level=0.5, ends=(1.0, 0.0)), 6.0, 0.25)
+    assert_allclose(front.kinks(), [0.0, 6.0, 4.5])
+    assert_allclose(front.open(), [(0.0, 5.0)])
+
+
+def test_a_crack_that_the_load_closes_hardly_matters():
+    """Kept apart, faces on the unloaded side change k as the section says; the energy model's forces on them are independent."""
+    rack = RACK | {"b": 4.0}
+    pair = gf.GearPair(gf.Gear(z=12, x=0.3, r_bore=5.0, **rack), gf.Gear(z=13, x=0.3, r_bore=5.0, **rack))
+    lost = {}
+    for method in ("ritz", "ritz3d"):
+        cracked, healthy = (
+            gf.mesh_stiffness(pair, 400.0, STEEL, damage=own, method=method, phases=2)
+            for own in ({"pinion": [gf.Crack(level=0.4, side="unloaded")]}, None)
+        )
+        assert cracked.meta["crack_closed_phases"] == [0.0, 0.5]
+        lost[method] = 1 - cracked.k / healthy.k
+    assert_allclose(lost["ritz3d"], lost["ritz"], atol=0.003)
+    assert lost["ritz3d"].max() > 0.005, "faces slide on each other"

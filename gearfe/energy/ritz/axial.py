@@ -14,11 +14,12 @@ from numpy.polynomial import legendre
 
 from ...flexibility.halfspace import modes
 
-PUSHING = 8  # degree, at most, of forces between faces of a crack over the whole width: they touch at one point more
+PUSHING = 6  # degree, at most, of forces between faces of a crack over the whole width (`depth.degrees`: all nodes have that)
 OPEN = 6, 1.6  # degree of the opening along a part of the width: at least, and per normal module
 # How far the short cubics about the end of a crack reach [m_n], and the shortest of them, in that. Set while looking at
 # hexahedra of one gear, 12 mm wide with a crack over half of that; judged on finer layers and on 8 mm of the same gear only.
 ENDS = 1.0, 0.2
+MOVED = 3  # polynomials that the depth of a front is multiplied by
 FRONT = 8  # more Gauss points where the section follows a crack's front
 
 
@@ -104,8 +105,8 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
             made = _depth(z, weight, front, columns[0], slopes[0])
             columns.append(made[0])
             slopes.append(made[1])
-            depths[i] = [first]
-            first += 1
+            depths[i] = np.arange(first, first + made[0].shape[1])
+            first += made[0].shape[1]
     value, rise = np.hstack(columns), np.hstack(slopes)
     every = np.arange(degree + 1)
     sets, points, at = [every], [], []
@@ -189,12 +190,19 @@ def _short(z, places, end, inwards):
 
 
 def _depth(z, weight, front, whole, rise):
-    """The depth of a crack's front and its slope ``(n, 1)``, what polynomials over the width carry left out."""
+    """The depth of a crack's front times the first `MOVED` polynomials and its slopes ``(n, k)``, without what polynomials carry.
+
+    What is smooth in space is not smooth at points that move with the front by f(z): it goes like ``a(z) + f(z) b(z)``.
+    """
     value, slope = front.depth(z)
-    own = whole.T @ (weight[:, 0] * value)
+    few, steep = whole[:, :MOVED], rise[:, :MOVED]
+    value, slope = value[:, None] * few, slope[:, None] * few + value[:, None] * steep
+    own = whole.T @ (weight * value)
     value, slope = value - whole @ own, slope - rise @ own
-    size = math.sqrt((weight[:, 0] * value**2).sum())
-    return value[:, None] / size, slope[:, None] / size
+    size, turn = np.linalg.eigh(value.T @ (weight * value))
+    kept = size > 1e-12  # of functions that have about unit size before
+    turn = turn[:, kept] / np.sqrt(size[kept])
+    return value @ turn, slope @ turn
 
 
 def _pushing(z, band, degree):

@@ -18,7 +18,7 @@ from numpy.polynomial import chebyshev
 from geometry.mesh.front import follow
 from geometry.mesh.triangle import jacobians
 
-DEPTHS = 7  # at which the section's matrices are computed
+DEPTHS = 7  # at which the section's matrices are computed, or more in proportion if the depth falls below a quarter
 CHECKED = 6  # order at whose quadrature points the triangles are checked
 
 
@@ -81,7 +81,7 @@ def bent_triangles(sector, shift, front, along, section):
     index[moved] = np.arange(moved.size)
     depth, slope = front.depth(along.z)
     low, high = math.log(depth.min()), math.log(depth.max())
-    count = DEPTHS if high - low > 1e-9 else 1
+    count = math.ceil(DEPTHS * max((high - low) / math.log(4), 1)) if high - low > 1e-9 else 1
     nodes = chebyshev.chebpts1(count)
     at = np.clip((2 * np.log(depth) - low - high) / max(high - low, 1e-9), -1, 1)
     carry = chebyshev.chebvander(at, count - 1) @ np.linalg.inv(chebyshev.chebvander(nodes, count - 1))
