@@ -14,16 +14,13 @@ from .cache import solved_solid
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
 
-COARSER = (
-    0.7,
-    0.76,
-    0.83,
-)  # resolution along the width of the error estimate of finite elements; the first that carries the patches
+# resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
+COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # axial degrees less in it
 ORDER = 2  # of the errors of finite elements in the edge length, at least: smooth loads approach with 4, irregular quads with 2
-SAFETY = (
-    3.0  # where two meshes are compared and their order is taken for granted: P. J. Roache, J. Fluids Eng. 116 (1994) 405-413
-)
+# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
+# sections on three resolutions: tests/elements/test_section_error.py)
+SAFETY = {"layers": 3.0, "section": 1.25}
 
 
 def wide_curves(
