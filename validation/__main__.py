@@ -16,6 +16,7 @@ PAGES = {
     "herringbone_scan": "article S4: which readings of what it does not print bear its table (resumable)",
     "herringbone": "article S4: ten rows of stiffness against finite elements, and what moves them",
     "sample": "finite elements against the energy model, and both error estimates, on random pairs (resumable)",
+    "sample_three": "the same in three dimensions: narrow and wide gears, rings, cracks (resumable)",
     "cracks": "crack reductions and their conventions",
     "assumptions": "what the assumptions of the scenes do to the stiffness",
     "truth": "independent values of others, and CalculiX, beside ours",
@@ -53,6 +54,7 @@ PAGES = {
 LONG_RUNS = ("pairs_three", "herringbone", "outsider_three")  # pages whose finite elements --reference computes
 LONG = {
     "sample": "a new sample of random pairs",
+    "sample_three": "brute-force finite elements of whole gears",
     "herringbone_scan": "an hour of energy models, where it is not kept",
     "slow": "runs the slow tests",
     "install": "downloads all dependencies for every Python",

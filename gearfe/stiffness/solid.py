@@ -6,14 +6,21 @@ from functools import partial
 import numpy as np
 
 from ..contact.solid import pair_stiffness3d
+from ..elements.fe_gear3d import PER_HAT, SIZES, section_resolution
+from ..elements.section_error import FINER, finer_section
 from ..flexibility.solved import solved_gears
 from ..steps import part, steps
 from .cache import solved_solid
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
 
-COARSER = (0.7, 0.76, 0.83)  # resolution of the error estimate of finite elements; the first whose section can be meshed in quads
+# resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
+COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # axial degrees less in it
+ORDER = 2  # of the errors of finite elements in the edge length, at least: smooth loads approach with 4, irregular quads with 2
+# P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
+# sections on three resolutions: tests/elements/test_section_error.py)
+SAFETY = {"layers": 3.0, "section": 1.25}
 
 
 def wide_curves(
@@ -50,11 +57,14 @@ def wide_curves(
     refine, order : float, int
         Of the gears; finite elements have no order.
     error : bool
-        Estimate the discretisation error by coarser bodies: of finite elements by a mesh with `COARSER` resolution and `LESS`
-        axial degrees less, of the energy model by an order and `LESS` axial degrees less. The estimate at a phase is the
-        difference of k there, or, because that can vanish by chance, the mean of those at the fixed phases of one base pitch
-        about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter. Displacements approach
-        their limit at least with the second power of the edges, so the difference is an upper bound.
+        Estimate the discretisation error by other bodies. Of the energy model: by an order and `LESS` axial degrees less. Of
+        finite elements: by layers of `COARSER` resolution with `LESS` axial degrees less, and by what the section lacks in plane
+        strain against one of `gearfe.elements.section_error.FINER` resolution. (Both apart, because the quads of a section do
+        not get coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between
+        edges h and r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p =
+        `ORDER`; times `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of
+        those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the
+        list do not enter.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
     supports : (Support or Shaft or None, Support or Shaft or None), optional
@@ -133,7 +143,11 @@ def _doubt(case, phase, found, options, brute):
     ratio, away = 1.0, found.error
     if brute:
         ratio, coarse = _coarser((*case, every), options, *brute)
-        away = np.abs(coarse - (found.k if more is None else np.append(found.k, more.k)))
+        k = found.k if more is None else np.append(found.k, more.k)
+        finer = pair_stiffness3d(*case, every, **(options | {"model": partial(_finer_section, *brute)})).k
+        along, across = ratio**-ORDER, FINER**ORDER
+        lost, lacking = np.abs(coarse - k) / (along - 1), np.abs(finer - k) * across / (across - 1)
+        away = SAFETY["layers"] * lost + SAFETY["section"] * lacking
     elif more is not None:
         away = np.append(away, more.error)
     at_fixed = away[np.abs(fixed[:, None] - every).argmin(axis=1)]
@@ -143,11 +157,19 @@ def _doubt(case, phase, found, options, brute):
 
 
 def _coarser(case, options, refine, cache, tell):
-    """Part of the resolution at which a coarser mesh was possible, and its k."""
+    """Part of the resolution at which coarser layers were possible, and their k."""
     for ratio in COARSER:
-        model = partial(solved_solid, refine=ratio * refine, cache=cache, tell=tell, less=LESS)
+        less = {"refine": ratio * refine, "section": section_resolution(refine), "less": LESS}
+        model = partial(solved_solid, cache=cache, tell=tell, **less)
         try:
             return ratio, pair_stiffness3d(*case, **(options | {"model": model})).k
         except RuntimeError as error:
             failed = error
     raise failed
+
+
+def _finer_section(refine, cache, tell, gear, material, cracks=(), **options):
+    """A gear of resolution `refine` whose section is finer."""
+    found = solved_solid(gear, material, cracks, refine=refine, cache=cache, tell=tell, **options)
+    section = {"refine": section_resolution(refine), "per_hat": PER_HAT, "sizes": SIZES}
+    return finer_section(found, material, cracks, cache=cache, **section)

@@ -1,0 +1,63 @@
+"""What the quads of a section lack: against the energy model in plane strain, its decrease, and where it is put."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements.fe_gear3d import PER_HAT, SIZES, section_resolution
+from gearfe.elements.section_error import finer_section, plane_hats
+from gearfe.energy.ritz.solid import flexibility3d
+from gearfe.flexibility.end_faces import edge_factor
+from gearfe.flexibility.halfspace import half_space
+from gearfe.flexibility.solid import PLACES, Flexibility3D, own_distance, own_mirrors
+
+GEAR = gf.Gear(z=12, x=0.2, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=6.0, tip_radius=0.2)
+
+
+@pytest.fixture(scope="module")
+def hats_at():
+    """Plane-strain displacement of the hats by resolution."""
+    return {refine: plane_hats(GEAR, gf.Material(), (), refine, PER_HAT, SIZES) for refine in (0.5, 1.0, 2.0)}
+
+
+def test_the_finest_section_is_that_of_the_energy_model_in_plane_strain(hats_at):
+    model = flexibility3d(GEAR, gf.Material(), axial=0, order=5)
+    half = half_space(gf.Material())
+    local = own_distance(GEAR, GEAR.b, 0) + edge_factor(gf.Material()) * own_mirrors(GEAR, GEAR.b, 0)
+    assert_allclose(hats_at[2.0], model.near[0] + half * local, rtol=1e-3)
+
+
+def test_sections_are_too_stiff_and_less_so_the_finer(hats_at):
+    """The finest being a reference, edges of 1 leave less than a tenth of a percent, those of 0.5 far more."""
+    lacking = {refine: 1 - hats_at[refine].sum() / hats_at[2.0].sum() for refine in (0.5, 1.0)}
+    print(lacking)
+    assert 0 < lacking[1.0] < 1e-3
+    assert lacking[0.5] > 2 * lacking[1.0]
+    assert section_resolution(0.65) == 1.0
+    assert section_resolution(1.5) == 1.5
+
+
+def test_a_section_changes_steadily_with_the_helix_angle(hats_at):
+    """Of a gear that is hardly helical it is that of the spur gear, to within the meshes."""
+    almost = plane_hats(replace(GEAR, beta=1e-3), gf.Material(), (), 1.0, PER_HAT, SIZES)
+    assert_allclose(almost, hats_at[1.0], rtol=1e-3)
+
+
+def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at):
+    """To the near part of each tooth, of a cracked one with its crack; nothing changes between teeth."""
+    size = 2 * PLACES
+    near, far = {0: np.zeros((size, size)), 1: np.zeros((size, size))}, {(0, 1): np.ones((size, size))}
+    plain = Flexibility3D(GEAR, 6.0, 1, 1.0, near, far, 0)
+    crack = gf.Crack(level=0.4, tooth=1, width=(0.0, 2.0))
+    options = {"refine": 0.5, "per_hat": PER_HAT, "sizes": SIZES}
+    more = finer_section(plain, gf.Material(), (crack,), **options)
+    want = hats_at[1.0] - hats_at[0.5]
+    for first in (0, 1):
+        assert_allclose(more.near[0][first::2, first::2], want, rtol=1e-9)
+    assert not more.near[0][0::2, 1::2].any()
+    assert np.abs(more.near[1] - more.near[0]).max() > 0.05 * np.abs(want).max()
+    assert more.far is plain.far

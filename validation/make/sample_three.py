@@ -1,0 +1,237 @@
+"""Random pairs in three dimensions: what the estimates of `fe3d` and `ritz3d` say and how far both are from finer solutions."""
+
+import datetime
+import math
+import time
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.contact.solid import pair_stiffness3d
+from gearfe.energy.ritz.solid import axial_degree
+from gearfe.files import written
+from geometry.damage.crack import crack_path
+
+from ..shared import code
+from ..shared.kept_rows import kept, stored
+from ..shared.places import PAGES
+
+PAGE, TABLE = PAGES / "sample_three.md", "sample_three"
+EACH = 10  # pairs of each kind
+# by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`
+KINDS = {
+    "narrow": (81_000, (12, 15), (12, 16), (2.0, 6.0), 0.5),
+    "wide": (82_000, (12, 13), (12, 14), (10.0, 20.0), 0.8),
+    "ring": (83_000, (12, 13), (20, 21), (3.0, 8.0), 0.5),
+    "crack": (84_000, (12, 14), (12, 15), (3.0, 6.0), 0.5),
+}  # none of the seeds was looked at while the methods were made
+PHASES = 5
+FINE = {"order": 4, "refine": 1.25, "step": 0.2}  # of `ritz3d`, the reference of both errors
+FURTHER = 4  # axial degrees more in it
+ASKED = {
+    "difference of the two": ("fe3d", "ritz3d"),
+    "`fe3d` against the finer": ("fe3d", "fine"),
+    "`ritz3d` against the finer": ("ritz3d", "fine"),
+}
+TEXT = f"""
+Each pair, drawn from seeds that were not looked at before, is solved by hexahedra of both whole gears (`fe3d`, resolution
+{KINDS["narrow"][4]:g} along the width, of the wide {KINDS["wide"][4]:g}) and by the energy model (`ritz3d`, its defaults), both
+with `error=True`, at {PHASES} random phases, and by a finer energy model: order {FINE["order"]} instead of 3, {FINE["refine"]:g}
+times the resolution, {FURTHER} axial degrees more, half the cell length. What is asked: whether the two differ by less than both
+estimates together, and each from the finer solution by less than its own. Kinds: external pairs of b/m 2 to 6, of b/m 10 to 20,
+rings, cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4,
+six of ten helical (5 to 28 degrees). Phases at which the load presses the faces of a crack together are left out: hexahedra let
+them pass through each other. A solve that fails counts as not covered. A pair is covered if all of its phases are. The constants
+of the estimates (`gearfe.stiffness.solid`) are published ones; that `fe3d` needed another estimate was seen on seeds 1 to 3 of
+each kind. All three share the contact lines, the half-space and the eight hats across a flank, whose error no estimate sees
+([pairs_three.md](pairs_three.md)).
+"""
+
+
+def drawn(kind, seed):
+    """Pair, line load [N/mm], damage and phases of a seed; ValueError where no such gears exist."""
+    rng, (_, first, second, widths, _) = np.random.default_rng(seed), KINDS[kind]
+    m = float(rng.choice([1.0, 2.0, 4.0]))
+    beta = math.radians(rng.uniform(5, 28)) if rng.random() < 0.6 else 0.0
+    rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5])), "b": float(m * rng.uniform(*widths))}
+    z_1, more = int(rng.integers(*first, endpoint=True)), int(rng.integers(*second, endpoint=True))
+    ring = kind == "ring" or (kind == "crack" and rng.random() < 0.3)
+    z_2 = z_1 + max(more, 20) if ring else more
+    x_1, x_2 = float(rng.uniform(0.0, 0.5)), 0.0 if ring else float(rng.uniform(0.0, 0.3))
+    turn = [z / (2 * math.cos(beta)) for z in (z_1, z_2)]
+    bore = [float(rng.uniform(0.35, 0.8)) * (t - 1.25 + x) * m for t, x in zip(turn, (x_1, x_2), strict=True)]
+    held = {"r_rim": (turn[1] + 1.25 + float(rng.uniform(2, 6))) * m, "addendum": 0.8} if ring else {"r_bore": bore[1]}
+    one = gf.Gear(z=z_1, x=x_1, r_bore=bore[0], beta=beta, tip_radius=0.2, **rack)
+    two = gf.Gear(z=z_2, x=x_2, beta=beta if ring else -beta, tip_radius=0.2, **held, **rack)
+    pair, load = gf.GearPair(one, two), m * float(10 ** rng.uniform(1.3, 2.3))
+    share = rng.random(PHASES)
+    if kind != "crack":
+        return pair, load, None, np.sort(share)
+    width = None
+    if rng.random() < 0.5:
+        part = float(rng.uniform(0.3, 0.7)) * one.b
+        width = (0.0, part) if rng.random() < 0.5 else (one.b - part, one.b)
+    crack = gf.Crack(level=float(rng.uniform(0.2, 0.6)), angle=math.radians(rng.uniform(35, 60)), width=width)
+    contact = pair.eps_alpha + one.b * math.sin(beta) / (math.pi * m)
+    return pair, load, {str(rng.choice(["pinion", "wheel"])): [crack]}, np.sort(0.1 + share * (contact - 0.2))
+
+
+def row(kind, seed):
+    """What is kept of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
+    pair, load, damage, phases = drawn(kind, seed)
+    case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
+    out = {
+        "kind": kind,
+        "pair": named(pair, damage),
+        "load": load,
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+    }
+    out |= {"code": code.fingerprint(), "phase": phases.tolist()}
+    try:
+        energy, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
+        fine, fine_seconds = timed(lambda: finest(*case, damage, phases))
+        brute, brute_seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
+    except RuntimeError as error:
+        return out | {"failed": str(error)}
+    out |= {"closed": np.isin(phases, energy.meta.get("crack_closed_phases", ())).tolist(), "fine": fine.tolist()}
+    out |= {"ritz3d": energy.k.tolist(), "ritz3d_error": energy.error.tolist(), "fe3d": brute.k.tolist()}
+    out |= {"fe3d_error": brute.error.tolist(), "coarser": brute.meta["error_refine"], "dofs": brute.meta["dofs"]}
+    return out | {"seconds": [round(value, 1) for value in (seconds, fine_seconds, brute_seconds)]}
+
+
+def timed(work):
+    """What `work` gives and its seconds of the processor."""
+    started = time.process_time()
+    found = work()
+    return found, time.process_time() - started
+
+
+def finest(pair, force, material, damage, phases):
+    """K [N/m] by the energy model of higher order, on finer triangles and cells, with more functions along the width."""
+    cracks = tuple(tuple((damage or {}).get(name, ())) for name in ("pinion", "wheel"))
+    axial = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER
+    return pair_stiffness3d(pair, force, material, phases, cracks=cracks, axial=axial, cache=False, **FINE).k
+
+
+def named(pair, damage):
+    """A pair in words."""
+    one, two = pair.gear_1, pair.gear_2
+    text = f"{one.z}/{two.z}{' ring' if two.internal else ''}, {math.degrees(abs(one.beta)):.0f} degrees, "
+    text += f"b/m {one.b / one.m_n:.1f}"
+    for gear, (crack,) in (damage or {}).items():
+        low, high = crack.width or (0.0, one.b)
+        text += f", {gear} cracked {100 * crack.level:.0f} %" + (f" over {(high - low) / one.b:.2f} b" if crack.width else "")
+    return text
+
+
+def run():
+    """Compute the rows that are missing, one of each kind in turn, then write `sample_three.md` and print it."""
+    for number in range(EACH):
+        for kind in KINDS:
+            _next(kind, number)
+    page()
+
+
+def _next(kind, number):
+    """The pair `number` of a kind: from the first seed on that follows the one before and gives gears."""
+    seed = KINDS[kind][0] - 1
+    for _ in range(number + 1):
+        seed = next(s for s in range(seed + 1, seed + 1000) if _possible(kind, s))
+    return kept(TABLE, f"{kind} {seed}", lambda: row(kind, seed))
+
+
+def _possible(kind, seed):
+    """Whether a seed gives gears that exist, mesh, and bear their crack."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            pair, _, damage, _ = drawn(kind, seed)
+            for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
+                for crack in (damage or {}).get(name, ()):
+                    crack_path(gear, crack)
+    except ValueError:
+        return False
+    return True
+
+
+def judged(found):
+    """By what is asked: which phases of a row are covered, faces of cracks that touch left out; none if a method failed."""
+    if "failed" in found:
+        return {name: np.zeros(1, dtype=bool) for name in ASKED}
+    away = np.array([np.abs(np.subtract(found[one], found[two])) for one, two in ASKED.values()])
+    own = [np.array(found[f"{name}_error"]) for name in ("fe3d", "ritz3d")]
+    counted = ~np.array(found["closed"])
+    return {name: (gap <= said)[counted] for name, gap, said in zip(ASKED, away, (own[0] + own[1], *own), strict=True)}
+
+
+def page():
+    """Write `sample_three.md` from the rows on file and print it."""
+    rows = [one for one in stored(TABLE).values() if one["kind"] in KINDS]
+    text = "\n".join([*_head(rows), *_counts(rows), "", *_misses(rows), "", *_list(rows), ""])
+    with written(PAGE) as name:
+        Path(name).write_text(text, encoding="utf-8")
+    print(text)
+
+
+def _head(rows):
+    codes = list(dict.fromkeys(one["code"] for one in rows))
+    cpu = [sum(one["seconds"]) for one in rows if "seconds" in one]
+    return [
+        "# Random pairs in three dimensions: do the error estimates cover?",
+        "",
+        f"Made by `python -m validation sample_three` (resumable; rows in `tables/{TABLE}.jsonl`), {len(rows)} of "
+        f"{EACH * len(KINDS)} pairs, {np.mean(cpu):.0f} CPU seconds each, code {', '.join(codes)}"
+        f"{'' if codes == [code.fingerprint()] else ' (the present one: ' + code.fingerprint() + ')'}.",
+        *TEXT.strip().splitlines(),
+        "",
+    ]
+
+
+def _counts(rows):
+    """Lines of the table of what is covered: phases and pairs, of each kind and of all."""
+    out = ["| | " + " | ".join(ASKED) + " |", "|---|" + "---|" * len(ASKED)]
+    for kind in (*KINDS, "all"):
+        own = [judged(one) for one in rows if kind in (one["kind"], "all")]
+        if own:
+            phases = [np.concatenate([one[name] for one in own]) for name in ASKED]
+            pairs = [sum(bool(one[name].all()) for one in own) for name in ASKED]
+            cells = (f"{n} of {len(own)} pairs, {p.sum()} of {p.size} phases" for n, p in zip(pairs, phases, strict=True))
+            out.append(f"| {kind} | " + " | ".join(cells) + " |")
+    return out
+
+
+def _misses(rows):
+    """Every phase that is not covered."""
+    out = []
+    for one in rows:
+        if "failed" in one:
+            out.append(f"- {one['row']}, {one['pair']}: {one['failed']}")
+            continue
+        phases = np.array(one["phase"])[~np.array(one["closed"])]
+        for name, good in judged(one).items():
+            for phase in phases[~good]:
+                at = one["phase"].index(phase)
+                first, second = ASKED[name]
+                said = sum(one[f"{m}_error"][at] for m in ASKED[name] if m != "fine") / one["fine"][at]
+                gap = abs(one[first][at] - one[second][at]) / one["fine"][at]
+                out.append(f"- {one['row']}, {one['pair']}, phase {phase:.3f}: {name} {100 * gap:.3f} %, said {100 * said:.3f} %")
+    return ["Not covered:" if out else "Nothing is left uncovered.", "", *out] if out else ["Nothing is left uncovered."]
+
+
+def _list(rows):
+    """One line for each pair: largest differences and estimates over its phases, in percent."""
+    out = [
+        "| seed | pair | N/mm | `fe3d` off | says | `ritz3d` off | says | apart | CPU s |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for one in rows:
+        if "failed" in one:
+            continue
+        fine, open_ = np.array(one["fine"]), ~np.array(one["closed"])
+        pairs = [("fe3d", "fine"), ("fe3d_error", None), ("ritz3d", "fine"), ("ritz3d_error", None), ("fe3d", "ritz3d")]
+        values = [np.abs(np.array(one[a]) - (np.array(one[b]) if b else 0.0)) / fine for a, b in pairs]
+        cells = " | ".join(f"{100 * v[open_].max(initial=0.0):.2f}" for v in values)
+        out.append(f"| {one['row']} | {one['pair']} | {one['load']:.0f} | {cells} | {sum(one['seconds']):.0f} |")
+    return out
