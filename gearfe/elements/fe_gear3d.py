@@ -27,15 +27,6 @@ def axial_modes(width, m_n):
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
-def section_resolution(refine):
-    """Resolution of the section: `refine`, at least 1.
-
-    With edges of a quarter module in the loaded fillets, as at 0.65, a section is 0.2 to 0.3 % too stiff, with those of 1 less
-    than 0.1 %, for a fifth more quads.
-    """
-    return max(refine, 1.0)
-
-
 def solid_flexibility(
     gear,
     material,
@@ -67,9 +58,9 @@ def solid_flexibility(
         Of the patches along the width; default `axial_modes`, `less` so many. The highest that the layers cannot carry, at most
         two, are dropped (seen on the gear without cracks).
     refine : float
-        Divides the height of the layers and, above 1, the edges of the section.
+        Divides all edge lengths and the layers.
     section : float, optional
-        Divides the edges of the section; default `section_resolution`.
+        Divides the edges of the section instead.
     solver, tell
         As in `gearfe.elements.fe3d.influence`.
     healthy : Flexibility3D, optional
@@ -96,7 +87,7 @@ def solid_flexibility(
     degree -= less
     teeth = tuple(solved_teeth(gear, cracks, neighbours))
     patches = Patches(teeth, hats(gear), degree + 1)
-    section = section_resolution(refine) if section is None else section
+    section = refine if section is None else section
     layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
     fine = [(z, z, END * layer) for z in (0.0, gear.b)]
     mesh = mesh_patches(gear, patches, cracks=cracks, refine=section, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)

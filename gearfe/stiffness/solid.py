@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from ..contact.solid import pair_stiffness3d
-from ..elements.fe_gear3d import PER_HAT, SIZES, section_resolution
+from ..elements.fe_gear3d import PER_HAT, SIZES
 from ..elements.section_error import FINER, finer_section
 from ..flexibility.solved import solved_gears
 from ..steps import part, steps
@@ -159,7 +159,7 @@ def _doubt(case, phase, found, options, brute):
 def _coarser(case, options, refine, cache, tell):
     """Part of the resolution at which coarser layers were possible, and their k."""
     for ratio in COARSER:
-        less = {"refine": ratio * refine, "section": section_resolution(refine), "less": LESS}
+        less = {"refine": ratio * refine, "section": refine, "less": LESS}
         model = partial(solved_solid, cache=cache, tell=tell, **less)
         try:
             return ratio, pair_stiffness3d(*case, **(options | {"model": model})).k
@@ -171,5 +171,5 @@ def _coarser(case, options, refine, cache, tell):
 def _finer_section(refine, cache, tell, gear, material, cracks=(), **options):
     """A gear of resolution `refine` whose section is finer."""
     found = solved_solid(gear, material, cracks, refine=refine, cache=cache, tell=tell, **options)
-    section = {"refine": section_resolution(refine), "per_hat": PER_HAT, "sizes": SIZES}
+    section = {"refine": refine, "per_hat": PER_HAT, "sizes": SIZES}
     return finer_section(found, material, cracks, cache=cache, **section)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements.fe_gear3d import PER_HAT, SIZES, section_resolution
+from gearfe.elements.fe_gear3d import PER_HAT, SIZES
 from gearfe.elements.section_error import finer_section, plane_hats
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.end_faces import edge_factor
@@ -37,8 +37,6 @@ def test_sections_are_too_stiff_and_less_so_the_finer(hats_at):
     print(lacking)
     assert 0 < lacking[1.0] < 1e-3
     assert lacking[0.5] > 2 * lacking[1.0]
-    assert section_resolution(0.65) == 1.0
-    assert section_resolution(1.5) == 1.5
 
 
 def test_a_section_changes_steadily_with_the_helix_angle(hats_at):
