@@ -10,7 +10,7 @@ from gearfe.files import written
 from gearfe.scene.stored import read_curves, stored_file, write_curves
 from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
-from ..shared import machine
+from ..shared import herringbone_section, machine
 from ..shared.herringbone_page import SCENE, SUMS, TABLES, error_table, page, picture
 from ..shared.places import PAGES
 
@@ -122,6 +122,11 @@ def run():
     """Compute the tables, draw the picture, write the page."""
     every_case()
     sensitivities()
+    save(
+        f"{SCENE}_section",
+        ["pair", "resolution", "mean", "least", "most"],
+        herringbone_section.rows(gf.load_scene(SCENE), REFINE),
+    )
     picture(TABLES / f"{SCENE}_sensitivity.png")
     with written(PAGES / f"{SCENE}.md") as name:
         Path(name).write_text(page(), encoding="utf-8")

@@ -35,7 +35,7 @@ TEXT = f"""
 The finite elements (`method="fe3d"`, hexahedra of both whole gears) are in `tables/pairs_three.csv`; `--reference` computes what
 it lacks, case by case. {LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle over the whole engagement of the pinion's tooth 0,
 which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as lost contact. Contact on the path only. Phases
-at which the load presses the faces of a crack together are left out: the hexahedra let them pass through each other.
+at which the load presses the faces of a crack together are left out: the hexahedra on file let them pass through each other.
 
 Mean and largest difference: `ritz3d` against the finest mesh, over all phases; bold beyond 0.5 % in the mean or 1 % at a phase.
 Last step: mean change of k from the mesh before to the finest, and the observed order of convergence where there are three.
