@@ -55,9 +55,10 @@ twice as long, along the width, as wide. A linear estimate under the loads of lo
 
 `ritz3d` is within {mean:.2f} % of the finite elements in all ten means, {largest:.2f} % in all ten maxima and {phase:.2f} %
 at every phase; no constant of it is fitted to any gear. Most of this is the section of these hexahedra, which is coarser than
-the default: what it lacks in plane strain against one of twice the default's resolution, put into the energy model's gears, makes
-k stiffer by: {section}. The rest are the layers along the width; of the ring pair they are the coarsest that carry the patches, and
-finer ones do not fit into 24 GB. Smaller pairs with a ring, on finer meshes, are within 0.25 % ([pairs](pairs_three.md)).
+the default: what it lacks in plane strain against one of twice the default's resolution, put into the energy model's gears,
+makes k stiffer by: {section}. The rest are the layers along the width; of the ring pair they are the coarsest that carry the
+patches, and finer ones do not fit into 24 GB. Smaller pairs with a ring, on finer meshes, are within 0.25 %
+([pairs](pairs_three.md)).
 
 {seconds}
 
