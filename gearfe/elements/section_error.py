@@ -20,7 +20,7 @@ from ..flexibility.solved import solved_gears
 from .fe3d import Patches, mesh_patches, patch_loads
 from .hexahedron import assemble
 
-FINER = 2.0  # resolution of the section that is taken for exact, against that of the gear
+FINER = 4.0  # resolution of the section that is taken for exact, against that of the gear
 THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
 
 

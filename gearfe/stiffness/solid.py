@@ -17,7 +17,9 @@ from .estimate import MEAN, fixed_phases
 # resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
 COARSER = (0.7, 0.76, 0.83)
 LESS = 2  # axial degrees less in it
-ORDER = 2  # of the errors of finite elements in the edge length, at least: smooth loads approach with 4, irregular quads with 2
+# of the errors of finite elements in the edge length, at least: layers are regular; the quads of a section are not, and from one
+# resolution to the next those at a hat may stay as they are
+ORDER = {"layers": 2, "section": 1}
 # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
 # sections on three resolutions: tests/elements/test_section_error.py)
 SAFETY = {"layers": 3.0, "section": 1.25}
@@ -57,14 +59,14 @@ def wide_curves(
     refine, order : float, int
         Of the gears; finite elements have no order.
     error : bool
-        Estimate the discretisation error by other bodies. Of the energy model: by an order and `LESS` axial degrees less. Of
-        finite elements: by layers of `COARSER` resolution with `LESS` axial degrees less, and by what the section lacks in plane
-        strain against one of `gearfe.elements.section_error.FINER` resolution. (Both apart, because the quads of a section do
-        not get coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between
-        edges h and r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p =
-        `ORDER`; times `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of
-        those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the
-        list do not enter.
+        Estimate the discretisation error by other bodies. Of the energy model: by an order and a quarter of the axial degrees
+        less. Of finite elements: by layers of `COARSER` resolution with `LESS` axial degrees less, and by what the section lacks
+        in plane strain against one of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads
+        of a section do not get coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a
+        difference d between edges h and r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the
+        coarser, with p of `ORDER`; times `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by
+        chance, the mean of those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger:
+        other phases of the list do not enter.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
     supports : (Support or Shaft or None, Support or Shaft or None), optional
@@ -145,7 +147,7 @@ def _doubt(case, phase, found, options, brute):
         ratio, coarse = _coarser((*case, every), options, *brute)
         k = found.k if more is None else np.append(found.k, more.k)
         finer = pair_stiffness3d(*case, every, **(options | {"model": partial(_finer_section, *brute)})).k
-        along, across = ratio**-ORDER, FINER**ORDER
+        along, across = ratio ** -ORDER["layers"], FINER ** ORDER["section"]
         lost, lacking = np.abs(coarse - k) / (along - 1), np.abs(finer - k) * across / (across - 1)
         away = SAFETY["layers"] * lost + SAFETY["section"] * lacking
     elif more is not None:

@@ -53,7 +53,7 @@ def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at):
     crack = gf.Crack(level=0.4, tooth=1, width=(0.0, 2.0))
     options = {"refine": 0.5, "per_hat": PER_HAT, "sizes": SIZES}
     more = finer_section(plain, gf.Material(), (crack,), **options)
-    want = hats_at[1.0] - hats_at[0.5]
+    want = hats_at[2.0] - hats_at[0.5]
     for first in (0, 1):
         assert_allclose(more.near[0][first::2, first::2], want, rtol=1e-9)
     assert not more.near[0][0::2, 1::2].any()
