@@ -21,7 +21,7 @@ from .bodies import bodies_of
 from .cells import Cells
 from .phase_contact import PhaseContact
 
-STEP = 0.4  # longest cell along the width [mm]
+STEP, PART = 0.4, 0.2  # longest cell along the width [mm], and [m_n] of modules below 2 mm
 SPREAD = 4.0  # forces that share cells, over each other
 
 
@@ -64,7 +64,7 @@ def pair_stiffness3d(
     flanks=None,
     face="helical",
     groove=0.0,
-    step=STEP,
+    step=None,
     order=3,
     axial=None,
     refine=1.0,
@@ -101,8 +101,8 @@ def pair_stiffness3d(
         bodies.
     groove : float
         Between the halves [mm].
-    step : float
-        Longest cell along the width [mm].
+    step : float, optional
+        Longest cell along the width [mm]; default 0.4 mm, or 0.2 normal modules of 2 mm or less.
     order, axial, refine : int, int, float
         Of `flexibility3d`.
     extended : bool
@@ -134,6 +134,7 @@ def pair_stiffness3d(
     for value in forces:
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
+    step = min(STEP, PART * pair.gear_1.m_n) if step is None else step
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)

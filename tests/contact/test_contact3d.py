@@ -118,6 +118,17 @@ def test_helical_contact_goes_on_beyond_the_path():
         assert own.load[own.corner > 0].sum() > 0.005 * own.load.sum()
 
 
+def test_gears_of_another_size_are_alike():
+    """Twice as large with twice the force per width: k per width is the same, tip corners included."""
+
+    def per_width(m):
+        rack = {"m_n": m, "alpha_n": math.radians(20), "b": 5.8 * m}
+        one, two = (gf.Gear(z=z, r_bore=0.27 * z * m, beta=turn * BETA, **rack) for z, turn in ((15, 1), (13, -1)))
+        return pair_stiffness3d(gf.GearPair(one, two), 100 * m**2, STEEL, np.array([0.06, 0.6, 0.8]), order=2).k / m
+
+    assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
+
+
 def test_herringbone_is_twice_a_half():
     run = {"order": 2, "axial": 6, "phases": 4}
     half = pair_stiffness3d(pair_of(), 1500.0, STEEL, **run)
