@@ -68,9 +68,10 @@ def run():
 Made by `python -m validation before_after` on {machine.describe()}.
 One mesh cycle of {PHASES} phases, each run a process of its own after another small pair and with nothing known of this one,
 commit {BEFORE} and today's code in turn, the faster of {ROUNDS} runs each; seconds are the processor's, memory is the peak of the
-process with all imports. Error: the largest at a phase against the finest solution of today's code (three dimensions: one order
-more; sections: finite elements with edges a third as long). In three dimensions the error before contains what today's code
-models in addition, free end faces.
+process with all imports. Error: the largest at a phase against the finest solution of today's code (three dimensions: order 4
+with the same functions along the width, what more of those change stands in [speed_three.md](speed_three.md); sections: finite
+elements with edges a third as long). In three dimensions the error before contains what today's code models in addition, free end
+faces.
 
 | case | seconds before | after | ratio | memory before | after | error before | after |
 |---|---|---|---|---|---|---|---|
