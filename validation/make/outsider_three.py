@@ -144,13 +144,18 @@ def verdict(known):
         yield f"- {what}: {len(within)} of {len(own)} within {asked}: {_listed(within)}."
         if len(within) < len(own):
             yield f"  **Beyond {asked}**: {_listed({name: own[name] for name in own if name not in within})}."
-    last = {name: (mesh, found) for (name, mesh), found in pitted(known).items()}
-    for name, (mesh, found) in last.items():
+    meshes = {}
+    for (name, mesh), found in pitted(known).items():
+        meshes.setdefault(name, []).append((mesh, found))
+    for name, own in meshes.items():
+        (_, before), (mesh, found) = [("", {}), *own][-2:]
         ours = found["ritz3d"]
         yield f"- Pits, {name}, {mesh}: as lost contact they change k by {100 * ours:+.2f} % in `ritz3d`."
         for kind, said in (("lost", "with contact lost and the material left"), ("cut", "cut out")):
             if kind in found:
-                yield f"  In CalculiX {said}: {100 * found[kind]:+.2f} %, {_judged((1 + ours) / (1 + found[kind]) - 1)}."
+                moved = abs(found[kind] - before[kind]) if kind in before else 0.0
+                doubt = f"; **not decided**: {100 * moved:.2f} % between its two last meshes" if moved > ASKED else ""
+                yield f"  In CalculiX {said}: {100 * found[kind]:+.2f} %, {_judged((1 + ours) / (1 + found[kind]) - 1)}{doubt}."
         raw = [f"{end} {100 * away[f'{name} {end}']:+.2f} %" for end in PITS.values() if f"{name} {end}" in away]
         yield f"  The tets themselves: k of `ritz3d` is {'; '.join(raw)}."
 
