@@ -1,4 +1,4 @@
-"""Pits as real holes: their volume, cuts that fail, tets, loads, stress, and what the missing material does."""
+"""Pits as real holes: their volume, cuts that fail, tets, flanks and seams."""
 
 import math
 from dataclasses import replace
@@ -7,20 +7,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
-from skfem import Basis as FemBasis
-from skfem import BilinearForm, ElementTetP2, ElementVector, MeshTet, asm
-from skfem.helpers import ddot, eye, sym_grad, trace
 
 import gearfe as gf
-from gearfe.elements.hexahedron import assemble
-from gearfe.elements.tetrahedron import nodal_stress, second_order, tet_stiffness
-from gearfe.stress.fields import write_vtu
-from gearfe.stress.holed import pressed_tooth, tooth_field
-from geometry.damage.pit import centre_arc, pit_row
+from geometry.damage.pit import centre_arc
 from geometry.damage.pit_volume import pit_frame, removed_volume
 from geometry.mesh import holes
 from geometry.mesh.holes import filled, holed_sector
-from geometry.tooth.profile import cartesian, fillet_length, flank, flank_normal, roll_at_arc, root_curve
+from geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 GEAR = gf.Gear(z=18, r_bore=9.0, **RACK)
@@ -148,7 +141,7 @@ def test_holes_in_a_ring():
 @pytest.mark.parametrize("fault", ["no cut", "shallow", "moved"])
 def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
     """Tools that miss the tooth, are too short or are beside their place: no error of gmsh, but the volume is wrong."""
-    tool = holes._tool
+    tool = holes.tool
 
     def wrong(gear, one):
         centre, axes, push = tool(gear, one)
@@ -158,7 +151,7 @@ def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
 
     found = [pit(GEAR), pit(GEAR, z=1.0)]
     assert holed_sector(GEAR, found, teeth=1, sizes=COARSE).removed[1] > 0
-    monkeypatch.setattr(holes, "_tool", wrong)
+    monkeypatch.setattr(holes, "tool", wrong)
     with pytest.raises(RuntimeError, match=r"should take .* mm\*\*3 from the tooth"):
         holed_sector(GEAR, found, teeth=1, sizes=COARSE)
 
@@ -231,155 +224,3 @@ def test_no_face_of_a_flank_is_lost_near_the_base_circle():
     area = np.linalg.norm(np.cross(b - a, c - a, axis=0), axis=0).sum() / 2
     whole = (gear.roll_a**2 - gear.roll_f**2) / (2 * gear.r_b) * gear.b / math.cos(gear.beta_b)
     assert_allclose(area, whole, rtol=1e-2)
-
-
-def test_tets_are_those_of_scikit_fem(steel):
-    mesh = MeshTet().refined(1)
-    mesh = mesh.translated((0.1, 0.2, 0.3)).scaled((1.0, 1.3, 0.8))
-    sides = mesh.p[:, mesh.t[1:]] - mesh.p[:, mesh.t[:1]]
-    left = np.linalg.det(sides.transpose(2, 0, 1)) < 0  # ours are right-handed
-    nodes, cells, _ = second_order(mesh.p, np.where(left, mesh.t[[1, 0, 2, 3]], mesh.t))
-    free = np.arange(nodes.shape[1])
-    lower = assemble(nodes, cells, steel, free, tet_stiffness)
-    lam, mu = steel.lame("plane strain")
-
-    @BilinearForm
-    def form(u, v, _):
-        strain = sym_grad(u)
-        return ddot(lam * eye(trace(strain), 3) + 2 * mu * strain, sym_grad(v))
-
-    basis = FemBasis(mesh, ElementVector(ElementTetP2()), intorder=4)
-    theirs = asm(form, basis)
-    field = np.random.default_rng(1).normal(size=(3, 10))
-
-    def at(x):
-        x, y, z = x
-        return np.tensordot(field, [1 + 0 * x, x, y, z, x * x, y * y, z * z, x * y, y * z, x * z], axes=1)
-
-    mine = at(nodes).T.ravel()
-    other = basis.project(at)
-    ours = 2 * mine @ (lower @ mine) - (lower.diagonal() * mine**2).sum()
-    assert_allclose(ours, other @ theirs @ other, rtol=1e-9)
-
-
-def test_stress_of_a_linear_field_is_exact(steel):
-    made = holed_sector(HELICAL, [pit(HELICAL)], teeth=1, sizes=COARSE)
-    nodes, cells, _ = second_order(made.points, made.cells[:, made.plug < 0])
-    slope = np.random.default_rng(0).normal(size=(3, 3))
-    lam, mu = steel.lame("plane strain")
-    strain = (slope + slope.T) / 2
-    want = lam * np.trace(strain) * np.eye(3) + 2 * mu * strain
-    found = nodal_stress(nodes, cells, slope @ nodes, steel)[:, np.unique(cells)]
-    assert_allclose(found, np.tile(want[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]][:, None], found.shape[1]), rtol=1e-6, atol=1e-3)
-
-
-@pytest.fixture(scope="module")
-def pressed():
-    pair = gf.GearPair(HELICAL, replace(HELICAL, z=27))
-    damage = {"pinion": [pit(HELICAL), pit(HELICAL, z=1.2), gf.Crack(level=0.3)]}
-    run = {"phases": [0.5, 0.9], "removal": True, "sizes": COARSE}
-    return pair, pressed_tooth(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage, **run)
-
-
-def test_the_load_is_that_of_the_contact(pressed):
-    """Its axial part and moment are those of a force at right angles to the flank; the reactions balance it."""
-    pair, made = pressed
-    from gearfe.stress import holed
-
-    nodes, _, number = second_order(made.sector.points, made.sector.cells)
-    lines = holed._lines(pair, made.contact.cells[0], 0, 0, 0)
-    force = holed._pressure(made.sector, nodes, number, lines, holed.SPREAD * HELICAL.m_n).reshape(-1, 3).T
-    total = sum(part[3].sum() for found in lines.values() for part in found)
-    assert_allclose(total * math.cos(HELICAL.beta_b), 1500.0, rtol=1e-6)
-    assert_allclose(force[2].sum(), total * math.sin(HELICAL.beta_b), rtol=1e-9)
-    moment = (nodes[1] * force[0] - nodes[0] * force[1]).sum()
-    assert_allclose(moment, -total * HELICAL.r_b * math.cos(HELICAL.beta_b), rtol=2e-3)
-    assert made.load[0] == pytest.approx(sum(part[3].sum() for part in lines[0]))
-
-
-def test_holes_and_cracks_weaken(pressed):
-    _, made = pressed
-    assert (made.extra > 0).all()
-    assert (made.extra < 0.02).all()
-    field = tooth_field(made)
-    assert field.opening > 0
-    assert np.isfinite(field.mises).all()
-    assert field.root > 0
-
-
-def test_vtu_reads_back(pressed, tmp_path):
-    import meshio
-
-    field = tooth_field(pressed[1], 1)
-    write_vtu(tmp_path / "tooth.vtu", [field])
-    found = meshio.read(tmp_path / "tooth.vtu")
-    assert_allclose(found.points, field.points.T)
-    assert np.array_equal(found.cells_dict["tetra10"], field.cells.T)
-    assert_allclose(found.point_data["displacement [mm]"], field.moved.T)
-    assert_allclose(found.point_data["stress [MPa]"], field.stress.T)
-    assert_allclose(found.point_data["von Mises stress [MPa]"], field.mises)
-
-
-def test_damage_of_two_gears_is_refused():
-    pair = gf.GearPair(GEAR, replace(GEAR, z=27))
-    with pytest.raises(ValueError, match="one tooth of one gear"):
-        pressed_tooth(pair, 1000.0, gf.Material(), {"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]})
-
-
-def test_a_load_without_width_is_refused(steel):
-    with pytest.raises(ValueError, match="give spread > 0"):
-        pressed_tooth(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, {"pinion": [pit(GEAR)]}, phases=[0.5], spread=0.0)
-
-
-@pytest.mark.slow
-def test_halves_are_mirror_images(steel):
-    """Pits in the second half of a herringbone pair, turned the other way, do what they do in the first."""
-    wide = [replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))]
-    pair = gf.GearPair(*wide)
-    run = {"phases": [0.6], "face": "herringbone", "removal": True, "sizes": COARSE, "teeth": 1}
-    found = [
-        pressed_tooth(pair, 2000.0, steel, {"pinion": [pit(HELICAL, z=z, angle=a)]}, **run) for z, a in ((2.0, 0.5), (10.0, -0.5))
-    ]
-    assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
-    assert_allclose(found[0].load, found[1].load, rtol=1e-6)
-    assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
-    with pytest.raises(ValueError, match="both halves"):
-        pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 10.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
-
-
-@pytest.mark.slow
-def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel):
-    """The mean over the middle third of the width, in ten pieces of the fillet: the nodal peaks of so coarse tets scatter."""
-    pair = gf.GearPair(replace(GEAR, b=16.0), replace(GEAR, b=16.0, z=27))
-    made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes={"fillet": 0.2, "flank": 0.4})
-    assert made.load[0] == pytest.approx(2000.0), "one pair carries"
-    field = tooth_field(made)
-    arcs = np.linspace(0.0, fillet_length(pair.gear_1), 400)
-    curve = cartesian(*root_curve(pair.gear_1, arcs))
-    away = np.hypot(*(field.points[:2, :, None] - curve[:, None, :]))
-    on = (away.min(axis=1) < 0.02) & (np.abs(field.points[2] - 8.0) < 2.5)
-    tensor = field.stress[:, on][[[0, 3, 5], [3, 1, 4], [5, 4, 2]]].transpose(2, 0, 1)
-    piece = away[on].argmin(axis=1) // 40
-    means = [np.linalg.eigvalsh(tensor)[piece == k, 2].mean() for k in range(10)]
-    radius = math.hypot(pair.gear_1.r_b, float(made.contact.cells[0].roll_1.mean()))
-    assert_allclose(max(means), gf.root_stress(pair.gear_1, radius, 125.0, steel), rtol=0.04)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("gear", [GEAR, HELICAL])
-def test_the_mesh_is_finer_along_loaded_contact_lines_only(gear, steel):
-    """Nodes within 0.1 mm of the lines of tooth 0, and more than 2 mm away, with edges of 0.12 modules there and without."""
-    pair = gf.GearPair(replace(gear, b=4.0), replace(gear, b=4.0, z=27))
-    near, far = [], []
-    for strip in (None, 0.12):
-        made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes=COARSE, teeth=1, strip=strip)
-        cells = made.contact.cells[0]
-        own = (cells.order == 0) & (cells.load > 0)
-        radius, angle = flank(pair.gear_1, cells.roll_1[own])
-        turn = made.sector.gear.twist_rate * cells.z[own]
-        line = np.array([*cartesian(radius, angle + turn), cells.z[own]])
-        away = np.linalg.norm(made.nodes[:, :, None] - line[:, None, :], axis=0).min(axis=1)
-        near.append(int((away < 0.1).sum()))
-        far.append(int((away > 2.0).sum()))
-    assert near[1] > 3 * near[0]
-    assert far[1] < 2 * far[0]

@@ -1,0 +1,119 @@
+"""The drawing of a sector of a gear to be meshed in tets: outline, crack, circles with smaller edges, tools that cut the pits.
+
+All of it lies in the frame that turns with the helix, in which a tooth is a prism.
+"""
+
+import math
+
+import numpy as np
+
+from ..damage.crack import crack_path, start_arc
+from ..damage.pit_volume import pit_frame
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+
+
+def section(gear, crack, teeth):
+    """Points ``(2, n)``, curves and the loops of each face: one face, or body and cracked tooth."""
+    points, curves = [], []
+
+    def at(xy):
+        points.append(np.asarray(xy, dtype=float).reshape(2))
+        return len(points) - 1
+
+    def join(kind, *ends):
+        curves.append((kind, list(ends)))
+        return len(curves) - 1
+
+    own_teeth = numbers_of(gear, teeth)
+    pitch = 2 * math.pi / gear.z
+    edge = (0.5 - own_teeth[0]) * pitch
+    first = last = at(cartesian(gear.r_f, -edge))
+    rim, above, marks = [], [], {}  # where the crack's parting line meets the outline
+    for tooth in own_teeth:
+        for side in ("unloaded", "loaded"):
+            mark = None if crack is None or tooth else start_arc(gear, crack)
+            pieces = _half(gear, side, mark)
+            for number, (kind, radius, angle, cut) in enumerate(pieces, 1):
+                closing = teeth is None and (tooth, side, number) == (own_teeth[-1], "loaded", len(pieces))
+                places = zip(radius[1 : -1 if closing else None], angle[1 : -1 if closing else None], strict=True)
+                own = [last, *(at(cartesian(r, a + tooth * pitch)) for r, a in places), *([first] if closing else [])]
+                if cut and side == "unloaded":
+                    marks["unloaded"], before = own[0], len(rim)
+                (above if "unloaded" in marks and "loaded" not in marks else rim).append(join(kind, *own))
+                last = own[-1]
+                if cut and side == "loaded":
+                    marks["loaded"] = last
+    hole = []
+    if teeth is None:
+        inner = [at(cartesian(gear.held, 2 * math.pi * k / 3)) for k in range(3)]
+        hole = [[join("arc", inner[k], inner[(k + 1) % 3]) for k in range(3)]]
+    else:
+        inner = [at(cartesian(gear.held, angle)) for angle in (edge, 0.0, -edge)]
+        rim += [join("line", last, inner[0]), join("arc", *inner[:2]), join("arc", *inner[1:]), join("line", inner[2], first)]
+
+    def body(loop):
+        return [*hole, loop] if gear.internal else [loop, *hole]
+
+    if crack is None:
+        return np.array(points).T, curves, [body(rim)]
+    path = crack_path(gear, crack)
+    corners = [marks[crack.side], *(at(xy) for xy in path.T[1:])]
+    corners.append(marks["loaded" if crack.side == "unloaded" else "unloaded"])
+    parting = [join("line", a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)]
+    clockwise = parting if crack.side == "unloaded" else parting[::-1]
+    return np.array(points).T, curves, [body(rim[:before] + clockwise + rim[before:]), [above + clockwise[::-1]]]
+
+
+def numbers_of(gear, teeth):
+    """Numbers of the teeth of a sector, or of the whole gear (None), about tooth 0."""
+    count = gear.z if teeth is None else teeth
+    return range(-(count // 2), count - count // 2)
+
+
+def _half(gear, side, mark):
+    """Curves of half a tooth clockwise: kind, radii and angles of its points, whether the crack's end is at its lower end."""
+    sign = 1 if side == "loaded" else -1
+    # even in roll: even in arc a spline would be off the involute near the base circle
+    rolls = np.linspace(gear.roll_a, gear.roll_f, 17)
+    arcs = [fillet_length(gear), *([] if mark is None or not 0 < mark < fillet_length(gear) else [mark]), 0.0]
+    fillets = [root_curve(gear, np.linspace(a, b, 13)) for a, b in zip(arcs[:-1], arcs[1:], strict=True)]
+    tip, half = gear.half_thickness(gear.r_a), math.pi / gear.z
+    out = [("arc", [gear.r_a] * 2, np.array([0.0, tip]), False), ("spline", *flank(gear, rolls), False)]
+    out += [("spline", radius, angle, mark is not None and k == 0) for k, (radius, angle) in enumerate(fillets)]
+    if half - root_half_angle(gear) > 1e-6:
+        out.append(("arc", [gear.r_f] * 2, np.array([root_half_angle(gear), half]), False))
+    for k, (kind, radius, angle, cut) in enumerate(out):
+        out[k] = kind, np.asarray(radius)[::sign], sign * np.asarray(angle)[::sign], cut
+    return out[::sign]
+
+
+def fine(gear, crack, size):
+    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip."""
+    middle = (gear.r_a + gear.r_f) / 2
+    out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]
+    for arc in np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 8):
+        x, y = cartesian(*flank(gear, roll_at_arc(gear, arc)))
+        out.append((float(x), float(y), 0.15 * gear.m_n, size["flank"]))
+    for sign in (1, -1):
+        x, y = cartesian(*root_curve(gear, 0.6 * fillet_length(gear)))
+        out.append((sign * float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))
+    if crack is not None:
+        path = crack_path(gear, crack)
+        out.append((*path[:, -1].tolist(), 0.0, size["tip"]))
+        out.append((*path[:, 0].tolist(), 0.0, 2 * size["tip"]))
+    return out
+
+
+def tool(gear, pit):
+    """Disk above the flank and the push that makes it the pit's cylinder."""
+    centre, axes, push, _ = pit_frame(gear, pit)
+    roll = math.sqrt(pit.radius**2 - gear.r_b**2)
+    above = (0.2 + (max(pit.axes) ** 2 / roll if gear.internal else 0.0) / pit.depth) * push
+    return centre - above, axes, push + above
+
+
+def squeezed(tool, squeeze):
+    """A disk and its push after the width was squeezed: again a disk, with other half axes."""
+    centre, axes, push = tool
+    turned, size, _ = np.linalg.svd(squeeze * axes, full_matrices=False)
+    return centre * squeeze[:, 0], turned * size, push * squeeze[:, 0]
