@@ -188,12 +188,13 @@ def test_impossible_pairs(options, message):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("ratio", "printed", "found"),
-    [(5, -0.040, -0.033), (10, -0.025, -0.021), (20, -0.014, -0.013)],
+    [(5, -0.040, -0.034), (10, -0.025, -0.022), (20, -0.014, -0.013)],
 )
 def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
     """Away from tip corners, against an earlier study whose pair and load are not stated: found at b/m 20, not at 5 and 10.
 
-    -4.0 and -2.6 % are the gears' own flexibility by hexahedra, without the contact, which the study may have meant.
+    -4.0 and -2.6 % are the gears' own flexibility by hexahedra, without the contact, which the study may have meant. Hexahedra
+    composed to a pair give -3.4 and -2.2 % at b/m 5 and 10.
     """
     pair, phase = pair_of(2.0 * ratio, 0.0), np.linspace(0.1, 0.9, 9)
     plane = gf.mesh_stiffness(pair, 400.0 * ratio, STEEL, phases=phase, extended=False, order=6).k
