@@ -74,6 +74,8 @@ class PhaseContact:
     pits : (sequence of Pit, sequence of Pit)
     face, groove, step, extended
         As in `gearfe.contact.solid.pair_stiffness3d`.
+    longer : float
+        All cells so much longer, those too that `step` does not bound: what k owes to their length.
     flanks : (FlankForm, FlankForm), optional
         Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
@@ -82,8 +84,10 @@ class PhaseContact:
         What holds the hubs of pinion and wheel; None: rigid.
     """
 
-    def __init__(self, pair, forces, materials, *, pits, face, groove, step, extended, flanks=None, cache=True, supports=None):
-        self.pair, self.pits, self.step, self.extended = pair, pits, step, extended
+    def __init__(
+        self, pair, forces, materials, *, pits, face, groove, step, extended, longer, flanks=None, cache=True, supports=None
+    ):
+        self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.forces, self.force, self.hubs = list(forces), max(forces), hubs_of(supports)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
@@ -225,7 +229,7 @@ class PhaseContact:
         for own in pieces:
             length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
             finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus)) if own else 0.0
-            longest.append(max(self.step, finest))
+            longest.append(self.longer * max(self.step, finest))
         if not any(pieces):
             return [None] * len(phases)
         whole, number = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), longest, self.flanks)

@@ -22,6 +22,7 @@ from .cells import Cells
 from .phase_contact import PhaseContact
 
 STEP, PART = 0.4, 0.2  # longest cell along the width [mm], and [m_n] of modules below 2 mm
+LONGER = 2.0  # cells that the estimate compares with, over those of k
 SPREAD = 4.0  # forces that share cells, over each other
 
 
@@ -34,9 +35,9 @@ class Contact3D:
     without load [mm], 0 of involutes; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
     transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
     of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
-    `error` (phases,) difference of k from that of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach``
-    of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports of the hubs give way
-    [mm], the mean over the loads.
+    `error` (phases,) differences of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,)
+    ``d force / d approach`` of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
+    of the hubs give way [mm], the mean over the loads.
     """
 
     phase: NDArray[np.float64]
@@ -109,9 +110,10 @@ def pair_stiffness3d(
         Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
         has there and the plane's local law of a corner (`gearfe.contact.corner`).
     error : bool
-        Of the energy model: the difference of every k from that of a section order less by 1 and an axial degree less by a
-        quarter, at least 2, a measure of its discretisation error at that phase alone: an error that falls with the power 2.4 of
-        the degree, or faster, is below it. (By 2 at any degree would cover ever less of the error of wide gears.)
+        The difference of every k from that of cells `LONGER` times as long, and of the energy model that from a section order
+        less by 1 and an axial degree less by a quarter, at least 2, added: a measure of the discretisation error at that phase
+        alone. An error that falls with the power 2.4 of the degree, and with the power 1 of the cells, or faster, is below it.
+        (By 2 at any degree would cover ever less of the error of wide gears.)
     model : callable, optional
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
     cache : bool or SolvedGears
@@ -147,7 +149,11 @@ def pair_stiffness3d(
     hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
     options |= {"flanks": flanks, "supports": hubs}
     groups = _groups(forces)
-    contacts = [PhaseContact(pair, [forces[i] for i in group], materials, **options) for group in groups]
+
+    def contacts_of(longer):
+        return [PhaseContact(pair, [forces[i] for i in group], materials, longer=longer, **options) for group in groups]
+
+    contacts = contacts_of(1.0)
 
     def energy(order, coarse):
         def flexible(gear, own, found, neighbours):
@@ -160,7 +166,7 @@ def pair_stiffness3d(
 
     least = max(contact.neighbours for contact in contacts)
 
-    def solve(model):
+    def bodies_by(model):
         @lru_cache(maxsize=8)
         def bodies(neighbours):
             flexible = partial(model, neighbours=neighbours)
@@ -171,6 +177,9 @@ def pair_stiffness3d(
 
         with part("", 0.0, 0.5):
             within(0)
+        return within
+
+    def solve(contacts, within):
         found = {}
         with part("", 0.5, 1.0):
             for group, contact in zip(groups, steps(contacts), strict=True):
@@ -178,11 +187,16 @@ def pair_stiffness3d(
         return [found[i] for i in range(len(forces))]
 
     with part("", 0.0, 0.6 if error else 1.0):
-        solved = solve(model or energy(order, False))
+        bodies = bodies_by(model or energy(order, False))
+        solved = solve(contacts, bodies)
     if error:
         with part("", 0.6, 1.0):
-            coarse = solve(energy(order - 1, True))
-        solved = [replace(one, error=np.abs(less.k - one.k)) for one, less in zip(solved, coarse, strict=True)]
+            others = [solve(contacts_of(LONGER), bodies)]
+            if model is None:
+                others.append(solve(contacts, bodies_by(energy(order - 1, True))))
+        for other in others:
+            for i, (one, less) in enumerate(zip(solved, other, strict=True)):
+                solved[i] = replace(one, error=np.abs(less.k - one.k) + (0.0 if one.error is None else one.error))
     return solved if np.ndim(force) else solved[0]
 
 

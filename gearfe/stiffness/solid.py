@@ -59,14 +59,15 @@ def wide_curves(
     refine, order : float, int
         Of the gears; finite elements have no order.
     error : bool
-        Estimate the discretisation error by other bodies. Of the energy model: by an order and a quarter of the axial degrees
-        less. Of finite elements: by layers of `COARSER` resolution with `LESS` axial degrees less, and by what the section lacks
-        in plane strain against one of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads
-        of a section do not get coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a
-        difference d between edges h and r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the
-        coarser, with p of `ORDER`; times `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by
-        chance, the mean of those at the fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger:
-        other phases of the list do not enter.
+        Estimate the discretisation error by longer cells along the contact lines and by other bodies, each on its own, the
+        differences added. Of the energy model: by an order and a quarter of the axial degrees less. Of finite elements: by
+        layers of `COARSER` resolution with `LESS` axial degrees less, and by what the section lacks in plane strain against one
+        of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
+        coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h
+        and r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times
+        `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the
+        fixed phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not
+        enter.
     flanks : (FlankForm, FlankForm), optional
         `geometry.pair.flanks.flank_forms`.
     supports : (Support or Shaft or None, Support or Shaft or None), optional
@@ -91,7 +92,7 @@ def wide_curves(
     else:
         options |= {"refine": refine, "order": order}
     with part("contact", 0.0, 0.6 if error else 1.0):
-        found = pair_stiffness3d(pair, list(forces), materials, phase, error=error and not brute, **options)
+        found = pair_stiffness3d(pair, list(forces), materials, phase, error=error, **options)
     seconds = time.perf_counter() - started
     metas = [
         meta | {"force_N": force, "dofs": list(one.dofs), "seconds_contact": seconds}
@@ -141,17 +142,17 @@ def _doubt(case, phase, found, options, brute):
     fixed = fixed_phases(phase, healthy)
     further = fixed[np.abs(fixed[:, None] - phase).min(axis=1) > 1e-9]
     every = np.append(phase, further)
-    more = pair_stiffness3d(*case, further, error=not brute, **options) if further.size else None
+    more = pair_stiffness3d(*case, further, error=True, **options) if further.size else None
     ratio, away = 1.0, found.error
+    if more is not None:
+        away = np.append(away, more.error)
     if brute:
         ratio, coarse = _coarser((*case, every), options, *brute)
         k = found.k if more is None else np.append(found.k, more.k)
         finer = pair_stiffness3d(*case, every, **(options | {"model": partial(_finer_section, *brute)})).k
         along, across = ratio ** -ORDER["layers"], FINER ** ORDER["section"]
         lost, lacking = np.abs(coarse - k) / (along - 1), np.abs(finer - k) * across / (across - 1)
-        away = SAFETY["layers"] * lost + SAFETY["section"] * lacking
-    elif more is not None:
-        away = np.append(away, more.error)
+        away = away + SAFETY["layers"] * lost + SAFETY["section"] * lacking
     at_fixed = away[np.abs(fixed[:, None] - every).argmin(axis=1)]
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
