@@ -289,3 +289,31 @@ def test_a_thin_ligament_beside_a_crack_gives_way_like_a_logarithm():
     rise = np.diff(1 / held) / np.diff(np.log(1 / left))
     assert_allclose(rise[1], rise[0], rtol=0.35, err_msg="triangles of the section end the logarithm at about 0.1 mm")
     assert held[-1] < 0.5 * held[0]
+
+
+@pytest.mark.slow
+def test_a_ligament_beside_a_crack_holds_as_much_as_in_hexahedra():
+    """What it takes from the compliance near the tip, to 1 % of that; hexahedra in the ligament are a quarter of it wide."""
+    gear = gf.Gear(z=18, r_bore=9.0, b=12.0, **RACK)
+    knots, degree = flexibility3d.hats(gear), 12
+    whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))[-1]
+    patches = fe3d.Patches((0,), knots[:, [whole]], 1)
+    sizes = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.0, "crack": 0.2, "crack tip": 0.04}
+
+    def model(width):
+        cracks = (gf.Crack(level=0.5, width=width),)
+        options = {"width": gear.b, "order": 3, "axial": degree, "refine": 1.0}
+        panels = [ritz3d.solid_sector(gear, STEEL, own, **options) for own in (cracks, ())]
+        return join(gear, {0: panels[0], 1: panels[1]}, panels[1])[0][0, 0][whole * (degree + 1), whole * (degree + 1)]
+
+    def hexahedra(width, fine=()):
+        cracks = (gf.Crack(level=0.5, width=width),)
+        mesh = fe3d.mesh_patches(gear, patches, cracks=cracks, per_hat=3, layer=2.0, sizes=sizes, fine=fine)
+        return fe3d.influence(mesh, STEEL, patches).matrix.item()
+
+    through = model(None), hexahedra(None)
+    for left in (0.5, 0.1):
+        open_ = (0.0, gear.b - left)
+        ours, theirs = model(open_) / through[0] - 1, hexahedra(open_, [(open_[1], gear.b, left / 4)]) / through[1] - 1
+        print(f"ligament {left} mm: {ours:.2%}, hexahedra {theirs:.2%}")
+        assert_allclose(ours, theirs, rtol=0.01)
