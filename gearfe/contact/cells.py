@@ -14,7 +14,7 @@ from geometry.pair.modified import first_touch
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
-BEYOND = 8  # cells at least on the part of a line that is beyond the path of contact
+BEYOND = 8  # cells at least on the part of a line that is beyond the path of contact: gaps open there
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class Cells:
         return out
 
 
-def cells_of(pair, pieces, bands, slope, step, flanks=None):
+def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
     """`Cells` of the pieces of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
@@ -78,15 +78,18 @@ def cells_of(pair, pieces, bands, slope, step, flanks=None):
         Of `geometry.pair.lines.bands_of`.
     slope : float
         Of the abscissa over the depth, ``tan(beta_b)``.
-    step : list of float
-        Longest cell along the width in each phase [mm].
+    sizes : list of (float, float)
+        In each phase the shortest cell on the part of a line beyond the path and the longest cell of all along the width [mm].
     flanks : (FlankForm, FlankForm), optional
         Modifications of pinion and wheel.
+    longer : int
+        How many of these cells are taken for one: what k owes to their length.
     """
     rows, number = [], []
-    for i, (own, most) in enumerate(zip(pieces, step, strict=True)):
+    for i, (own, size) in enumerate(zip(pieces, sizes, strict=True)):
         for piece in own:
-            edge = _edges(piece, most, slope)
+            edge = _edges(piece, *size, slope)
+            edge = np.append(edge[:-1:longer], edge[-1])
             first, last = bands[piece.half]
             middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)
             z, nominal = first + math.copysign(1, last - first) * middle, piece.roll - slope * middle
@@ -108,9 +111,9 @@ def cells_of(pair, pieces, bands, slope, step, flanks=None):
     return (whole, phase) if kept.all() else (whole.some(kept), phase[kept])
 
 
-def _edges(piece, step, slope):
+def _edges(piece, finest, step, slope):
     """Depths between the cells of a piece [mm]."""
     a, b = piece.first, piece.last
-    longest = min(step, max((b - a) / BEYOND, END * step)) if piece.corner and slope > 1e-12 else step
+    longest = min(step, max((b - a) / BEYOND, finest)) if piece.corner and slope > 1e-12 else step
     fine = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
     return spaced(a, b, longest, fine, 1, GROWTH)

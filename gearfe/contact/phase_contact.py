@@ -25,7 +25,7 @@ FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wid
 ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
 DEEPEST = 0.01  # modules: the floor of a pit that covers a whole line is looked for so deep
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
-REACH = 1.3  # search radius for gaps, in approaches found before: fewer cells approach more
+REACH = 1.3  # search radius for gaps, in the approach found where the first guess was too small
 TOGETHER = 16  # phases that are solved at once
 
 
@@ -74,8 +74,8 @@ class PhaseContact:
     pits : (sequence of Pit, sequence of Pit)
     face, groove, step, extended
         As in `gearfe.contact.solid.pair_stiffness3d`.
-    longer : float
-        All cells so much longer, those too that `step` does not bound: what k owes to their length.
+    longer : int
+        Of `gearfe.contact.cells.cells_of`.
     flanks : (FlankForm, FlankForm), optional
         Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
@@ -140,20 +140,16 @@ class PhaseContact:
             If there is no contact; the message says at which phase.
         """
         found = [[] for _ in self.forces]
-        reach = self.least + self.reach
-        parts = [phases[:1], *(phases[k : k + TOGETHER] for k in range(1, len(phases), TOGETHER))]
+        parts = [phases[k : k + TOGETHER] for k in range(0, len(phases), TOGETHER)]
         for part in steps(parts, weights=[len(part) for part in parts]):
-            own = self._part(part, bodies, reach)
-            for whole, more in zip(found, own, strict=True):
+            for whole, more in zip(found, self._part(part, bodies), strict=True):
                 whole.extend(more)
-            most = max(one.approach - one.least for carried in own for one in carried)
-            reach = self.least + REACH * (most - self.least)
         return found
 
-    def _part(self, phases, bodies, reach):
-        """`solve` of phases that are solved at once; gaps up to `reach` [mm] are looked at first."""
+    def _part(self, phases, bodies):
+        """`solve` of phases that are solved at once; how far cells reach depends on their own phase alone, so that k does."""
         found = [[None] * len(phases) for _ in self.forces]
-        reaches, closings, open_ = np.full(len(phases), reach), np.zeros(len(phases)), list(range(len(phases)))
+        reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
         largest = self.forces.index(self.force)
         while open_:
             cells = self._cells([phases[i] for i in open_], reaches[open_], closings[open_])
@@ -225,14 +221,14 @@ class PhaseContact:
         for phase, reach, closing in zip(phases, reaches.tolist(), closings.tolist(), strict=True):
             further = self._further(reach)
             pieces.append(pieces_of(self.pair, phase, self.pits, self.bands, self.beta_b, further, closing))
-        longest = []
+        sizes = []
         for own in pieces:
             length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
             finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus)) if own else 0.0
-            longest.append(self.longer * max(self.step, finest))
+            sizes.append((finest, max(self.step, finest)))
         if not any(pieces):
             return [None] * len(phases)
-        whole, number = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), longest, self.flanks)
+        whole, number = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks, self.longer)
         ends = np.searchsorted(number, np.arange(len(phases) + 1)).tolist()
         return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
 

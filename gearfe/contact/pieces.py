@@ -89,7 +89,8 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0)
     slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])
     first = math.ceil((start - further[0] - end) / pair.p_bt - phase - 1e-9)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
-    limits = (end + further[1], end, start, start - further[0])
+    before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # where corners meet a flank first
+    limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
     pieces = []
     for half in range(len(bands)):
         for order in range(first, last + 1):
@@ -136,17 +137,21 @@ def _on_floors(piece, above, width):
 
 
 def _parts(roll, slope, width, limits, slack):
-    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high."""
+    """Depths at which a line is after the end of the path, on it, and before its start: corner, low, high.
+
+    Between the path and where a corner meets a flank first, nothing touches.
+    """
+    corners = (1, None, 0, None, 2)
     if slope > 1e-12:
         at = np.clip([(roll - limit) / slope for limit in limits], 0.0, width)
-        found = zip((1, 0, 2), at[:-1].tolist(), at[1:].tolist(), strict=True)
-        return [(corner, low, high) for corner, low, high in found if high - low > 1e-6 * width]
-    top, end, start, bottom = limits
+        found = zip(corners, at[:-1].tolist(), at[1:].tolist(), strict=True)
+        return [(corner, low, high) for corner, low, high in found if corner is not None and high - low > 1e-6 * width]
+    top, after, end, start, before, bottom = limits
     if start - slack <= roll < end + slack:
         return [(0, 0.0, width)]
-    if end < roll < top:
+    if after < roll < top:
         return [(1, 0.0, width)]
-    return [(2, 0.0, width)] if bottom < roll < start else []
+    return [(2, 0.0, width)] if bottom < roll < before else []
 
 
 def _left(piece, taken, width):

@@ -22,7 +22,7 @@ from .cells import Cells
 from .phase_contact import PhaseContact
 
 STEP, PART = 0.4, 0.2  # longest cell along the width [mm], and [m_n] of modules below 2 mm
-LONGER = 2.0  # cells that the estimate compares with, over those of k
+LONGER = 2  # cells that are one in what the estimate compares with
 SPREAD = 4.0  # forces that share cells, over each other
 
 
@@ -153,7 +153,7 @@ def pair_stiffness3d(
     def contacts_of(longer):
         return [PhaseContact(pair, [forces[i] for i in group], materials, longer=longer, **options) for group in groups]
 
-    contacts = contacts_of(1.0)
+    contacts = contacts_of(1)
 
     def energy(order, coarse):
         def flexible(gear, own, found, neighbours):

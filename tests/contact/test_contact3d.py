@@ -45,7 +45,7 @@ def test_contact_lines_are_straight_with_one_normal(face):
     if face == "ring":
         pair = gf.GearPair(replace(pair.gear_1, b=20.0), replace(RING, b=20.0))
     found = pieces_of(pair, 1.2, ((), ()), [(0.0, 20.0)], pair.gear_1.beta_b)
-    cells = cells_of(pair, [found], [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), [0.5])[0]
+    cells = cells_of(pair, [found], [(0.0, 20.0)], math.tan(pair.gear_1.beta_b), [(0.1, 0.5)])[0]
     gear = bodies3d.seen_gears(pair, "helical", 0.0)[face != "pinion"][0]
     roll = cells.roll_1 if face == "pinion" else cells.roll_2
     for number in np.unique(cells.order):
@@ -212,6 +212,18 @@ def test_herringbone_sun_and_planet():
     solved = pair_stiffness3d(gf.GearPair(sun, planet), 7120.0, gf.Material(E=206e3, nu=0.3), 32, face="herringbone")
     print(f"{solved.k.mean():.4g} N/m")
     assert_allclose(solved.k.mean(), 0.970e9, rtol=0.01)
+
+
+def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
+    """The flank of an undercut mate ends before the path: up to there nothing touches, and k hung on one cell (0.7 % off)."""
+    rack = {"m_n": 1.0, "alpha_n": math.radians(17.5), "b": 4.5, "tip_radius": 0.2}
+    beta = 0.26682
+    pinion = gf.Gear(z=12, x=0.3243, r_bore=2.02, beta=beta, **rack)
+    pair = gf.GearPair(pinion, gf.Gear(z=13, x=0.003, r_bore=2.29, beta=-beta, **rack))
+    k, fine = (pair_stiffness3d(pair, 110.4, STEEL, [0.6466, 0.6803], order=2, axial=6, step=step) for step in (0.2, 0.05))
+    print(f"off by {k.k / fine.k - 1}; cells at corners {[int((c.corner > 0).sum()) for c in k.cells]}")
+    assert all((cells.corner > 0).sum() >= 4 for cells in k.cells)
+    assert_allclose(k.k, fine.k, rtol=3e-4)
 
 
 def test_error_estimate_sees_the_length_of_the_cells():
