@@ -29,7 +29,7 @@ from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, pl
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
-TETS = {"far": 2.5, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
+TETS = {"far": 1.8, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
 STRETCH = 3.0  # tets are so many times longer along the width
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
@@ -172,7 +172,7 @@ def write_contact_solid(
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
-        if any(isinstance(one, Pit) for one in own):
+        if any(isinstance(one, Pit) for one in own) or (not own and any(isinstance(one, Pit) for one in damage[1 - number])):
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
             body = _holed(gear, own, cut, refine, pits)
         else:
@@ -225,12 +225,12 @@ def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
     cracks = [one for one in damage if isinstance(one, Crack)]
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
-    tooth = damage[0].tooth % gear.z
+    tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
     made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
-    body = holed_part(made if pits == "cut" else filled(made, teeth=None))
+    body = holed_part(made if pits == "cut" else filled(made, teeth=None), own)
     if pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
