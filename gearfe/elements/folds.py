@@ -15,7 +15,7 @@ HALVINGS = 5  # of a bend, before the edge is left straight
 
 @lru_cache(maxsize=2)
 def _slopes(count):
-    """Slopes ``(count, 3, q)`` of the shape functions of a C3D10 or C3D20R, at its integration points and at or near its corners."""
+    """Slopes ``(count, 3, q)`` of the shapes of a C3D10 or C3D20R at its integration points and at or near its corners."""
     if count == 20:
         corners = 1 - NEAR + (2 * NEAR - 1) * np.array(ElementHexS2.doflocs[:8], dtype=float).T
         return shapes(np.hstack([gauss(2)[0], corners]))[1][TWENTY]
@@ -85,6 +85,6 @@ def check_folds(points, cells):
         worst = int(np.argmin(least))
         x, y, z = points[:, cells[:, worst]].mean(axis=1)
         raise RuntimeError(
-            f"{(least <= 0).sum()} of {least.size} elements of this mesh fold, the worst at ({x:.4g}, {y:.4g}, {z:.4g}) mm: change "
-            "refine a little, or give more layers to a steep helix"
+            f"{(least <= 0).sum()} of {least.size} elements of this mesh fold, the worst at ({x:.4g}, {y:.4g}, {z:.4g}) mm: "
+            "change refine a little, or give more layers to a steep helix"
         )
