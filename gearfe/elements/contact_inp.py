@@ -47,8 +47,8 @@ def write_contact_inp(
     choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from which `ContactDeck.force` gives the load.
 
     Without `face`: the transverse section in second-order triangles (CPE6), plane strain. With it: both whole gears of their
-    finite width, real teeth, in 20-node hexahedra (C3D20R), finer along the contact lines; a gear with pits in second-order tets
-    (C3D10), its pits cut out as holes.
+    finite width, real teeth, in 20-node hexahedra (C3D20R), finer along the contact lines; a gear with pits, and its mate if that
+    is undamaged, in second-order tets (C3D10) with the pits cut out as holes.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def write_contact_inp(
     misalignment : Misalignment, optional
         With `face`: of the axes, as of `mesh_stiffness`; the flanks lie askew, the axes stay.
     per_width : float, optional
-        Edges per Hertz half width in the contact zones; default 8, in three dimensions 1.5.
+        Edges per Hertz half width in the contact zones; default 8, in three dimensions 1.5. Rims of pits follow.
     layers : int
         Element layers along the width, before `refine`.
     penalty : float
@@ -94,6 +94,8 @@ def write_contact_inp(
     ------
     ValueError
         If an input is impossible, or asked for where it cannot be.
+    RuntimeError
+        If elements of the mesh fold, where CalculiX would stop.
     """
     suffix_of(path, "deck")
     if pose not in PINION:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
@@ -29,8 +30,9 @@ from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, pl
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
-TETS = {"far": 2.5, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
-STRETCH = 3.0  # tets are so many times longer along the width
+TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
+STRETCH = 2.0  # tets are so many times longer along the width
+RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
@@ -172,7 +174,7 @@ def write_contact_solid(
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
-        if any(isinstance(one, Pit) for one in own):
+        if any(isinstance(one, Pit) for one in (own or damage[1 - number])):  # loads change quickly along the width on both
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
             body = _holed(gear, own, cut, refine, pits)
         else:
@@ -221,16 +223,19 @@ def _strip(gear, found, number, k, tooth, low, per_width):
 
 
 def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
-    """A whole gear in tets, its pits cut out or not (`PITS`); its damaged tooth is tooth 0 while it is meshed."""
+    """A whole gear in tets, its pits cut out or not (`PITS`), if it has some; its damaged tooth is tooth 0 while it is meshed."""
     cracks = [one for one in damage if isinstance(one, Crack)]
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
-    tooth = damage[0].tooth % gear.z
+    tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
-    options = {"teeth": None, "refine": refine, "sizes": TETS, "strips": own, "stretch": STRETCH}
-    made = holed_sector(gear, [one for one in damage if isinstance(one, Pit)], *cracks, **options)
-    body = holed_part(made if pits == "cut" else filled(made, teeth=None))
+    holes = [one for one in damage if isinstance(one, Pit)]
+    least = min((min(pit.axes) for pit in holes), default=1.0)
+    rim = RIM * refine * min(size for *_, size in strips) / least
+    sizes = TETS | {"rim": min(rim, HOLES["rim"])}
+    made = holed_sector(gear, holes, *cracks, teeth=None, refine=refine, sizes=sizes, strips=own, stretch=STRETCH)
+    body = holed_part(made if pits == "cut" else filled(made, teeth=None), own)
     if pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])

@@ -6,7 +6,18 @@ import numpy as np
 from scipy.sparse import bsr_matrix, csc_matrix
 from skfem import ElementHexS2
 
+from geometry.mesh.solid import HEX
+
 CHUNK = 1000  # elements computed at a time
+# nodes of C3D20 as (corner or middle of the quad, level), see `geometry.mesh.solid.HEX`
+ORDER = (
+    *((k, 0) for k in range(4)),
+    *((k, 2) for k in range(4)),
+    *((k + 4, 0) for k in range(4)),
+    *((k + 4, 2) for k in range(4)),
+    *((k, 1) for k in range(4)),
+)
+TWENTY = np.array([HEX.index(place) for place in ORDER])
 
 
 @lru_cache(maxsize=4)

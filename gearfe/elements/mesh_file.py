@@ -12,6 +12,7 @@ from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
 
 from ..files import suffix_of, written
+from .folds import check_folds
 from .solid_deck import Part, holed_part, part_of
 
 KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}
@@ -87,6 +88,7 @@ def _hexes(gear, pits, cracks, teeth, refine):
 def _write(path, suffix, part, kind):
     import meshio
 
+    check_folds(part.points, part.cells)
     sets = {name.replace(" ", "_"): np.unique(found) for name, found in part.faces.items() if found.size}
     sets["held"] = part.held
     if suffix == ".inp":

@@ -6,20 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.mesh.holes import Holed
-from geometry.mesh.solid import HEX, Solid
+from geometry.mesh.solid import Solid
 from geometry.tooth.profile import cartesian, flank
 
+from .folds import check_folds, unfolded
+from .hexahedron import ORDER, TWENTY
 from .tetrahedron import second_order
 
-# nodes of C3D20 as (corner or middle of the quad, level), see `geometry.mesh.solid.HEX`
-ORDER = (
-    *((k, 0) for k in range(4)),
-    *((k, 2) for k in range(4)),
-    *((k + 4, 0) for k in range(4)),
-    *((k + 4, 2) for k in range(4)),
-    *((k, 1) for k in range(4)),
-)
-TWENTY = np.array([HEX.index(place) for place in ORDER])
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
 FACES = {  # corners of the faces, in CalculiX's order
@@ -48,8 +41,13 @@ def part_of(mesh: Solid) -> Part:
     return Part(mesh.points, mesh.cells[TWENTY], mesh.held, {name: found[:4] for name, found in mesh.faces.items()})
 
 
-def holed_part(mesh: Holed) -> Part:
-    """Second-order tets of a gear without what its pits take, in its own frame; nodes on flanks lie on the involute helicoid."""
+def holed_part(mesh: Holed, strips=()) -> Part:
+    """Second-order tets of a gear without what its pits take, in its own frame.
+
+    Nodes on flanks lie on the involute helicoid, save those in the middle of edges whose tets would fold: they are nearer to
+    their chords (`folds.unfolded`). RuntimeError if one of these is in one of the `strips` (as of `holed_sector`), where the
+    gear touches.
+    """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
     for name, found in mesh.faces.items():
@@ -62,6 +60,8 @@ def holed_part(mesh: Holed) -> Part:
             angle = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
             turn = 2 * np.pi * int(name.split()[1]) / gear.z + gear.twist_rate * z
             nodes[:2, own] = cartesian(radius, angle + turn)
+    bent, nodes = nodes, unfolded(nodes, cells)
+    _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
     a, b, c = mesh.faces["held"]
     held = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
     used, kept = np.unique(cells, return_inverse=True)
@@ -69,6 +69,18 @@ def holed_part(mesh: Holed) -> Part:
     place[used] = np.arange(used.size)
     faces = {name: place[found] for name, found in mesh.faces.items()}
     return Part(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
+
+
+def _check_strips(gear, off, strips):
+    """RuntimeError if nodes ``(3, n)`` that are off the flank lie where it is to touch."""
+    x, y, z = off
+    radius, angle = np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z
+    flat = np.array([*cartesian(radius, angle), z])
+    for line, reach, _ in strips:
+        if (np.linalg.norm(flat[:, :, None] - line[:, None, :], axis=0) < reach).any():
+            raise RuntimeError(
+                f"tets in the contact zone of z = {gear.z} cannot follow the flank without folding: change refine or per_width"
+            )
 
 
 def placed(part: Part, points: NDArray[np.float64], *, mirrored: bool = False) -> Part:
@@ -93,7 +105,8 @@ def node_lines(part, first):
 
 
 def element_lines(part, number, first, element, material):
-    """Elements, numbered from `element` + 1, material and section of body `number`."""
+    """Elements, numbered from `element` + 1, material and section of body `number`; RuntimeError if some fold."""
+    check_folds(part.points, part.cells)
     out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET=G{number}"]
     for j, row in enumerate((part.cells + first + 1).T.tolist(), 1):
         row = [element + j, *row]

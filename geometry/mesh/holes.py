@@ -23,7 +23,7 @@ from .mesher import tetrahedra
 # of the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
-FINER = (1.0, 1.07, 1.15, 1.3)  # attempts: flat tets may be turned inside out by the helix
+FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # attempts: flat tets may be turned inside out by the helix
 MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
 
 

@@ -19,6 +19,7 @@ from validation.shared import outsider
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH = 0.015  # mm
+COARSE = {"per_width": 0.6}
 PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2, tooth=1)
 
 
@@ -79,7 +80,7 @@ def damaged(tmp_path_factory):
     """Path and deck of a pair with a pit on the pinion's tooth 1 and a crack of half the width in the wheel."""
     folder = tmp_path_factory.mktemp("deck")
     damage = {"pinion": [PIT], "wheel": [gf.Crack(level=0.4, width=(0.0, 3.0))]}
-    return folder / "p.inp", written(folder, pair_of(15.0), damage=damage)
+    return folder / "p.inp", written(folder, pair_of(15.0), damage=damage, **COARSE)
 
 
 def test_deck_is_whole(damaged):
@@ -102,7 +103,8 @@ def test_deck_is_whole(damaged):
 
 
 def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
-    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled")
+    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled", **COARSE)
+    assert len(control.parts[1].cells) == 10  # an undamaged mate is in tets too, whose surface follows the pits' rims
     cut, whole = damaged[1].parts[0], control.parts[0]
 
     def places(part):

@@ -3,21 +3,17 @@
 import math
 from pathlib import Path
 
-import numpy as np
-
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.files import written
-from geometry.tooth.profile import arc_at
 
 from ..shared.outsider import (
     ASKED,
     LOAD,
     PITS,
+    PITTED,
     PRESSURE,
     SHARED,
     SHARING,
     SHOWN,
-    STEEL,
     STRIP,
     apart,
     cases,
@@ -28,6 +24,7 @@ from ..shared.outsider import (
     told,
     wanted,
 )
+from ..shared.outsider_picture import picture
 from ..shared.places import PAGES
 
 __all__ = ["page", "reference", "run"]
@@ -39,16 +36,18 @@ COMPARED = f"""
 
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and
 `gearfe.write_line_inp`): both whole gears with all teeth, of their finite width, bores (of a ring the outside) held, in 20-node
-hexahedra with reduced integration (C3D20R); a gear with pits in second-order tets (C3D10) with the pits cut out as holes. What
+hexahedra with reduced integration (C3D20R); pairs with pits in second-order tets (C3D10) with the pits cut out as holes. What
 the two have in common is the shape of the gears and where they stand; stiffness, contact, load sharing, half-space and what pits
 do are CalculiX's own. `ritz3d` has pits as lost contact.
 
-In contact: 13/16 teeth (in a ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur, {LOAD:g} N/mm, phase 0.45, tooth 0 of the
-pinion damaged; the gears are turned by the approach that `ritz3d` finds, frictionless surface-to-surface contact of all flanks,
-large displacements. k is force over approach. Under a line load: the deflection of a strip of pressure under itself.
+In contact: 13/16 teeth (in a ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur, {LOAD:g} N/mm (with pits {PITTED:g}), phase
+0.45, tooth 0 of the pinion damaged; the gears are turned by the approach that `ritz3d` finds, frictionless surface-to-surface
+contact of all flanks, large displacements. k is force over approach. Under a line load: the deflection of a strip of pressure
+under itself.
 
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
-divides all edges, these too. Forces apart: of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part.
+divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of
+those of the contact lines. Forces apart: of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part.
 Seconds: of the processor, one thread. Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls,
 and its deflection grows, as the mesh is refined, so that the difference rises. Contact in CalculiX is a bed of springs, so that
 its k is too low by about 0.07 %: see [truth.md](truth.md).
@@ -56,20 +55,22 @@ its k is too low by about 0.07 %: see [truth.md](truth.md).
 `python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
 installed, run by run.
 """
-HOLES = """
+HOLES = f"""
 ## Pits: holes beside lost contact
 
-Two pits, a circular and an elliptic one, lie with their centres on the contact line of tooth 0. Tets differ from hexahedra, so
-each case has two controls: the very same tets, the pits' own included, with the pits full of material and no contact on them,
-which is what `ritz3d` has, and with the pits filled and touching. What pits do is k over k of the second control; what the mesh
-does is in both and mostly drops out.
+Two pits, a circular and an elliptic one, lie with their centres on the contact line of tooth 0, under {PITTED:g} N/mm: contact is
+1.4 times as wide as under {LOAD:g}, so that fewer elements follow it around the pits; both solvers see it. Both gears are in
+tets. These differ from hexahedra, so each case has two controls: the very same tets, the pits' own included, with the pits full
+of material and no contact on them, which is what `ritz3d` has, and with the pits filled and touching. What pits do is k over k of
+the second control; what the mesh does is in both and mostly drops out.
 """
 MESHES = """
 ## How far the meshes are from their limit
 
-The difference to `ritz3d` by edges per Hertz half width, all else equal, and where it goes as these edges vanish. The order of
-convergence is that of the healthy pair, which has three such meshes; cases with two are extrapolated with it. It speaks for the
-contact strip only: the row with `refine` shows what all the other elements add.
+The difference to `ritz3d` by edges per Hertz half width, all else equal, and where it goes as these edges vanish, if they show an
+order of convergence of at least 1. It is that of the healthy pair, which has three such meshes; cases with two are extrapolated
+with it. It speaks for the contact strip only: the row with `refine` shows what all the other elements add, along the width too.
+Elements are 2 mm long along the width; helical contact lines cross them obliquely, those of the spur pair do not.
 """
 PRESSED = """
 ## Pressure
@@ -148,16 +149,27 @@ def verdict(known):
     for (name, mesh), found in pitted(known).items():
         meshes.setdefault(name, []).append((mesh, found))
     for name, own in meshes.items():
-        (_, before), (mesh, found) = [("", {}), *own][-2:]
-        ours = found["ritz3d"]
-        yield f"- Pits, {name}, {mesh}: as lost contact they change k by {100 * ours:+.2f} % in `ritz3d`."
+        ours = own[-1][1]["ritz3d"]
+        yield f"- Pits, {name}, {PITTED:g} N/mm: as lost contact they change k by {100 * ours:+.2f} % in `ritz3d`."
         for kind, said in (("lost", "with contact lost and the material left"), ("cut", "cut out")):
-            if kind in found:
-                moved = abs(found[kind] - before[kind]) if kind in before else 0.0
-                doubt = f"; **not decided**: {100 * moved:.2f} % between its two last meshes" if moved > ASKED else ""
-                yield f"  In CalculiX {said}: {100 * found[kind]:+.2f} %, {_judged((1 + ours) / (1 + found[kind]) - 1)}{doubt}."
+            runs = [(mesh, found[kind]) for mesh, found in own if kind in found]
+            if runs:
+                yield f"  In CalculiX {said}: {_settled(*zip(*runs, strict=True), ours)}."
         raw = [f"{end} {100 * away[f'{name} {end}']:+.2f} %" for end in PITS.values() if f"{name} {end}" in away]
         yield f"  The tets themselves: k of `ritz3d` is {'; '.join(raw)}."
+
+
+def _settled(meshes, values, ours):
+    """What pits do on one mesh after the other, whether that is what `ours` says, and whether the meshes decide it."""
+    listed = "; ".join(f"{100 * value:+.2f} % ({mesh})" for mesh, value in zip(meshes, values, strict=True))
+    doubt = "; **not decided**: one mesh only"
+    if len(values) > 1:
+        moved = abs(values[-1] - values[-2])
+        doubt = f"; {'**not decided**: ' if moved > ASKED else ''}{100 * moved:.2f} % between the two last meshes"
+    widths = [float(mesh.split()[1]) for mesh in meshes]
+    order = observed_order(values, widths)
+    trend = "" if order is None else f", observed order {order:.1f}, towards {100 * limit(values, widths, order):+.2f} %"
+    return f"{listed}; the last {_judged((1 + ours) / (1 + values[-1]) - 1)}{doubt}{trend}"
 
 
 def _judged(off):
@@ -215,8 +227,8 @@ def _shared():
 
 
 def observed_order(values, widths):
-    """Order of convergence in the edge length from three meshes, each finer by the same ratio; None if they show none."""
-    if len(values) < 3 or not (values[1] - values[0]) / (values[2] - values[1]) > 1:
+    """Order of convergence in the edge length from three meshes, each finer by the same ratio; None if it is not 1 at least."""
+    if len(values) < 3 or not (values[1] - values[0]) / (values[2] - values[1]) >= widths[1] / widths[0]:
         return None
     return math.log((values[1] - values[0]) / (values[2] - values[1])) / math.log(widths[1] / widths[0])
 
@@ -225,51 +237,6 @@ def limit(values, widths, order):
     """The last value extrapolated to vanishing edges."""
     ratio = (widths[len(values) - 1] / widths[len(values) - 2]) ** order
     return values[-1] + (values[-1] - values[-2]) / (ratio - 1)
-
-
-def picture(path):
-    """Contact pressure on the unrolled flank of the pinion, all its teeth laid over each other: CalculiX left, `ritz3d` right."""
-    from matplotlib.figure import Figure
-
-    case = cases()[SHOWN]
-    gear, b = case.pair.gear_1, case.pair.gear_1.b
-    place = np.meshgrid(np.linspace(0.0, b, 241), np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 321))
-    both = theirs_at(*place), ours_at(case, *place)
-    figure = Figure(figsize=(10, 4.2), layout="constrained")
-    for axes, values, name in zip(figure.subplots(1, 2, sharey=True), both, ("CalculiX, at its nodes", "ritz3d"), strict=True):
-        drawn = axes.pcolormesh(*place, values, vmin=0.0, cmap="viridis", rasterized=True)
-        figure.colorbar(drawn, ax=axes, label="contact pressure [MPa]")
-        axes.set_title(f"{name}: 0 to {values.max():.0f} MPa", fontsize=10)
-        axes.set_xlabel("along the width [mm]")
-    figure.axes[0].set_ylabel("arc along the pinion's flank [mm]")
-    with written(path) as name:
-        figure.savefig(name, dpi=130)
-
-
-def theirs_at(z, arc):
-    """CalculiX's pressure [MPa] at places of the pinion's flank, linear between nodes."""
-    from scipy.interpolate import LinearNDInterpolator
-
-    _, order, at, height, pressure = np.loadtxt(PRESSURE, delimiter=",", skiprows=1, unpack=True)
-    found = [LinearNDInterpolator(np.array([height, at]).T[order == k], pressure[order == k])(z, arc) for k in np.unique(order)]
-    return np.nan_to_num(np.array(found)).max(axis=0)
-
-
-def ours_at(case, z, arc):
-    """Pressure of `ritz3d` [MPa] at the same places: Hertz's ellipse across each cell of the contact lines."""
-    found = pair_stiffness3d(case.pair, LOAD * case.pair.gear_1.b, STEEL, [case.phase]).cells[0]
-    depth, out = found.z, np.zeros(z.shape)
-    for order in np.unique(found.order):
-        own = np.flatnonzero((found.order == order) & (found.load > 0) & np.isfinite(found.pressure))
-        if not own.size:
-            continue
-        near = own[np.abs(depth[own, None] - z[0]).argmin(axis=0)]
-        inside = np.abs(depth[near] - z[0]) <= found.width[near]
-        half = 2 * found.load[near] * math.cos(case.pair.gear_1.beta_b) / found.width[near] / (math.pi * found.pressure[near])
-        away = (arc - arc_at(case.pair.gear_1, found.roll_1[near])) / half
-        height = np.where(inside, found.pressure[near], 0.0)
-        out = np.maximum(out, height * np.sqrt(np.maximum(1 - away**2, 0.0)))
-    return out
 
 
 def _table(quantity, known, order):
