@@ -14,14 +14,15 @@ from geometry.tooth.gear import Gear
 
 from ..material import Material
 from ..threads import single
+from .asked import check_load_along, check_one
 from .front_integral import front_intensity
 from .line_load import check_spread, contact_line, strip, under_line
-from .loaded_tooth import check_line_load, edge_lengths
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25, "crack tip": 0.03}
 LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
 SHALLOW = 0.25  # in the largest depth, below which a front that runs out has no room for the tubes
+LEAST = 0.1, 0.8  # depth and width of a crack [m_n]: three elements at the tip, four tubes
 TUBE = 0.2, 0.5  # radius of the widest tube of the integral [m_n], and at most in the least depth
 
 
@@ -91,14 +92,14 @@ def stress_intensity_along_front(
     RuntimeError
         If the mesh cannot follow the front, or the system does not fit into memory.
     """
-    if not callable(line_load):
-        check_line_load(line_load)
+    check_one(gear, material, refine)
+    check_load_along(line_load, gear.b)
     if not isinstance(crack, Crack):
         raise ValueError(f"crack = {crack!r}, but give a Crack")
     if crack.tooth % gear.z or bends(crack):
         raise ValueError(f"crack of tooth {crack.tooth}, turning = {crack.turning}: give a straight crack of tooth 0")
     check_apart(gear, [crack])
-    edge_lengths(gear, {}, refine)
+    _check_room(gear, crack)
     spread, roll = check_spread(gear), contact_line(gear, radius)
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     fine = [(z, z, END_LAYER * layer) for z in (0.0, gear.b, *(crack.width or ()))]
@@ -112,6 +113,17 @@ def stress_intensity_along_front(
     tube = min(TUBE[0] * gear.m_n, TUBE[1] * least * length)
     one, two, three = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
     return FrontIntensity(z, part[0] * length, one, two, three, unknowns)
+
+
+def _check_room(gear, crack):
+    """ValueError if the crack has no room for the tubes of the integral, or they none beside each other along its front."""
+    depth = deepest(crack) * math.dist(*crack_path(gear, whole(crack)).T)
+    low, high = crack.width or (0.0, gear.b)
+    if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
+        raise ValueError(
+            f"crack {depth:.3g} mm deep and open over {high - low:.3g} mm: the integral around its front needs a depth of "
+            f"{LEAST[0]:g} and a width of {LEAST[1]:g} m_n at least ({LEAST[0] * gear.m_n:.3g} and {LEAST[1] * gear.m_n:.3g} mm)"
+        )
 
 
 def _followed(mesh, crack):
