@@ -39,7 +39,7 @@ def deck(path, gear=GEAR, radius=18.0, line_load=100.0, material=STEEL, **option
         ({"refine": 1e-9}, "give 0.2 to 64"),
         ({"refine": True}, "refine = True"),
         ({"crack": gf.Crack(level=0.4, width=(0.0, 1e-6))}, "a width of 0.8 m_n"),
-        ({"crack": gf.Crack(level=0.4, ends=(0.01, 0.01))}, "a depth of 0.1 and"),
+        ({"crack": gf.Crack(level=0.4, ends=(0.01, 0.01))}, "a depth of 0.15 and"),
         ({"crack": gf.Crack(level=0.4, ends=(1e-9, 1e-9))}, "too short for any mesh"),
     ],
 )
