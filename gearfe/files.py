@@ -93,7 +93,7 @@ def check_output(path, kind):
     ValueError
         If the name is empty, a folder, or has a suffix that holds no such content; if its folder is not there or not writable.
     """
-    if not str(path):
+    if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
     suffix_of(path, kind)
     if os.path.isdir(path):  # unlike pathlib's, false for names that no file can have
@@ -117,7 +117,10 @@ def suffix_of(path, kind, *, reading=False):
     ValueError
         If no such file holds what `kind` says; the message lists those that do.
     """
-    suffix, known = Path(path).suffix.lower(), suffixes(kind, reading=reading)
+    known = suffixes(kind, reading=reading)
+    if not isinstance(path, (str, os.PathLike)):
+        raise ValueError(f"path = {path!r}, but give the name of a file that ends in {', '.join(known)}")
+    suffix = Path(path).suffix.lower()
     if suffix not in known:
         raise ValueError(f"{path}: no format for {suffix or 'a file without a suffix'!r}; use one of {', '.join(known)}")
     return suffix

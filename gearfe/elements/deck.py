@@ -12,11 +12,12 @@ from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 
-from ..files import suffix_of, written
+from ..files import check_output, written
 from ..material import Material, check_state
+from .asked import check_cracks, check_line_load, check_one
 from .elasticity import Body
 from .fe import EDGES
-from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
+from .loaded_tooth import edge_lengths, load_at, narrow_load
 
 
 def write_inp(
@@ -57,9 +58,11 @@ def write_inp(
     load : sparse matrix, shape (2 nodes, 1)
         Its nodal forces [N/mm].
     """
-    suffix_of(path, "deck")
+    check_output(path, "deck")
     check_state(state)
+    check_one(gear, material, refine)
     check_line_load(line_load)
+    check_cracks(cracks)
     edge = edge_lengths(gear, EDGES, refine)
     arc, width = load_at(gear, radius), 0.05 * gear.m_n
     roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])

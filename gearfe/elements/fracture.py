@@ -12,9 +12,10 @@ from geometry.tooth.gear import Gear
 
 from ..material import Material
 from ..threads import single
+from .asked import check_line_load, check_one
 from .elasticity import Body
 from .fe import EDGES
-from .loaded_tooth import check_line_load, edge_lengths, load_at, narrow_load
+from .loaded_tooth import edge_lengths, load_at, narrow_load
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,7 @@ def stress_intensity(
     ValueError
         If the load is not positive, the point is off the flank, or the crack leaves the body.
     """
+    check_one(gear, material, refine)
     check_line_load(line_load)
     if not isinstance(crack, Crack):
         raise ValueError(f"crack = {crack!r}, but give a Crack")

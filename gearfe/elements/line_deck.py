@@ -12,11 +12,12 @@ from geometry.damage.crack import Crack
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
-from ..files import suffix_of, written
+from ..files import check_output, written
 from ..material import Material
+from .asked import check_cracks, check_length, check_line_load, check_one
 from .contact_deck import read_rows
 from .fe3d import Patches, mesh_patches, patch_loads
-from .loaded_tooth import check_line_load, load_at
+from .loaded_tooth import load_at
 from .solid_deck import Part, element_lines, node_lines, part_of
 
 
@@ -83,8 +84,12 @@ def write_line_inp(
     ValueError
         If an input is impossible, or the pressure leaves the flank.
     """
-    suffix_of(path, "deck")
+    check_output(path, "deck")
+    check_one(gear, material, refine)
     check_line_load(line_load)
+    check_cracks(cracks)
+    check_length("half_width", half_width)
+    check_length("layer", layer)
     arc, reach = load_at(gear, radius), 0.4 * gear.m_n if half_width is None else half_width
     patches = Patches((0,), np.array([[arc - reach], [arc], [arc + reach]]), 1)
     low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)

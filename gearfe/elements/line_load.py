@@ -7,6 +7,7 @@ import numpy as np
 from geometry.mesh.solid import Solid
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
+from .asked import check_length
 from .fe3d import _points
 from .hexahedron import assemble, face_shapes
 from .loaded_tooth import load_at
@@ -18,6 +19,7 @@ ACROSS, ALONG = 8, 4  # Gauss points of the load on an edge and along a layer
 
 def check_spread(gear, half_width=None):
     """Half width of the hat over which the load is spread [mm], `SPREAD` modules by default."""
+    check_length("half_width", half_width)
     spread = SPREAD * gear.m_n if half_width is None else half_width
     if not 0 < spread <= gear.m_n:
         raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")

@@ -1,7 +1,6 @@
 """One loaded tooth: its deflection and its root stress, as rating engineers and strain gauges see them."""
 
 import math
-from numbers import Real
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -14,6 +13,7 @@ from geometry.tooth.profile import arc_at, flank, roll_at_arc
 
 from ..material import Material
 from ..threads import single
+from .asked import check_length, check_line_load, check_one, is_number
 from .elasticity import Body, edge_nodes, edge_shapes
 from .fe import EDGES, flank_load
 
@@ -25,21 +25,15 @@ HIGH, NEIGHBOURS = 0.9, 3  # which points of the fillet belong to the neighbourh
 def load_at(gear, radius):
     """Arc from the base circle [mm] of the flank point at `radius` [mm]."""
     low, high = sorted((gear.r_form, gear.r_a))
+    if not is_number(radius):
+        raise ValueError(f"radius = {radius!r}, but give the radius of one point of the flank [mm]")
     if not low <= radius <= high:
         raise ValueError(f"radius = {radius} mm is not on the involute flank: give {low:.6g} <= radius <= {high:.6g} mm")
     return float(arc_at(gear, math.sqrt(radius**2 - gear.r_b**2)))
 
 
-def check_line_load(line_load):
-    """ValueError unless the line load is a finite push."""
-    if not (isinstance(line_load, Real) and line_load > 0 and math.isfinite(line_load)):
-        raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
-
-
 def edge_lengths(gear, edges, refine):
-    """Edge lengths [mm] of a table in modules at a resolution; ValueError unless ``refine > 0``."""
-    if not (isinstance(refine, Real) and refine > 0 and math.isfinite(refine)):
-        raise ValueError(f"refine = {refine!r}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
+    """Edge lengths [mm] of a table in modules at a resolution."""
     return {name: size * gear.m_n / refine for name, size in edges.items()}
 
 
@@ -94,6 +88,7 @@ def tooth_flexibility(
     ----------
     C. Weber, K. Banaschek, Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern (1953).
     """
+    check_one(gear, material, refine)
     arc = load_at(gear, radius)
     roll = float(roll_at_arc(gear, arc))
     if at == "surface":
@@ -166,7 +161,9 @@ def root_stress(
     ValueError
         If the load is not positive, or the point is off the flank.
     """
+    check_one(gear, material, refine)
     check_line_load(line_load)
+    check_length("half_width", half_width)
     half_width = 0.05 * gear.m_n if half_width is None else half_width
     if not 0 < half_width <= gear.m_n:
         raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")

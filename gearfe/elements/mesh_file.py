@@ -11,7 +11,8 @@ from geometry.mesh.holes import holed_sector
 from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
 
-from ..files import suffix_of, written
+from ..files import check_output, suffix_of, written
+from .asked import check_gear, checked_refine
 from .folds import check_folds
 from .solid_deck import Part, holed_part, part_of
 
@@ -59,7 +60,10 @@ def export_mesh(
     ValueError
         If the damage cannot be meshed as asked, or the suffix is unknown.
     """
-    suffix = suffix_of(path, "mesh")
+    check_output(path, "mesh")
+    check_gear(gear)
+    refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
+    _check_damage(damage)
     pits = tuple(one for one in damage if isinstance(one, Pit))
     cracks = tuple(one for one in damage if isinstance(one, Crack))
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
@@ -68,6 +72,11 @@ def export_mesh(
     made = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
     _write(path, suffix, made, KINDS[cells])
     return made
+
+
+def _check_damage(damage):
+    if not isinstance(damage, (list, tuple)) or not all(isinstance(one, (Crack, Pit)) for one in damage):
+        raise ValueError(f"damage = {damage!r}, but give a list of Crack and Pit of this gear, [] for none")
 
 
 def _tets(gear, pits, cracks, teeth, refine):

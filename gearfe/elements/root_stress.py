@@ -11,9 +11,10 @@ from geometry.tooth.gear import Gear
 
 from ..material import Material
 from ..threads import single
+from .asked import check_line_load, check_one
 from .hexahedron import face_shapes
 from .line_load import check_spread, contact_line, strip, under_line
-from .loaded_tooth import _peak, check_line_load, edge_lengths
+from .loaded_tooth import _peak
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`; the fillet decides
 SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.06, "root": 0.4, "near": 0.7, "far": 2.0}
@@ -94,6 +95,7 @@ def root_stress_along_width(
     RuntimeError
         If the system does not fit into memory.
     """
+    check_one(gear, material, refine)
     check_line_load(line_load)
     spread = check_spread(gear, half_width)
     return stress_under_line(gear, contact_line(gear, radius), line_load, material, spread=spread, refine=refine)
@@ -114,7 +116,6 @@ def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) ->
         Half width of the hat over which the load is spread [mm].
     refine : float
     """
-    edge_lengths(gear, {}, refine)
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(
         gear, layer=layer, patches=[strip(gear, roll, spread, refine)], refine=refine, sizes=SIZES,

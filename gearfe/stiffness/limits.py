@@ -1,16 +1,15 @@
 """Limits of what is asked for, with their reasons: kinds of values, resolution, number and range of phases, memory."""
 
 import math
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..elements.asked import is_number
 from ..elements.solver import free_memory
 
-COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
-FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
 MOST_PHASES = 100_000  # of a cycle: k changes by less than 1e-4 between two of them even where teeth enter
 FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
@@ -22,11 +21,6 @@ def truth(name: str, value: Any) -> bool:
     if not isinstance(value, (bool, np.bool_)):
         raise ValueError(f"{name} = {value!r}, but give True or False")
     return bool(value)
-
-
-def is_number(value: Any) -> bool:
-    """Whether it is a real number: no text, no truth value."""
-    return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
 
 
 def numbers(name: str, value: Any, unit: str) -> NDArray:
@@ -48,26 +42,6 @@ def _has_truth(value):
 
 def _kind(value):
     return "text" if isinstance(value, str) else type(value).__name__
-
-
-def checked_refine(refine: Any) -> float:
-    """The resolution, if meshes follow it: from `COARSEST` to `FINEST`.
-
-    Raises
-    ------
-    ValueError
-        If it is no number, or outside.
-    """
-    if not is_number(refine) or not math.isfinite(refine):
-        raise ValueError(f"refine = {refine!r}, but give a finite number: it divides the edge lengths")
-    if not COARSEST <= refine <= FINEST:
-        why = (
-            "meshes follow it no further and their results are not to be trusted"
-            if refine < COARSEST
-            else "k changes by less than 1e-6 from 16 on, and the memory is full"
-        )
-        raise ValueError(f"refine = {refine}, but give {COARSEST:g} to {FINEST:g}: {why}")
-    return float(refine)
 
 
 def check_count(phases: Any) -> int:

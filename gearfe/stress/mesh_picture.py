@@ -63,7 +63,7 @@ def render_mesh(
                     line.mapper.SetResolveCoincidentTopologyToPolygonOffset()
                     line.mapper.SetRelativeCoincidentTopologyLineOffsetParameters(0.0, IN_FRONT)
         plotter.camera.focal_point = focus
-        plotter.camera.position = focus + 50 * half * view
+        plotter.camera.position = focus + (3 if close_up == "pits" else 50) * half * view  # a ring's far side stays behind
         plotter.camera.up = (0.0, 1.0, 0.0)
         plotter.camera.parallel_projection = True
         plotter.camera.parallel_scale = half
@@ -90,9 +90,20 @@ def _camera(parts, close_up):
                 low, high = points.min(axis=1), points.max(axis=1)
                 if close_up == "crack":
                     return _at_crack(points)
-                view = np.array([1.0, 0.25, 0.35])  # on the loaded flank
-                return (low + high) / 2, view / np.linalg.norm(view), NEAR * np.linalg.norm(high - low) / 2
+                return (low + high) / 2, _into_pits(part, faces), NEAR * np.linalg.norm(high - low) / 2
     raise ValueError(f"close_up = {close_up!r}, but these meshes have none: give their damage when they are made")
+
+
+def _into_pits(part, faces):
+    """Direction from pits to who looks into them over the next tooth: out of the flank, and away from what is held."""
+    edges = np.sort(np.hstack([faces[[0, 1]], faces[[1, 2]], faces[[0, 2]]]), axis=0)
+    sides, count = np.unique(edges, axis=1, return_counts=True)
+    middle = part.points[:, np.unique(faces)].mean(axis=1)
+    out = part.points[:, np.unique(sides[:, count == 1])].mean(axis=1) - middle  # the rim against floor and walls
+    held = part.points[:2, part.held]
+    away = middle[:2] - held[:, np.hypot(*(held - middle[:2, None])).argmin()]
+    view = out / np.linalg.norm(out) + [*away / np.hypot(*away), 0.35]
+    return view / np.linalg.norm(view)
 
 
 def _at_crack(points):

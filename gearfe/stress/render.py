@@ -9,13 +9,14 @@ import numpy as np
 
 from geometry.pair.flanks import flank_forms
 
+from ..elements.asked import checked_refine
 from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.contact_plot import plot_contact
 from ..scene.load import ScenePair
 from ..steps import part
 from ..stiffness.inputs import by_gear
-from ..stiffness.limits import check_section, checked_refine
+from ..stiffness.limits import check_section
 from ..threads import single
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field

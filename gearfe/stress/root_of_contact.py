@@ -1,11 +1,14 @@
 """Root stress along the width under the load that the contact of a pair puts on a tooth."""
 
+from numbers import Integral
+
 import numpy as np
 
 from geometry.pair.gear_pair import GearPair
 
 from ..contact.bodies import seen_gears
 from ..contact.solid import Contact3D
+from ..elements.asked import check_one
 from ..elements.line_load import check_spread
 from ..elements.root_stress import RootStress, stress_under_line
 from ..material import Material
@@ -64,9 +67,13 @@ def root_stress_of_contact(
     >>> contact = gf.contact_pattern(pair, 1800.0, steel, phases=[0.6])
     >>> gf.root_stress_of_contact(pair, contact, 0, steel).largest  # doctest: +SKIP
     """
+    if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
+        given = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
+        raise ValueError(f"{given}: give a GearPair, and what gearfe.contact_pattern gives for it")
+    check_one(pair.gear_1, material, refine)
     if gear not in ("pinion", "wheel"):
         raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")
-    if isinstance(index, bool) or not -len(contact.cells) <= index < len(contact.cells):
+    if not isinstance(index, Integral) or isinstance(index, bool) or not -len(contact.cells) <= index < len(contact.cells):
         raise ValueError(f"index = {index!r}, but the contact has {len(contact.cells)} phases")
     cells = contact.cells[index]
     if (cells.half != 0).any():
@@ -80,10 +87,22 @@ def root_stress_of_contact(
     body, offset = seen_gears(pair, "helical", 0.0)[number]
     own = own[np.argsort(cells.depth[own])]
     z, rolls = cells.depth[own] + offset, (cells.roll_1, cells.roll_2)[number][own]
+    _check_own(body, z, rolls)
     load = _along(z, cells.width[own], cells.load[own], body.b)
     slope = np.polyfit(z, rolls, 1, w=cells.load[own]) if own.size > 1 else (0.0, rolls[0])
     spread = check_spread(body, half_width)
     return stress_under_line(body, lambda at: np.polyval(slope, at), load, material, spread=spread, refine=refine)
+
+
+def _check_own(gear, z, rolls):
+    """ValueError if lines at heights `z` and roll lengths `rolls` [mm] are not on the flank of the gear: of another pair."""
+    (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
+    if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
+        raise ValueError(
+            f"contact at roll lengths of {rolls.min():.4g} to {rolls.max():.4g} mm and heights of {z.min():.4g} to "
+            f"{z.max():.4g} mm, but z = {gear.z} has {low:.4g} to {high:.4g} and 0 to {gear.b:g} mm: give the contact "
+            "of this pair"
+        )
 
 
 def _along(z, width, load, b):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.damage.crack import Crack
 from geometry.pair.gear_pair import GearPair, free_centre_distance
 
-from ..stiffness.limits import is_number
+from ..elements.asked import is_number
 
 INPUTS = {  # name: what it is
     "force": "force along the line of action over the whole width [N], on a logarithmic scale",

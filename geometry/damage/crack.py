@@ -12,6 +12,7 @@ from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_c
 
 STARTS = ("30deg", "root", "middle")
 SLACK = 1e-9  # of the open part of a crack
+SHORTEST = 1e-4  # length of a crack in modules; k falls by 1e-5 by it, and meshes cannot be that small
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,7 +288,10 @@ def _check_inside(gear, crack, path):
     tip = path[:, -1]
     radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
     size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
-    margin = 0.02 * gear.m_n
+    margin, length = 0.02 * gear.m_n, math.dist(path[:, 0], path[:, 1])
+    if length < SHORTEST * gear.m_n:
+        least = f"leave it out, or give {SHORTEST * gear.m_n:.3g} mm or more"
+        raise ValueError(f"crack of {size}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}")
     if gear.outward * (radius - gear.held) < margin:
         raise ValueError(
             f"crack of {size}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"

@@ -8,6 +8,7 @@ compared with an integral that knows nothing of the boundary representation, so 
 
 import math
 from dataclasses import dataclass, replace
+from numbers import Integral
 
 import numpy as np
 
@@ -89,6 +90,8 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     RuntimeError
         If what was cut is not what the pits take.
     """
+    if teeth is not None and (isinstance(teeth, bool) or not isinstance(teeth, Integral)):
+        raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
     if teeth is not None and (teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2):
         raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
     if not (math.isfinite(refine) and refine > 0):

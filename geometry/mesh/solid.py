@@ -65,11 +65,16 @@ class Solid:
         return self.faces[name].reshape(8, -1, self.levels.size - 1)
 
 
+MOST = 5000  # layers of elements
+
+
 def layers(b, size, *, breaks=(), fine=()):
     """Heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks` and finer at `fine`.
 
     `fine` as of `geometry.mesh.outline.spaced`: (first, last, size) [mm].
     """
+    if b > MOST * size:
+        raise ValueError(f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give higher ones, or less refine")
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
     parts = [spaced(low, high, size, list(fine)) for low, high in zip(ends[:-1], ends[1:], strict=True)]
     return np.concatenate([parts[0][:1], *[part[1:] for part in parts]])

@@ -1,0 +1,130 @@
+"""What functions of single gears and teeth are asked for: what cannot be is refused in one line, before any work."""
+
+import math
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), b=8.0, r_bore=8.0)
+PAIR = gf.GearPair(GEAR, GEAR)
+CRACK = gf.Crack(level=0.4)
+
+
+def along_front(gear=GEAR, crack=CRACK, radius=18.0, line_load=100.0, material=STEEL, **options):
+    return gf.stress_intensity_along_front(gear, crack, radius, line_load, material, refine=options.get("refine", 0.4))
+
+
+def deck(path, gear=GEAR, radius=18.0, line_load=100.0, material=STEEL, **options):
+    return gf.write_line_inp(path / "line.inp", gear, radius, line_load, material, **options)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"line_load": True}, "line_load = True"),
+        ({"line_load": lambda z: z * math.nan}, "gives nan to nan"),
+        ({"line_load": lambda z: -z}, "gives -0.0 to -8.0"),
+        ({"line_load": lambda z: 0 * z}, "somewhere > 0"),
+        ({"line_load": lambda z: "much"}, "a tooth is pushed"),
+        ({"line_load": lambda z: np.ones(3)}, "function of an array of heights"),
+        ({"line_load": lambda: 1.0}, "function of an array of heights"),
+        ({"radius": "18"}, "radius = '18'"),
+        ({"radius": None}, "radius = None"),
+        ({"material": (STEEL, STEEL)}, "the Material of this gear"),
+        ({"gear": PAIR}, "give one Gear"),
+        ({"refine": 1e9}, "give 0.2 to 64"),
+        ({"refine": 1e-9}, "give 0.2 to 64"),
+        ({"refine": True}, "refine = True"),
+        ({"crack": gf.Crack(level=0.4, width=(0.0, 1e-6))}, "a width of 0.8 m_n"),
+        ({"crack": gf.Crack(level=0.4, ends=(0.01, 0.01))}, "a depth of 0.15 and"),
+        ({"crack": gf.Crack(level=0.4, ends=(1e-9, 1e-9))}, "too short for any mesh"),
+    ],
+)
+def test_intensities_along_a_front(given, message):
+    with pytest.raises(ValueError, match=message):
+        along_front(**given)
+
+
+@pytest.mark.parametrize(
+    ("function", "more"),
+    [
+        (gf.root_stress, {}),
+        (gf.root_stress_along_width, {"refine": 0.4}),
+        (gf.stress_intensity, {"crack": CRACK}),
+    ],
+)
+def test_one_tooth(function, more):
+    run = {"gear": GEAR, "radius": 18.0, "line_load": 100.0, "material": STEEL} | more
+    for change in ({"gear": PAIR}, {"material": 207e3}, {"radius": [18.0]}, {"line_load": "100"}, {"refine": math.inf}):
+        with pytest.raises(ValueError, match=next(iter(change))):
+            function(**(run | change))
+    if not more.get("crack"):
+        for width in (0, -1, math.nan, "narrow", True):
+            with pytest.raises(ValueError, match="half_width"):
+                function(half_width=width, **run)
+    with pytest.raises(ValueError, match="give one Gear"):
+        gf.tooth_flexibility("gear", 18.0, STEEL)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"half_width": math.nan}, "half_width = nan"),
+        ({"layer": "thin"}, "layer = 'thin'"),
+        ({"layer": 1e-9}, "more than 5000"),
+        ({"refine": 0}, "refine = 0"),
+        ({"cracks": CRACK}, "a list of Crack"),
+        ({"cracks": [3]}, "a list of Crack"),
+        ({"material": None}, "material = None"),
+    ],
+)
+def test_line_decks(tmp_path, given, message):
+    with pytest.raises(ValueError, match=message):
+        deck(tmp_path, **given)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"gear": PAIR}, "give one Gear"),
+        ({"damage": CRACK}, "a list of Crack and Pit"),
+        ({"damage": {"pinion": [CRACK]}}, "a list of Crack and Pit"),
+        ({"damage": None}, "a list of Crack and Pit"),
+        ({"teeth": 1.5}, "odd whole number"),
+        ({"teeth": "3"}, "odd whole number"),
+        ({"teeth": True}, "odd whole number"),
+        ({"refine": 0}, "refine = 0"),
+        ({"path": None}, "path = None"),
+        ({"path": "no/such/folder.msh"}, "existing, writable folder"),
+    ],
+)
+def test_meshes(tmp_path, monkeypatch, given, message):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=message):
+        gf.export_mesh(**({"path": "gear.msh", "gear": GEAR} | given))
+
+
+def test_root_stress_of_contact():
+    contact = gf.contact_pattern(PAIR, 1000.0, STEEL, phases=[0.1])
+    larger = gf.GearPair(gf.Gear(z=60, m_n=2.0, alpha_n=math.radians(20), b=8.0, r_bore=8.0), GEAR)
+    for pair, found, index, material, options, message in (
+        (PAIR, contact, "first", STEEL, {}, "index = 'first'"),
+        (PAIR, contact, 0.5, STEEL, {}, "index = 0.5"),
+        (PAIR, None, 0, STEEL, {}, "contact of type NoneType"),
+        (GEAR, contact, 0, STEEL, {}, "pair of type Gear"),
+        (PAIR, contact, 0, (STEEL, STEEL), {}, "the Material of this gear"),
+        (PAIR, contact, 0, STEEL, {"refine": 0}, "refine = 0"),
+        (larger, contact, 0, STEEL, {}, "give the contact of this pair"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            gf.root_stress_of_contact(pair, found, index, material, **options)
+
+
+@pytest.mark.parametrize("method", ["ritz", "ritz3d", "fe", "fe3d"])
+def test_a_crack_too_short_for_any_mesh_says_so(method):
+    with pytest.raises(ValueError, match=r"crack of level = 1e-06: .* too short for any mesh"):
+        gf.mesh_stiffness(PAIR, force=1000.0, material=STEEL, method=method, phases=2, damage={"pinion": [gf.Crack(level=1e-6)]})
