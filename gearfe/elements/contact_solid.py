@@ -30,7 +30,7 @@ from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, pl
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
-TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.5}  # see `geometry.mesh.holes.SIZES`
+TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `geometry.mesh.holes.SIZES`
 STRETCH = 2.0  # tets are so many times longer along the width
 RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.mesh.holed_drawing import on_outline
 from geometry.mesh.holes import Holed
 from geometry.mesh.solid import Solid
 from geometry.tooth.profile import cartesian, flank
@@ -44,22 +45,20 @@ def part_of(mesh: Solid) -> Part:
 def holed_part(mesh: Holed, strips=()) -> Part:
     """Second-order tets of a gear without what its pits take, in its own frame.
 
-    Nodes on flanks lie on the involute helicoid, save those in the middle of edges whose tets would fold: they are nearer to
-    their chords (`folds.unfolded`). RuntimeError if one of these is in one of the `strips` (as of `holed_sector`), where the
-    gear touches.
+    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these, save those in the
+    middle of edges whose tets would fold: they are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is
+    in one of the `strips` (as of `holed_sector`), where the gear touches.
     """
     nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
     gear = mesh.gear
-    for name, found in mesh.faces.items():
-        if name.startswith("flank "):
-            a, b, c = found
+    for name in sorted(mesh.faces, reverse=True):  # flanks last, the most exact
+        if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
+            a, b, c = mesh.faces[name]
             own = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
             x, y, z = nodes[:, own]
-            low, high = sorted((gear.r_form, gear.r_a))
-            radius = np.clip(np.hypot(x, y), low, high)
-            angle = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
-            turn = 2 * np.pi * int(name.split()[1]) / gear.z + gear.twist_rate * z
-            nodes[:2, own] = cartesian(radius, angle + turn)
+            place = np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z
+            radius, angle = _on_surface(gear, name, *place)
+            nodes[:2, own] = cartesian(radius, angle + gear.twist_rate * z)
     bent, nodes = nodes, unfolded(nodes, cells)
     _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
     a, b, c = mesh.faces["held"]
@@ -69,6 +68,17 @@ def holed_part(mesh: Holed, strips=()) -> Part:
     place[used] = np.arange(used.size)
     faces = {name: place[found] for name, found in mesh.faces.items()}
     return Part(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
+
+
+def _on_surface(gear, name, radius, angle):
+    """Places (radius [mm], angle [rad]) of a section on the surface `name` they are near to."""
+    if name == "held":
+        return gear.held, angle
+    if name == "outline":
+        return on_outline(gear, radius, angle)
+    radius = np.clip(radius, *sorted((gear.r_form, gear.r_a)))
+    turn = 2 * np.pi * int(name.split()[1]) / gear.z
+    return radius, flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1] + turn
 
 
 def _check_strips(gear, off, strips):

@@ -6,6 +6,7 @@ All of it lies in the frame that turns with the helix, in which a tooth is a pri
 import math
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..damage.crack import crack_path, start_arc
 from ..damage.pit_volume import pit_frame
@@ -87,16 +88,37 @@ def _half(gear, side, mark):
     return out[::sign]
 
 
-def fine(gear, crack, size):
-    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip."""
+def on_outline(gear, radius, angle):
+    """Nearest places of the outline of all teeth, radius [mm] and angle [rad], to places ``(n,)`` near it."""
+    pitch, dense = 2 * math.pi / gear.z, 2000
+    tooth = np.round(angle / pitch) * pitch
+    arcs = np.linspace(0.0, fillet_length(gear), dense)
+    pieces = [
+        (np.full(dense, gear.r_a), np.linspace(0.0, gear.half_thickness(gear.r_a), dense)),
+        flank(gear, np.linspace(gear.roll_a, gear.roll_f, dense)),
+        root_curve(gear, arcs),
+        (np.full(dense, gear.r_f), np.linspace(root_half_angle(gear), max(pitch / 2, root_half_angle(gear)), dense)),
+    ]
+    curve = [np.concatenate([piece[k] for piece in pieces]) for k in (0, 1)]
+    found = cKDTree(cartesian(*curve).T).query(cartesian(radius, np.abs(angle - tooth)).T)[1]
+    return curve[0][found], tooth + np.copysign(curve[1][found], angle - tooth)
+
+
+def fine(gear, crack, size, teeth):
+    """Circles of the section with smaller edges: the tooth, its loaded flank, its fillets, the crack's mouth and tip.
+
+    Of a whole gear (`teeth` None) the fillets beside the next teeth too, which may be loaded.
+    """
     middle = (gear.r_a + gear.r_f) / 2
     out = [(0.0, middle, abs(gear.r_a - gear.r_f) / 2, size["tooth"])]
     for arc in np.linspace(arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a), 8):
         x, y = cartesian(*flank(gear, roll_at_arc(gear, arc)))
         out.append((float(x), float(y), 0.15 * gear.m_n, size["flank"]))
-    for sign in (1, -1):
-        x, y = cartesian(*root_curve(gear, 0.6 * fillet_length(gear)))
-        out.append((sign * float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))
+    radius, angle = root_curve(gear, 0.6 * fillet_length(gear))
+    for tooth in (-1, 0, 1) if teeth is None else (0,):
+        for side in (-angle, angle):
+            x, y = cartesian(radius, 2 * math.pi * tooth / gear.z + side)
+            out.append((float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))
     if crack is not None:
         path = crack_path(gear, crack)
         out.append((*path[:, -1].tolist(), 0.0, size["tip"]))

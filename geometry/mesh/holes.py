@@ -16,8 +16,8 @@ from ..damage.crack import Crack, crack_path
 from ..damage.pit import centre_arc, check_pits
 from ..damage.pit_volume import removed_volume
 from ..tooth.gear import Gear
-from ..tooth.profile import arc_at, fillet_length, flank, root_curve
-from .holed_drawing import fine, numbers_of, section, squeezed, tool
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve
+from .holed_drawing import fine, numbers_of, on_outline, section, squeezed, tool
 from .mesher import tetrahedra
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
@@ -42,8 +42,8 @@ class Holed:
         The pit a tet is in, -1 outside of all: the gear with holes is ``cells[:, plug < 0]``.
     faces : dict of str to ndarray, shape (3, k)
         Triangles by name: ``held`` (bore or outside of a ring), ``sides`` (where the sector was cut off), ``end 0``, ``end b``,
-        ``flank -1``, ``flank 0``, ... (loaded, without the pits), ``fillets 0`` (both of tooth 0), ``pits`` (walls and bottoms),
-        ``crack body``, ``crack tooth`` (facing each other).
+        ``flank -1``, ``flank 0``, ... (loaded, without the pits), ``fillets 0`` (both of tooth 0), ``outline`` (of all teeth,
+        with these), ``pits`` (walls and bottoms), ``crack body``, ``crack tooth`` (facing each other).
     removed : (float, float, float)
         Volume of the pits [mm**3]: by the integral, cut, in the mesh.
     """
@@ -138,7 +138,7 @@ def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
         points, curves, faces, gear.b / stretch, [squeezed(tool(gear, pit), squeeze) for pit in pits],
-        fine=fine(gear, crack, size), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
+        fine=fine(gear, crack, size, teeth), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
     )  # fmt: skip
     made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})
     meshed = float(_sizes_of(made.points, made.tets)[made.plug >= 0].sum())
@@ -250,5 +250,10 @@ def _named(gear, points, cells, plug, teeth):
     for tooth in numbers_of(gear, teeth):
         off = (angle - 2 * math.pi * tooth / gear.z - flank(gear, roll)[1] + math.pi) % (2 * math.pi) - math.pi
         on[f"flank {tooth}"] = (np.abs(off) * radius < near) & (roll > low - near) & (roll < high + near)
+    near_to = np.array(on_outline(gear, radius, angle))
+    on["outline"] = np.hypot(*(cartesian(radius, angle) - cartesian(*near_to))) < 10 * near
     own = outer[:, kept]
-    return {name: own[:, mask[own].all(axis=0)] for name, mask in on.items()} | {"pits": outer[:, ~kept]}
+    found = {name: own[:, mask[own].all(axis=0)] for name, mask in on.items()}
+    ends = np.isin(own, found["held"]).all(axis=0) | (on["end 0"] | on["end b"])[own].all(axis=0)
+    found["outline"] = own[:, on["outline"][own].all(axis=0) & ~ends]
+    return found | {"pits": outer[:, ~kept]}
