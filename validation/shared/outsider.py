@@ -37,7 +37,8 @@ LOAD = 300.0  # N/mm
 PITTED = 600.0  # N/mm of pairs with pits: a contact 1.4 times as wide, so that fewer elements follow it around the pits
 PITS = {"cut": "cut out", "lost": "as lost contact", "filled": "filled"}  # by what the deck does with them
 STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact lines only
-RIMS = ({"per_width": 0.67}, {"per_width": 1.0}, {"per_width": 1.5})  # of pairs with pits; their rims follow
+# of pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
+RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
 SHOWN = "helical, healthy"  # whose pressure is drawn
 ASKED = 0.005  # largest difference asked for where both meshes are converged
@@ -95,7 +96,7 @@ def cases():
         "spur, healthy": Case(pair_of(0.0)),
         "ring, healthy": Case(ring_pair()),
         **_with_control("helical, two pits", pits(), RIMS),
-        **_with_control("helical, crack 50 % and two pits", [crack, *pits()], RIMS[:2]),
+        **_with_control("helical, crack 50 % and two pits", [crack, *pits()], RIMS),
     }
 
 
