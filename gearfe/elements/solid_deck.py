@@ -56,8 +56,7 @@ def holed_part(mesh: Holed, strips=()) -> Part:
             a, b, c = mesh.faces[name]
             own = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
             x, y, z = nodes[:, own]
-            place = np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z
-            radius, angle = _on_surface(gear, name, *place)
+            radius, angle = _on_surface(gear, name, np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z)
             nodes[:2, own] = cartesian(radius, angle + gear.twist_rate * z)
     bent, nodes = nodes, unfolded(nodes, cells)
     _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
