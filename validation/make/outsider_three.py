@@ -47,10 +47,11 @@ under itself.
 
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
 divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of
-those of the contact lines. Forces apart: of `T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part.
-Seconds: of the processor, one thread. Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls,
-and its deflection grows, as the mesh is refined, so that the difference rises. Contact in CalculiX is a bed of springs, so that
-its k is too low by about 0.07 %: see [truth.md](truth.md).
+those of the contact lines. `penalty`: stiffness of the contact springs over E, per mm, 500 unless told. Forces apart: of
+`T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part. Seconds: of the processor, one thread.
+Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls, and its deflection grows, as the mesh is
+refined, so that the difference rises. Contact in CalculiX is a bed of springs, so that its k is too low by about 0.07 %: see
+[truth.md](truth.md).
 
 `python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
 installed, run by run.
@@ -166,10 +167,7 @@ def _settled(meshes, values, ours):
     if len(values) > 1:
         moved = abs(values[-1] - values[-2])
         doubt = f"; {'**not decided**: ' if moved > ASKED else ''}{100 * moved:.2f} % between the two last meshes"
-    widths = [float(mesh.split()[1]) for mesh in meshes]
-    order = observed_order(values, widths)
-    trend = "" if order is None else f", observed order {order:.1f}, towards {100 * limit(values, widths, order):+.2f} %"
-    return f"{listed}; the last {_judged((1 + ours) / (1 + values[-1]) - 1)}{doubt}{trend}"
+    return f"{listed}; the last {_judged((1 + ours) / (1 + values[-1]) - 1)}{doubt}"
 
 
 def _judged(off):
