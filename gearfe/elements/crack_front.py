@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack, check_apart, crack_path, open_part
+from geometry.damage.crack import Crack, check_apart, meshed_path, open_part
 from geometry.damage.front import bends, deepest, shallowest, whole
 from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
@@ -109,7 +109,7 @@ def stress_intensity_along_front(
     mesh = _mesh(gear, crack, refine, layer=layer, patches=patches, fine=fine)
     moved, unknowns = under_line(mesh, roll, line_load, material, spread)
     z, part, least = _followed(mesh, crack)
-    mouth, tip = crack_path(gear, whole(crack)).T
+    mouth, tip = meshed_path(gear, whole(crack)).T
     length = math.dist(mouth, tip)
     front, ahead, normal = _axes(gear, mouth, tip, z, part)
     tube = _tube(gear, crack, least)
@@ -130,7 +130,7 @@ def _mesh(gear, crack, refine, **options):
 
 def _check_room(gear, crack):
     """ValueError if the crack has no room for the tubes of the integral, or they none beside each other along its front."""
-    depth = deepest(crack) * math.dist(*crack_path(gear, whole(crack)).T)
+    depth = deepest(crack) * math.dist(*meshed_path(gear, whole(crack)).T)
     low, high = crack.width or (0.0, gear.b)
     if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
         raise ValueError(
@@ -141,7 +141,7 @@ def _check_room(gear, crack):
 
 def _tube(gear, crack, least):
     """Radius [mm] of the wider tube around the front of a crack that is at least `least` of its depth deep."""
-    return min(TUBE[0] * gear.m_n, TUBE[1] * least * math.dist(*crack_path(gear, whole(crack)).T))
+    return min(TUBE[0] * gear.m_n, TUBE[1] * least * math.dist(*meshed_path(gear, whole(crack)).T))
 
 
 def _followed(mesh, crack):

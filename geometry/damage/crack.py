@@ -237,6 +237,17 @@ def crack_path(gear, crack):
     return path if crack.side == "loaded" else path * [[-1], [1]]
 
 
+def meshed_path(gear, crack):
+    """`crack_path`, if a mesh can follow it: ValueError too if the crack is shorter than `SHORTEST`."""
+    path = crack_path(gear, crack)
+    size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
+    length = math.dist(path[:, 0], path[:, 1])
+    if length < SHORTEST * gear.m_n:
+        least = f"leave it out, or give {SHORTEST * gear.m_n:.3g} mm or more"
+        raise ValueError(f"crack of {size}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}")
+    return path
+
+
 def mirrored(gear, crack):
     """Mirror image [mm] of the crack's starting point, in the frame of its tooth: where a turning crack breaks through."""
     sign = -1 if crack.side == "loaded" else 1
@@ -288,10 +299,7 @@ def _check_inside(gear, crack, path):
     tip = path[:, -1]
     radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
     size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
-    margin, length = 0.02 * gear.m_n, math.dist(path[:, 0], path[:, 1])
-    if length < SHORTEST * gear.m_n:
-        least = f"leave it out, or give {SHORTEST * gear.m_n:.3g} mm or more"
-        raise ValueError(f"crack of {size}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}")
+    margin = 0.02 * gear.m_n
     if gear.outward * (radius - gear.held) < margin:
         raise ValueError(
             f"crack of {size}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..damage.crack import crack_path, start_arc
+from ..damage.crack import meshed_path, start_arc
 from ..damage.pit_volume import pit_frame
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
@@ -57,7 +57,7 @@ def section(gear, crack, teeth):
 
     if crack is None:
         return np.array(points).T, curves, [body(rim)]
-    path = crack_path(gear, crack)
+    path = meshed_path(gear, crack)
     corners = [marks[crack.side], *(at(xy) for xy in path.T[1:])]
     corners.append(marks["loaded" if crack.side == "unloaded" else "unloaded"])
     parting = [join("line", a, b) for a, b in zip(corners[:-1], corners[1:], strict=True)]
@@ -120,7 +120,7 @@ def fine(gear, crack, size, teeth):
             x, y = cartesian(radius, 2 * math.pi * tooth / gear.z + side)
             out.append((float(x), float(y), 0.4 * fillet_length(gear), size["fillet"]))
     if crack is not None:
-        path = crack_path(gear, crack)
+        path = meshed_path(gear, crack)
         out.append((*path[:, -1].tolist(), 0.0, size["tip"]))
         out.append((*path[:, 0].tolist(), 0.0, 2 * size["tip"]))
     return out

@@ -12,7 +12,7 @@ from numbers import Integral
 
 import numpy as np
 
-from ..damage.crack import Crack, crack_path
+from ..damage.crack import Crack, meshed_path
 from ..damage.pit import centre_arc, check_pits
 from ..damage.pit_volume import removed_volume
 from ..tooth.gear import Gear
@@ -196,7 +196,7 @@ def _opened(gear, crack, made):
         return np.zeros(0, dtype=int), made.tets, {}
     body, tooth = (_triangles(made.tets[:, made.face == k]) for k in (0, 1))
     walls = np.array(sorted(set(map(tuple, body.T.tolist())) & set(map(tuple, tooth.T.tolist())))).T
-    path = crack_path(gear, crack)
+    path = meshed_path(gear, crack)
     away = _distance(made.points[:2], path)
     on = (away[walls] < 1e-6 * gear.m_n).all(axis=0)
     if not on.any():

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, crack_path, mirrored, start_arc
+from ..damage.crack import check_apart, check_single, meshed_path, mirrored, start_arc
 from ..tooth.gear import Gear
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 from .mesher import quadrangulate
@@ -194,7 +194,7 @@ def _mouths(gear, size, found):
 
 def _lengths(gear, crack):
     """Distances along a crack [mm] of its corners from its mouth."""
-    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(crack_path(gear, crack), axis=1)))])
+    return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(meshed_path(gear, crack), axis=1)))])
 
 
 def _rim(gear, draft, size, teeth, mouths, patches):
@@ -245,7 +245,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     by_side = {crack.side: (number, crack) for number, crack in found}
     legs, ends, spots = {"loaded": [], "unloaded": []}, {}, {}
     for side, (number, crack) in by_side.items():
-        path, places = crack_path(gear, crack), _lengths(gear, crack)
+        path, places = meshed_path(gear, crack), _lengths(gear, crack)
         ends[side], spots[side] = path[:, -1], min(size["crack tip"], places[-1] / 8)
         sizes = [mouths[side][1], *[size["crack"]] * (places.size - 2), spots[side]]
         legs[side] = [(path[:, k : k + 2], number, places[k : k + 2], sizes[k : k + 2]) for k in range(places.size - 1)]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from skfem import MeshTri, MeshTri2
 
-from ..damage.crack import check_apart, check_through, crack_path, mirrored, start_arc
+from ..damage.crack import check_apart, check_through, meshed_path, mirrored, start_arc
 from ..damage.seam import open_seam
 from ..tooth.gear import Gear
 from .mesher import triangulate
@@ -79,7 +79,7 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
     paths, marks, tips = {}, {}, {}
     for crack in cracks:
         place = crack.tooth % gear.z, crack.side
-        paths[place] = corners = _turned(crack_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
+        paths[place] = corners = _turned(meshed_path(gear, crack), 2 * math.pi * crack.tooth / gear.z)
         length = np.hypot(*np.diff(corners, axis=1)).sum()
         marks[place] = start_arc(gear, crack), min(fillet_size, length / 4)
         tips[place] = min(CRACK_EDGE * fillet_size, length / 5)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..damage.crack import crack_path, start_arc
+from ..damage.crack import meshed_path, start_arc
 from ..damage.seam import open_seam
 from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
 from ..tooth.profile import root_half_angle as root_half
@@ -173,7 +173,7 @@ def _pieces(gear, size, cracks):
     """The outline clockwise from the lower left corner: name, parameters of the vertices, and points by parameter."""
     pitch, half = math.pi / gear.z, gear.half_thickness(gear.r_a)
     marks = {crack.side: start_arc(gear, crack) for crack in cracks}
-    tips = [(crack_path(gear, crack)[:, -1], crack.side) for crack in cracks]
+    tips = [(meshed_path(gear, crack)[:, -1], crack.side) for crack in cracks]
     thick = abs(gear.r_f - gear.held)
     near_bore = [(thick, thick, 0.5 * gear.held)] if not gear.internal else []
     side = gear.r_f - gear.outward * spaced(
@@ -255,7 +255,7 @@ def _chains(gear, size, cracks, loop):
     part = np.arange(10) / 10
     rim = (loop[..., None] + (np.roll(loop, -1, axis=1) - loop)[..., None] * part).reshape(2, -1)
     for crack in cracks:
-        corners = crack_path(gear, crack)
+        corners = meshed_path(gear, crack)
         start = int(np.argmin(np.hypot(*(loop - corners[:, :1]))))
         legs = np.hypot(*np.diff(corners, axis=1))
         ends = np.concatenate([[0.0], np.cumsum(legs)])
