@@ -14,6 +14,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import geometry
+from geometry.damage.crack import meshed_path
 
 from ..elements import fe
 from ..elements.fe_gear3d import solid_flexibility
@@ -84,6 +85,8 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     Flexibility3D
     """
     kept = solved_gears(cache)
+    for crack in cracks:
+        meshed_path(gear, crack)  # refused before the sound gear is solved
 
     def said(plan):
         damage = f", {len(cracks)} cracks" if cracks else ""
