@@ -240,11 +240,12 @@ def crack_path(gear, crack):
 def meshed_path(gear, crack):
     """`crack_path`, if a mesh can follow it: ValueError too if the crack is shorter than `SHORTEST`."""
     path = crack_path(gear, crack)
-    size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
     length = math.dist(path[:, 0], path[:, 1])
     if length < SHORTEST * gear.m_n:
         least = f"leave it out, or give {SHORTEST * gear.m_n:.3g} mm or more"
-        raise ValueError(f"crack of {size}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}")
+        raise ValueError(
+            f"crack of {_size(crack)}: {length:.3g} mm long, too short for any mesh at m_n = {gear.m_n:g} mm; {least}"
+        )
     return path
 
 
@@ -295,20 +296,23 @@ def _sampled(path, count=200):
     return np.array([np.interp(place, np.arange(path.shape[1]), row) for row in path])
 
 
+def _size(crack):
+    return f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
+
+
 def _check_inside(gear, crack, path):
     tip = path[:, -1]
     radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
-    size = f"level = {crack.level}" if crack.level is not None else f"length = {crack.length} mm"
     margin = 0.02 * gear.m_n
     if gear.outward * (radius - gear.held) < margin:
         raise ValueError(
-            f"crack of {size}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
+            f"crack of {_size(crack)}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
         )
     if abs(angle) > math.pi / gear.z:
-        raise ValueError(f"crack of {size}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")
+        raise ValueError(f"crack of {_size(crack)}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")
     arcs = np.linspace(-gear.r_f * math.pi / gear.z / 4, fillet_length(gear), 400)
     fillet_points = cartesian(*root_curve(gear, arcs)) * [[-1], [1]]
     if np.hypot(*(fillet_points - tip[:, None])).min() < margin:
         raise ValueError(
-            f"crack of {size}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
+            f"crack of {_size(crack)}: its tip reaches the opposite fillet of z = {gear.z}, the tooth is off; make it shorter"
         )
