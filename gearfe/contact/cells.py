@@ -24,8 +24,8 @@ class Cells:
     `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in
     `geometry.pair.gear_pair.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
     it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
-    `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` 0,
-    or 1 or 2 for the gear whose tip corner touches; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's
+    `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` as of
+    `geometry.pair.contacts.Contacts`; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's
     [MPa], nan at a corner; `floor` how deep the pits above the cell are [mm], 0 outside of pits (it is in `gap`); `radius`
     relative radius of curvature in the transverse section [mm] where flanks are modified, otherwise 0: that of the involutes.
     """
@@ -101,7 +101,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
     there, radius = corner > 0, np.zeros(z.size)
     if there.any():
-        roll_1[there], roll_2[there], gap[there] = touching(pair, nominal[there])
+        roll_1[there], roll_2[there], gap[there], corner[there] = touching(pair, nominal[there])[:4]
     if flanks is not None:
         met = first_touch(pair, flanks, nominal, order, gap, z)
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner

@@ -77,7 +77,7 @@ def _table(pair, materials, line_load, flanks, nominal, unit, stuck, cache):
         column = int(np.flatnonzero(mesh.found.order == 0)[0])
         there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]))
         where = np.array([there, np.full(there.size, column)]).T
-        rows = [{"flexibility": row[5], "gap": row[2]} for row in kink_rows(mesh, where, load).values()]
+        rows = list(kink_rows(mesh, where, load).values())
         if rows:
             closing = pressed(rows, np.array([load]))[0] - mesh.found.gap[there, column]
             width = half_width(load, mesh.radius[there, column], mesh.modulus)

@@ -5,6 +5,7 @@ import numpy as np
 from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hertz import half_width, hat_logarithm
+from .rows import Row
 from .sharing import share
 
 REACH = 1.3  # a contact with a kink within so many half widths of the whole load is resolved hat by hat
@@ -44,8 +45,8 @@ def kink_rows(contact, where, line_load):
 
     Returns
     -------
-    dict of (int, int) to tuple
-        By phase and column: roll_1, roll_2, gap, coefficient, radius, influence.
+    dict of (int, int) to gearfe.contact.rows.Row
+        By phase and column.
     """
     if not len(where):
         return {}
@@ -76,7 +77,7 @@ def _fitted(contact, where, row, line_load, middle, half, kink):
     gear = contact.pair.gear_1
     low, high = sorted(float(arc_at(gear, roll)) for roll in (gear.roll_f, gear.roll_a))
     for _ in range(8):
-        pressed = row[0][share(row[5], row[2], line_load)[0] > 0]
+        pressed = row.roll_1[share(row.influence, row.gap, line_load)[0] > 0]
         ends = arc_at(gear, pressed[[0, -1]])
         used = np.abs(ends - middle).max() / half
         if used < PARTS[0] and pressed.size < HATS // 3:
@@ -97,7 +98,7 @@ def _tops(middle, half, kink):
 
 
 def _hats(contact, i, column, tops):
-    """Rows of hats: for each pair roll_1, roll_2, gap, coefficient, radius, influence."""
+    """`Row` of each pair."""
     pair, found = contact.pair, contact.found
     (arc, step), order = tops, found.order[column]
     roll_1 = roll_at_arc(pair.gear_1, arc)
@@ -105,8 +106,7 @@ def _hats(contact, i, column, tops):
     gap, roll_2 = pair.approach(roll_1, found.nominal[i, column][:, None], **own)
     there = np.isfinite(roll_2)
     for gear, roll in ((pair.gear_1, roll_1), (pair.gear_2, roll_2)):
-        least, most = sorted((gear.roll_f, gear.roll_a))
-        there &= (roll > least) & (roll < most)
+        there &= gear.outward * (gear.roll_a - roll) > 0
     bulk = np.zeros((*arc.shape, HATS))
     for flexible, roll, sense in zip(contact.flexibility, (roll_1, roll_2), (1, -1), strict=True):
         place = arc_at(flexible.gear, np.where(there, roll, roll[there].mean()))
@@ -120,7 +120,7 @@ def _hats(contact, i, column, tops):
     rows = []
     for n in range(len(arc)):
         on = there[n]
-        zero = np.zeros(on.sum())
         influence = bulk[n] + even - sum(contact.coefficients) * np.log(step[n])
-        rows.append((roll_1[n, on], roll_2[n, on], gap[n, on], zero, zero + 1.0, influence[np.ix_(on, on)]))
+        one = np.ones(on.sum())
+        rows.append(Row(roll_1[n, on], roll_2[n, on], gap[n, on], influence[np.ix_(on, on)], one, one))
     return rows

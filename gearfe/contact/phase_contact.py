@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.pair.contacts import touching
+from geometry.pair.contacts import TIP, touching
 from geometry.pair.lines import bands_of
 from geometry.pair.modified import first_touch
 
@@ -270,7 +270,7 @@ class PhaseContact:
         law, kinks = self.laws[number], self.kinks[number]
         at = np.full(cells.z.size, -1) if law is None else law.ends(self.pair, cells)
         for end, form in enumerate((self.flanks or ())[::-1]):
-            at[(at == end) & (form.edge is not None)] = -1  # no sharp corner there
+            at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
         corner, bent = (at >= 0).any(), kinks is not None and bool(kinks.zones)
 
         def local(line_load):

@@ -1,7 +1,7 @@
-"""Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where tip corners may touch beyond.
+"""Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where corners may touch beyond.
 
-On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a tip
-corner of one gear on the other flank, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
+On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a corner
+of one gear on the other's side, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
 """
 
 import math
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.pair.contacts import touching
+from geometry.pair.contacts import near_pitches, touching
 from geometry.pair.lines import covered
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
@@ -36,23 +36,22 @@ class Piece(NamedTuple):
 
 @lru_cache(maxsize=64)
 def gaps(pair):
-    """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met.
+    """Return how far beyond the path (before its start, after its end) [mm], and the least gap from there on, where there is one.
 
-    Where the path ends at a form point the corner first meets nothing; its gaps count from where it meets the flank.
+    Where nothing touches at the end of the path itself, gaps count from where a corner first meets the mate.
     """
     start, end = pair.path
-    away = np.linspace(0.0, pair.p_bt, SAMPLES) + 1e-6 * pair.p_bt
     out = []
-    for nominal in (start - away, end + away):
-        gap = touching(pair, nominal)[2]
+    for sense, at, pitches in zip((-1, 1), (start, end), near_pitches(pair), strict=True):
+        away = np.linspace(0.0, pitches * pair.p_bt, pitches * SAMPLES) + 1e-6 * pair.p_bt
+        gap = touching(pair, at + sense * away)[2]
         met = np.flatnonzero(np.isfinite(gap))
         first = met[0] if met.size else gap.size
-        lost = first + np.flatnonzero(~np.isfinite(gap[first:]))
-        if 0 < first < gap.size - 1:  # it meets the flank between two samples: what the gap is at the one before, at least
+        if 0 < first < gap.size - 2:  # it meets between two samples: what the gap is at the one before, at least
             first -= 1
             gap[first] = max(2 * gap[first + 1] - gap[first + 2], 0.0)
-        own = slice(first, lost[0] if lost.size else gap.size)
-        out.append((away[own], np.maximum.accumulate(gap[own])))
+        own = slice(first, met[-1] + 1 if met.size else gap.size)
+        out.append((away[own], np.minimum.accumulate(gap[own][::-1])[::-1]))
     return out
 
 

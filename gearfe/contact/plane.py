@@ -1,24 +1,26 @@
 """All tooth pairs at one phase: who carries what, and how far the gears approach.
 
-A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a tip corner there is no such
-formula: that pair becomes a row of hat pressures up to the corner, with the exact gap at each. So it does where a modified flank
-has a kink within the contact: a row of hats on both sides of the touching point (`gearfe.contact.kinks`).
+A pair well inside its flanks is one contact with Hertz's logarithm. Where the contact reaches a corner of an outline there is no
+such formula: that pair becomes a row of hat pressures, with the exact gap at each (`gearfe.contact.rows`). So it does where a
+modified flank has a kink within the contact (`gearfe.contact.kinks`).
 """
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.tooth.profile import arc_at, roll_at_arc
+from geometry.tooth.profile import arc_at
 
-from ..flexibility.hertz import contact_modulus, half_plane, half_width, hat_logarithm, peak_pressure
+from ..flexibility.hats import TIP_ZONE
+from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
+from .rows import Row, Wanted, corner_rows
 from .sharing import line_contact, line_contacts, stacked
 
-# A contact whose middle is closer to a tip corner than so many half widths of the whole load is resolved hat by hat: near
-# the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
-CORNER = 0.7
-KINK = 3  # number of a pair whose contact reaches a kink of a flank; 1 and 2 are those at a tip corner
+CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
+BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
+KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
+SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -37,12 +39,13 @@ def _within(contacts, reach):
 
 
 def _aligned(rows):
-    """Rows of hats of different lengths as arrays ``(rows, n)`` and ``(rows, n, n)``, nan as gap after each."""
-    first, second, gap, coefficient, radius, influence = (stacked([row[k] for row in rows]) for k in range(6))
+    """`Row` of different lengths as arrays ``(rows, n)`` and ``(rows, n, n)``, nan as gap after each; no logarithms, radii of 1."""
+    values = [stacked([row[k] for row in rows]) for k in range(len(Row._fields))]
     for k, row in enumerate(rows):
-        size = row[0].size
-        first[k, size:], second[k, size:], gap[k, size:], radius[k, size:] = row[0][-1], row[1][-1], np.nan, 1.0
-    return first, second, gap, coefficient, radius, influence
+        size = row.gap.size
+        values[0][k, size:], values[1][k, size:], values[2][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
+    first, second, gap, influence, *turns = values
+    return first, second, gap, np.zeros(gap.shape), np.ones(gap.shape), *turns, influence
 
 
 class PairContact:
@@ -77,28 +80,32 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self._known, self._gaps = {}, {}
+        self._rows = {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         found, c = self.found, sum(self.coefficients)
         reach = self._reach(line_load)
         possible = found.gap < reach[:, None]
-        corner = np.where(possible, self._corners(line_load), 0)
+        corner, zone, width = self._corners(line_load, possible)
         line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
-        kinks, corner = kink_rows(self, np.argwhere(kink), line_load), np.where(kink, KINK, corner)
         open_ = np.flatnonzero(~done)
         closed = []
         if open_.size:
-            sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], kinks)
+            at = np.argwhere((corner > 0) & ~done[:, None]).tolist()
+            rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), float(width[i, k])) for i, k in at])
+            rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink), line_load)
+            corner = np.where(kink, KINK, corner)
+            sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows)
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], approach[open_], tangent[open_], closed = self._solved(sets, line_load)
-        unloaded = None if self.flanks is None else found.gap.min(axis=1)
+        least = found.gap.min(axis=1)
+        unloaded = None if self.flanks is None and not least.any() else least
         return Solved(found.order, approach, tangent, line, pressure, tuple(open_[closed].tolist()), unloaded)
 
     def _solved(self, sets, line_load):
@@ -161,79 +168,76 @@ class PairContact:
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
         return self.found.gap[at] + 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
-    def _corners(self, line_load):
-        """For each phase and pair: 0, or the gear (1, 2) whose tip corner it touches."""
-        corner = np.zeros(self.found.gap.shape, dtype=int)
+    def _corners(self, line_load, possible):
+        """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.
+
+        A corner takes part if the contact of the flanks reaches it, or if it is a second place of contact of the same pair and
+        closer than the load presses flanks into each other.
+        """
+        found, gear = self.found, self.pair.gear_1
+        corner = np.zeros(found.gap.shape, dtype=int)
         if not self.extended:
-            return corner
-        reach = CORNER * half_width(line_load, self.radius, self.modulus)
-        sharp = [self.flanks is None or form.edge is None for form in self.flanks or (None, None)]
-        for number, gear, roll in ((1, self.pair.gear_1, self.found.roll_1), (2, self.pair.gear_2, self.found.roll_2)):
-            if sharp[number - 1]:
-                corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
-        return corner
+            return corner, *np.zeros((2, *corner.shape))
+        width = half_width(line_load, self.radius, self.modulus)
+        pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
+        away = np.abs(arc_at(gear, found.corner_roll[0]) - arc_at(gear, found.roll_1))
+        other = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
+        away[1::2] = np.abs(arc_at(other, found.corner_roll[1, 1::2]) - arc_at(other, found.roll_2))
+        more = found.corner_gap - np.where(possible, found.gap, 0.0)
+        with np.errstate(invalid="ignore"):
+            reached = away < CORNER * width
+            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * self.radius)))
+        there = possible & np.isfinite(found.corner_gap)
+        corner = ((there & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
+        smooth = (corner > 0) & (found.corner == 0)
+        apart = smooth & ~(there & reached).any(axis=0)
+        further = np.where(there & reached, away, 0.0).max(axis=0) + BEYOND * width
+        zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
+        return corner, zone, np.where(apart, width, 0.0)
 
-    def find_gaps(self, rows):
-        """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
-        teeth = {}
-        for i, column, corner in rows:
-            if (i, column, corner) not in self._gaps:
-                tip = self._tip(column, corner)
-                teeth.setdefault((corner, id(tip)), (tip, []))[1].append((i, column))
-        for (corner, _), (tip, found) in teeth.items():
-            roll = roll_at_arc((self.pair.gear_1, self.pair.gear_2)[corner - 1], tip.arc)
-            at = tuple(np.array(found).T)
-            nominal, start = (values[at][:, None] for values in (self.found.nominal, self.found.gap))
-            own = {"flanks": self.flanks, "order": self.found.order[at[1]][:, None]}
-            gap, met = self.pair.approach(roll, nominal, driver=corner == 1, start=start, **own)
-            self._gaps |= {(*row, corner): (gap[j], met[j]) for j, row in enumerate(found)}
+    def rows(self, wanted):
+        """Rows of hats of pairs at corners, for each `gearfe.contact.rows.Wanted`; those of one pose are the same for any load."""
+        new = [one for one in dict.fromkeys(wanted) if one not in self._rows]
+        made = dict(zip(new, corner_rows(self, new), strict=True))
+        self._rows |= {one: row for one, row in made.items() if not one.width}
+        return [made[one] if one in made else self._rows[one] for one in wanted]
 
-    def _tip(self, column, corner):
-        """`TipHats` of the gear whose corner a pair touches."""
-        order = self.found.order[column]
-        return self.flexibility[corner - 1].tip_of(order if corner == 1 else -order)
-
-    def contacts_at(self, wanted, kinks=None):
+    def contacts_at(self, wanted, rows):
         """Unknowns of the contact problems at some phases.
 
         Parameters
         ----------
         wanted : sequence of (int, ndarray of int, ndarray of int)
-            Number of a phase; columns of the pairs that may touch; for each of them 0, or the gear (1, 2) whose tip corner it
-            touches, or `KINK`: then it is a row of hats.
-        kinks : dict, optional
-            The rows at kinks, from `gearfe.contact.kinks.kink_rows`: they are those of one load.
+            Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a row.
+        rows : dict of (int, int) to Row
+            Rows of hats by phase and column.
 
         Returns
         -------
         list of dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
-        keys = [(i, tuple(near.tolist()), tuple(corner.tolist())) for i, near, corner in wanted]
-        alike = {}  # phases at which the same pairs touch in the same way
-        for i, near, corner in keys:
-            if KINK in corner or (i, near, corner) not in self._known:
-                alike.setdefault((near, corner), []).append(i)
-        rows = [(i, *one) for pairs, own in alike.items() for one in zip(*pairs, strict=True) for i in own]
-        self.find_gaps([row for row in rows if row[2] in (1, 2)])
-        for (near, corner), own in alike.items():
-            built = self._built(np.array(own), near, corner, kinks)
-            self._known |= {(i, near, corner): contacts for i, contacts in zip(own, built, strict=True)}
-        return [self._known[key] for key in keys]
+        alike, out = {}, {}  # phases at which the same pairs touch in the same way
+        for i, near, corner in wanted:
+            alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
+        for (near, row), own in alike.items():
+            out |= dict(zip(own, self._built(np.array(own), near, row, rows), strict=True))
+        return [out[i] for i, _, _ in wanted]
 
-    def _built(self, phases, near, corner, kinks):
+    def _built(self, phases, near, row, rows):
         parts = [
-            _aligned([kinks[i, column] for i in phases.tolist()]) if number == KINK else self._row(phases, column, number)
-            for column, number in zip(near, corner, strict=True)
+            _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column)
+            for column, resolved in zip(near, row, strict=True)
         ]
         column = np.repeat(near, [part[0].shape[1] for part in parts])
         order = self.found.order[column]
-        roll_1, roll_2, gap, coefficient, radius = (np.concatenate([part[k] for part in parts], axis=1) for k in range(5))
-        total = self.flexibility[0].matrix(roll_1, order) + self.flexibility[1].matrix(roll_2, -order)
+        roll_1, roll_2, gap, coefficient, radius, *turns = (np.concatenate(each, axis=1) for each in list(zip(*parts, strict=True))[:7])
+        first, second = (turn[:, :, None] * turn[:, None] for turn in turns)
+        total = first * self.flexibility[0].matrix(roll_1, order) + second * self.flexibility[1].matrix(roll_2, -order)
         for part, k in zip(parts, near, strict=True):
             own = np.flatnonzero(column == k)
-            if part[5] is not None:
-                total[:, own[:, None], own] = part[5]
+            if part[7] is not None:
+                total[:, own[:, None], own] = part[7]
         opening = self._opening(roll_1, roll_2, order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
@@ -244,25 +248,9 @@ class PairContact:
             out.append(own | {"opening": None if opening is None else opening[k, on]})
         return out
 
-    def _row(self, phases, column, corner):
-        """Unknowns ``(phases, n)`` of one pair: roll_1, roll_2, gap, coefficient, radius, and their influence for a corner.
-
-        The gap is nan where a hat has no flank before it.
-        """
+    def _single(self, phases, column):
+        """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm: as of `_aligned`, no influence."""
         found = self.found
-        if corner == 0:
-            roll_1, roll_2, gap, radius = (v[phases, column, None] for v in (found.roll_1, found.roll_2, found.gap, self.radius))
-            return roll_1, roll_2, gap, np.full(gap.shape, sum(self.coefficients)), radius, None
-        tip, flank = (0, 1) if corner == 1 else (1, 0)
-        gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
-        hats = self._tip(column, corner)
-        gap, met = (np.array(values) for values in zip(*(self._gaps[i, column, corner] for i in phases.tolist()), strict=True))
-        met[np.isnan(met)] = gears[flank].roll_a  # no flank before it
-        arc, top = arc_at(gears[flank], met), arc_at(gears[flank], gears[flank].roll_a)
-        gap[~(arc < top)] = np.nan
-        middle = np.clip((arc[:, :, None] + arc[:, None, :]) / 2, *self.flexibility[flank].limits)
-        mate = self.flexibility[flank].near_of(tooth[flank])(middle)
-        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots, hats.knots)
-        roll = np.broadcast_to(roll_at_arc(gears[tip], hats.arc), met.shape)
-        rolls = (roll, met) if corner == 1 else (met, roll)
-        return *rolls, gap, np.zeros(gap.shape), np.ones(gap.shape), hats.influence + mate
+        roll_1, roll_2, gap, radius = (v[phases, column, None] for v in (found.roll_1, found.roll_2, found.gap, self.radius))
+        one = np.ones(gap.shape)
+        return roll_1, roll_2, gap, sum(self.coefficients) * one, radius, one, one, None

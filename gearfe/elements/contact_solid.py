@@ -135,13 +135,11 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
 
 def _modified(pair, found, heights, forms):
     """Contacts of the sections at `heights`, with the flanks as they are there."""
-    own = (found.roll_1, found.roll_2, found.gap, found.radius)
-    out = Contacts(found.order, found.nominal, *(value.copy() for value in own))
-    for k, order in enumerate(found.order.tolist()):
-        numbers = np.full(heights.size, order)
-        touch = first_touch(pair, forms, found.nominal[:, k], numbers, found.gap[:, k], heights)
-        out.roll_1[:, k], out.roll_2[:, k], out.gap[:, k], out.radius[:, k] = touch[:4]
-    return out
+    touches = [
+        first_touch(pair, forms, found.nominal[:, k], np.full(heights.size, order), found.gap[:, k], heights)
+        for k, order in enumerate(found.order.tolist())
+    ]
+    return Contacts(found.order, found.nominal, *(np.stack(values, axis=-1) for values in zip(*touches, strict=True)))
 
 
 def write_contact_solid(

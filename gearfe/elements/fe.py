@@ -25,9 +25,9 @@ from geometry.mesh.outline import GROWTH, stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import arc_at, flank_normal
 
-from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE, hat_knots, wider
+from ..flexibility.hats import FLANK_EDGES, SPAN, hat_knots, wider
 from ..flexibility.hertz import half_plane, hat_logarithm
-from ..flexibility.plane import Flexibility, SeamFaces, TipHats
+from ..flexibility.plane import Flexibility, SeamFaces
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -149,10 +149,11 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     body = Body(mesh.mesh, material, state=state)
     on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
     influence, at = _between(body, [one.load for one in on.values()])
-    own = on[0]
-    near, tip = own_tooth(gear, own, influence[at[0], at[0]], half_plane(material, state))
-    far = {(0, k): RectBivariateSpline(own.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
-    return Flexibility(gear, {0: near}, far, {0: tip}, (own.arc[0], own.arc[-2]), 2 * mesh.mesh.doflocs.shape[1])
+    loaded = on[0]
+    near, own = own_tooth(loaded, influence[at[0], at[0]], half_plane(material, state))
+    far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
+    limits = loaded.arc[0], loaded.arc[-1]
+    return Flexibility(gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1])
 
 
 def _between(body, loads):
@@ -181,24 +182,24 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
     mesh = mesh_gear(gear, loaded=solved, refine=refine, teeth=teeth, cracks=cracks)
     body = Body(mesh.mesh, material, state=state)
-    own = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
+    on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
-    influence, at = _between(body, [*(own[tooth].load for tooth in solved), faces])
+    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces])
     at, opened = dict(zip(solved, at, strict=False)), at[-1]
     opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
     apart = influence[opened, opened]
     stiffness = np.linalg.inv(apart)
-    near, tip, far = {}, {}, {}
+    near, own, far = {}, {}, {}
     for tooth in solved:
         for other in solved:
             glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
             if other == tooth:
-                near[tooth], tip[tooth] = own_tooth(gear, own[tooth], glued, half_plane(material, state))
+                near[tooth], own[tooth] = own_tooth(on[tooth], glued, half_plane(material, state))
             elif (other - tooth) % gear.z <= gear.z // 2:
-                far[tooth, other] = RectBivariateSpline(own[tooth].arc, own[other].arc, glued)
-    seam = SeamFaces({t: CubicSpline(own[t].arc, opening[t].T) for t in solved}, apart, stiffness)
-    limits = own[solved[0]].arc[0], own[solved[0]].arc[-2]
-    return Flexibility(gear, near, far, tip, limits, faces.shape[0], healthy, seam)
+                far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
+    seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
+    limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
+    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam)
 
 
 def _face_columns(mesh):
@@ -216,18 +217,18 @@ def _face_columns(mesh):
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
 
 
-def own_tooth(gear, own, influence, coefficient):
-    """Spline S(s, s) of one tooth, and its `TipHats`, from the influence matrix of its hats.
+def own_tooth(on, influence, coefficient):
+    """Splines S(s, s) and S(s, s') of one tooth, from the influence matrix of its hats.
 
-    S comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat plus
+    S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat plus
     what the wide one next to it finds more than its own.
     """
-    smooth = (influence - coefficient * hat_logarithm(own.knots, own.knots))[:-1, :-1]  # without the corner's
-    arc, wide, single = own.arc[:-1], wider(own.knots[:, :-1]), np.diag(smooth)
-    middle, found = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth, wide)
+    smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
+    arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's
+    middle, found = wide @ arc, np.einsum("ij,jk,ik->i", wide, smooth[:-1, :-1], wide)
     inner = CubicSpline(middle[1:-1], found[1:-1])
     found[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
-    zone = own.knots[1] > arc_at(gear, gear.roll_a) - TIP_ZONE * gear.m_n
-    block = influence[np.ix_(zone, zone)]
-    tip = TipHats(own.arc[zone], own.knots[:, zone], (block + block.T) / 2)
-    return CubicSpline(middle, found), tip
+    near = CubicSpline(middle, found)
+    more = near(arc) - single
+    smooth = (smooth + smooth.T) / 2 + np.diag(np.append(more, more[-1]))
+    return near, RectBivariateSpline(on.arc, on.arc, smooth)

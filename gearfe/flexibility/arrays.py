@@ -10,7 +10,7 @@ from scipy.interpolate import BivariateSpline, CubicSpline
 
 from geometry.tooth.gear import Gear
 
-from .plane import Flexibility, SeamFaces, TipHats
+from .plane import Flexibility, SeamFaces
 from .solid import PLACES, Faces, Flexibility3D
 
 CUBIC = 3  # degree of all splines
@@ -18,15 +18,14 @@ CUBIC = 3  # degree of all splines
 
 def plane_arrays(found: Flexibility) -> dict[str, NDArray]:
     """Arrays of a `Flexibility` by name, those of the healthy gear in it under ``healthy/``."""
-    out = {"limits": np.array(found.limits, dtype=float), "dofs": np.array(found.dofs, dtype=np.int64)}
+    out = {name: np.array(getattr(found, name), dtype=float) for name in ("limits", "fine")}
+    out["dofs"] = np.array(found.dofs, dtype=np.int64)
     for tooth, spline in found.near.items():
         out |= {f"near/{tooth}/x": spline.x, f"near/{tooth}/c": spline.c}
-    for (first, second), spline in found.far.items():
+    surfaces = {f"far/{first}/{second}": spline for (first, second), spline in found.far.items()}
+    for at, spline in (surfaces | {f"own/{tooth}": spline for tooth, spline in found.own.items()}).items():
         x, y = spline.get_knots()
-        at = f"far/{first}/{second}"
         out |= {f"{at}/x": x, f"{at}/y": y, f"{at}/c": spline.get_coeffs()}
-    for tooth, hats in found.tip.items():
-        out |= {f"tip/{tooth}/{name}": getattr(hats, name) for name in ("arc", "knots", "influence")}
     if found.seam is not None:
         out |= {"seam/influence": found.seam.influence, "seam/stiffness": found.seam.stiffness}
         for tooth, spline in found.seam.opening.items():
@@ -45,7 +44,7 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     tree = _Tree(arrays)
     near = {tooth: _curve(part) for (tooth,), part in tree.parts("near", 1)}
     far = {key: _surface(part) for key, part in tree.parts("far", 2)}
-    tip = {tooth: _hats(part) for (tooth,), part in tree.parts("tip", 1)}
+    own = {tooth: _surface(part) for (tooth,), part in tree.parts("own", 1)}
     seam = None
     if tree.has("seam"):
         opening = {tooth: _curve(part) for (tooth,), part in tree.parts("seam/opening", 1)}
@@ -54,9 +53,9 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
         _check(all(spline.c.shape[2:] == (len(influence),) for spline in opening.values()), "faces of cracks")
         seam = SeamFaces(opening, influence, stiffness)
     limits = tuple(tree.take("limits", 1))
-    _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == tip.keys(), "teeth")
-    healthy = tree.healthy(gear, plane_from)
-    return _all_used(Flexibility(gear, near, far, tip, limits, tree.whole("dofs"), healthy, seam), arrays, plane_arrays)
+    _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == own.keys(), "teeth")
+    healthy, fine = tree.healthy(gear, plane_from), float(tree.take("fine", 0))
+    return _all_used(Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam), arrays, plane_arrays)
 
 
 def solid_arrays(found: Flexibility3D) -> dict[str, NDArray]:
@@ -158,9 +157,3 @@ def _surface(part):
     spline = BivariateSpline()
     spline.tck, spline.degrees = (x, y, c), (CUBIC, CUBIC)
     return spline
-
-
-def _hats(part):
-    hats = TipHats(part.take("arc", 1), part.take("knots", 2), part.take("influence", 2))
-    _check(hats.knots.shape == (3, hats.arc.size) and hats.influence.shape == (hats.arc.size,) * 2, "hats at the tip corner")
-    return hats

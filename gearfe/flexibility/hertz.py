@@ -40,7 +40,7 @@ def hat_logarithm(knots_1, knots_2):
     """Mean of ``-ln |x - y|`` over hats of unit area: the flat-surface kernel between hat pressures.
 
     A hat of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is nine
-    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2) is given a fall over a thousandth of its rise.
+    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2 or s0 = s1) is given a fall over a thousandth of its rise, or the other way round.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def hat_logarithm(knots_1, knots_2):
 def _masses(knots):
     """Places ``(3, n)`` and masses ``(3, n)`` of the second derivative of hats."""
     start, top, stop = knots
-    stop = np.maximum(stop, top + 1e-3 * (top - start))
+    start, stop = np.minimum(start, top - 1e-3 * (stop - top)), np.maximum(stop, top + 1e-3 * (top - start))
     left, right = top - start, stop - top
     height = 2 / (left + right)
     return np.array([start, top, stop]), np.array([height / left, -height / left - height / right, height / right])

@@ -58,10 +58,12 @@ class Flexibility:
     far : dict of (int, int) to spline
         Influence of a load on one tooth at another, over both arcs; the second tooth is further to the loaded
         side.
-    tip : dict of int to TipHats
-        The flank next to the tip corner of each solved tooth, hat by hat.
+    own : dict of int to spline
+        Smooth part S(s, s') between two places of the flank of each solved tooth, over both arcs.
     limits : tuple of float
         Arcs between which the splines hold [mm]; contacts outside are clamped to them.
+    fine : float
+        How many times shorter than by default the hats of contacts at corners are to be (`gearfe.contact.rows`).
     dofs : int
         Unknowns of the solve.
     healthy : Flexibility or None
@@ -73,8 +75,9 @@ class Flexibility:
     gear: Gear
     near: dict[int, Any]
     far: dict[tuple[int, int], Any]
-    tip: dict[int, "TipHats"]
+    own: dict[int, Any]
     limits: tuple[float, float]
+    fine: float = 1.0
     dofs: int = 0
     healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
@@ -89,10 +92,13 @@ class Flexibility:
         key = first % self.gear.z, second % self.gear.z
         return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
 
-    def tip_of(self, tooth: int) -> "TipHats":
-        """Tip hats of a tooth."""
+    def within(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64]:
+        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth."""
         tooth %= self.gear.z
-        return self.tip[tooth] if tooth in self.tip else self._whole().tip[0]
+        spline = self.own[tooth] if tooth in self.own else self._whole().own[0]
+        arc = np.clip(arc_at(self.gear, roll), *self.limits)
+        rising, back = np.unique(arc, return_inverse=True)
+        return spline(rising, rising)[np.ix_(back, back)]
 
     def _whole(self):
         return self if self.healthy is None else self.healthy
@@ -100,7 +106,7 @@ class Flexibility:
     def matrix(self, roll: NDArray[np.float64], teeth: ArrayLike) -> NDArray[np.float64]:
         """Flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
 
-        Contacts on one tooth get no influence on each other here: see `TipHats`. Cracks are glued shut: see `SeamFaces`.
+        Contacts on one tooth get no influence on each other here: see `within`. Cracks are glued shut: see `SeamFaces`.
         """
         low, high = self.limits
         arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
@@ -116,16 +122,3 @@ class Flexibility:
                     out[..., own[:, None], theirs] = block
                     out[..., theirs[:, None], own] = np.swapaxes(block, -1, -2)
         return out
-
-
-@dataclass(frozen=True, slots=True)
-class TipHats:
-    """Hats of one flank next to its tip corner, the corner's last.
-
-    `arc` (n,) are their centroids from the base circle [mm], `knots` (3, n), `influence` (n, n) the full displacement
-    between them, half-plane logarithm and all [mm per N/mm].
-    """
-
-    arc: NDArray[np.float64]
-    knots: NDArray[np.float64]
-    influence: NDArray[np.float64]

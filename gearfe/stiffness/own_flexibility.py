@@ -42,7 +42,7 @@ class OwnFlexibility:
       unit line load, plus ``c ln r`` (r in mm), for r to 0. So do those of `ritz` and finite elements.
 
     There is no contact at tip corners off the path of contact, as with closed forms (``extended`` of the curve's ``meta`` is
-    False), unless both gears are `Flexibility` objects with tip hats or methods that have them. Damage is yours, too: a function
+    False), unless both gears are `Flexibility` objects or methods that know of it. Damage is yours, too: a function
     knows the number of the tooth; ``damage`` of `mesh_stiffness` is refused.
 
     Parameters
@@ -108,8 +108,8 @@ class OwnFlexibility:
 
     @property
     def extended(self) -> bool:
-        """Whether both gears know what to do at a tip corner."""
-        return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "tip", None)) for one in self.gears)
+        """Whether both gears know what to do at a corner."""
+        return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "own", None)) for one in self.gears)
 
     @property
     def gears(self) -> tuple[Any, Any]:

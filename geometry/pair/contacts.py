@@ -15,14 +15,14 @@ and for a point of the wheel (its tip corner, before the start), which the pinio
 ``delta = E(n - delta / 2)``. With ``delta = D(n)`` the wheel would have turned alone, with ``delta = E(n)`` the pinion: two
 conventions, one at each end.
 
-**Force.** Off the line of action the contact normal is the met flank's: tangent to that gear's base circle, it passes the centre
-of the gear whose tip touches at ``q r_b`` instead of r_b (q is 0.96 at a gap of 6 um). That gear feels less torque from the same
-normal force, ``T1 / r_b1`` and ``T2 / r_b2`` differ, and a shared approach closes the pair by ``rate = (1 + q) / 2`` of itself
-(Newton's method for delta divides by it). The work of the tooth forces in a shared approach is ``F d delta`` with
-``F = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force meant. A tooth bends by torque: its deflection as a turn of the flank times
-r_b is that of a force along its own involute normal with the same torque. Contact models therefore put the part of F that a pair
-carries on both flanks along their own involute normals, without rate; what this neglects is of the order of ``1 - rate`` of the
-local, not the bending deflection of the pair at the corner (see ``tests/contact/test_pose.py`` for its size against CalculiX).
+**Force.** Off the line of action the contact normal is that of the side that is met: of a flank it passes its gear's centre at
+r_b, the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass both centres at
+``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a shared
+approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F d delta``
+with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth bends by torque: its deflection as a turn of the
+flank times r_b is that of a force along its own involute normal with the same torque, ``(q / rate) F``; the local deflection
+belongs to ``N = F / rate``. Both count by as much more of an approach as they take to be closed, again ``q / rate`` and
+``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py`` for its size against CalculiX).
 
 **Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
 mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
@@ -30,30 +30,40 @@ mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shif
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.profile import cartesian, flank
+from ..tooth.profile import cartesian
+from ..tooth.side import form_corner, place, side
 
 if TYPE_CHECKING:
     from ..tooth.flank_form import FlankForm
     from .gear_pair import GearPair
 
-STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
+STEPS = 8  # of Newton's method at most: each doubles the correct digits; D bends little over a gap, more in a fillet
 SETTLED = 1e-7  # last step, in base pitches
+PITCHES = 8  # beyond the path that are looked at, of rings with hardly more teeth than their pinion
+CLOSE = 0.02  # gap [m_n] that no load closes
+ROUNDING = 1e-7  # overlap [m_n] of corners that are on the path of contact
+TIP, FORM = (1, 2), (3, 4)  # numbers of the corners: tips of pinion and wheel, form points of pinion and wheel
 
 
 @dataclass(frozen=True, slots=True)
 class Contacts:
     """The tooth pairs that touch, or nearly do, at some phases (arrays of shape (phases, pairs)).
 
-    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points, `gap` the approach of the gears along the line of action
-    [mm], shared by both, at which the pair first touches (0 on the path of contact; inf: the flanks cannot meet), `radius` the
-    relative radius of curvature there [mm] (1 where flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters
-    at phase 0 and pair k is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm]. Pair k is
-    formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th on the other.
+    `roll_1`, `roll_2` are the roll lengths [mm] of the touching points (in a fillet: names of places, `geometry.tooth.side`),
+    `gap` the approach of the gears along the line of action [mm], shared by both, at which the pair first touches (0 on the path
+    of contact, less where a tip cuts into its mate's fillet; inf: the teeth cannot meet), `radius` the relative radius of
+    curvature there [mm] (1 where flanks cannot meet), `order` (pairs,) the number of each pair: pair 0 enters at phase 0 and pair
+    k is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm], `corner` what touches: 0 both
+    flanks, 1 or 2 the tip corner of pinion or wheel, 3 or 4 the form corner of an undercut pinion or wheel. `corner_gap`
+    (4, phases, pairs) is the approach at which each of these corners touches (inf: never), `corner_roll` (2, 4, phases, pairs)
+    the places of both gears there [mm]. Pair k is formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th
+    on the other.
     """
 
     order: NDArray[np.int64]
@@ -62,13 +72,40 @@ class Contacts:
     roll_2: NDArray[np.float64]
     gap: NDArray[np.float64]
     radius: NDArray[np.float64]
+    corner: NDArray[np.int64]
+    corner_gap: NDArray[np.float64]
+    corner_roll: NDArray[np.float64]
+
+
+class Touching(NamedTuple):
+    """Where sections first touch: roll lengths of both gears, gaps [mm], corners and what these do, as of `Contacts`."""
+
+    roll_1: NDArray[np.float64]
+    roll_2: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    corner: NDArray[np.int64]
+    corner_gap: NDArray[np.float64]
+    corner_roll: NDArray[np.float64]
+
+
+class Met(NamedTuple):
+    """Where points touch the other side: approach `gap` and place `roll` there [mm].
+
+    `arm`, `met_arm`: at how many of their base radii the contact normal passes the centres of the point's own gear and the other.
+    """
+
+    gap: NDArray[np.float64]
+    roll: NDArray[np.float64]
+    arm: NDArray[np.float64]
+    met_arm: NDArray[np.float64]
 
 
 def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Contacts:
     """Contacts of all tooth pairs of a `GearPair`.
 
-    On the path of contact the gap is zero. Beyond it one tip corner slides on the other flank: the pinion's after the end, the
-    wheel's before the start, with the exact gap in the mean pose (see the module).
+    On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of one
+    tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or the form
+    corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module).
 
     Parameters
     ----------
@@ -84,33 +121,74 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
     """
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
     start, end = pair.path
-    first, last = -1 - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - math.floor(phase.min())
+    before, after = near_pitches(pair) if extended else (1, 1)
+    first, last = -before - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - 1 + after - math.floor(phase.min())
     order = np.arange(first, last + 1)
     nominal = start + (phase[:, None] + order) * pair.p_bt
-    roll_1, roll_2, gap = touching(pair, nominal, extended=extended)
-    radius = pair.relative_radius(roll_1, roll_2)
-    return Contacts(order, nominal, roll_1, roll_2, gap, np.where(np.isfinite(gap) & (radius > 0), radius, 1.0))
+    met = touching(pair, nominal, extended=extended)
+    radius = pair.relative_radius(met.roll_1, met.roll_2)
+    radius = np.where(np.isfinite(met.gap) & (radius > 0), radius, 1.0)
+    return Contacts(order, nominal, met.roll_1, met.roll_2, met.gap, radius, *met[3:])
 
 
-def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> tuple[NDArray, NDArray, NDArray]:
-    """Roll lengths of both gears where sections touch, and their gaps [mm], as of `contacts`, at any abscissae `nominal` [mm]."""
+@lru_cache(maxsize=256)
+def near_pitches(pair: "GearPair") -> tuple[int, int]:
+    """How many base pitches before the start and after the end of the path teeth are close enough to touch under load, at least 1.
+
+    Teeth of external gears turn out of each other's reach; those of a ring with hardly more teeth than its pinion stay close.
+    """
+    if not pair.gear_2.internal:
+        return 1, 1
+    start, end = pair.path
+    out = []
+    for sense, from_ in ((-1, start), (1, end)):
+        away = np.arange(PITCHES)[:, None] + (np.arange(32) + 0.5) / 32
+        gap = _corners(pair, from_ + sense * away * pair.p_bt)[2].min(axis=0)
+        close = np.flatnonzero((gap < CLOSE * pair.gear_1.m_n).any(axis=1))
+        out.append(max(1, int(close[-1]) + 1) if close.size else 1)
+    return out[0], out[1]
+
+
+def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> Touching:
+    """Where sections of unmodified teeth first touch, as of `contacts`, at any abscissae `nominal` [mm]."""
     start, end = pair.path
     slack = 1e-9 * pair.p_bt
-    before, after = nominal < start - slack, nominal >= end + slack
+    path = (nominal >= start - slack) & (nominal < end + slack)
     roll_1, roll_2 = nominal.copy(), pair.mate_roll(nominal)
-    gap = np.where(before | after, np.inf, 0.0)
-    if extended:  # a base pitch away teeth are turned out of each other's reach, until the same tooth comes round again
-        near = (nominal > start - pair.p_bt) & (nominal < end + pair.p_bt)
-        for where, driver in ((after & near, True), (before & near, False)):
-            tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
-            own, met = (roll_1, roll_2) if driver else (roll_2, roll_1)
-            distance, roll = approach(pair, tip.roll_a, nominal[where], driver=driver)
-            low, high = sorted((other.roll_f, other.roll_a))
-            meets = (roll >= low) & (roll <= high)
-            there = tuple(index[meets] for index in np.nonzero(where))
-            own[there], met[there] = tip.roll_a, roll[meets]
-            gap[there] = np.maximum(distance[meets], 0.0)
-    return roll_1, roll_2, gap
+    gap, corner = np.where(path, 0.0, np.inf), np.zeros(nominal.shape, dtype=int)
+    corner_gap, corner_roll = np.full((4, *nominal.shape), np.inf), np.full((2, 4, *nominal.shape), np.nan)
+    out = Touching(roll_1, roll_2, gap, corner, corner_gap, corner_roll)
+    before, after = near_pitches(pair) if extended else (0, 0)
+    near = np.nonzero((nominal > start - before * pair.p_bt) & (nominal < end + after * pair.p_bt))
+    if not extended or not near[0].size:
+        return out
+    rolls_1, rolls_2, gaps = _corners(pair, nominal[near])
+    corner_gap[:, *near], corner_roll[:, :, *near] = gaps, np.array([rolls_1, rolls_2])
+    each = (least := np.argmin(gaps, axis=0), np.arange(least.size))
+    first = gaps[each] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
+    there, chosen = tuple(index[first] for index in near), tuple(index[first] for index in each)
+    roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
+    gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
+    return out
+
+
+def corners_of(pair: "GearPair") -> list[tuple[int, float, bool]]:
+    """Corners of the outlines that may touch: number as in `Contacts`, roll length [mm], whether it is the pinion's."""
+    gears = (pair.gear_1, pair.gear_2)
+    tips = [(number, gear.roll_a, number == 1) for number, gear in zip(TIP, gears, strict=True)]
+    return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]
+
+
+def _corners(pair, nominal):
+    """Roll lengths of both gears and gaps ``(4, ...)`` where each of the four corners touches; inf where it does not."""
+    rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))
+    gaps = np.full(rolls_1.shape, np.inf)
+    for number, roll, driver in corners_of(pair):
+        distance, met = approach(pair, roll, nominal, driver=driver)[:2]
+        own, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
+        own[number - 1], other[number - 1] = roll, np.where(np.isnan(met), other[number - 1], met)
+        gaps[number - 1] = np.where(np.isnan(distance), np.inf, distance)
+    return rolls_1, rolls_2, gaps
 
 
 def approach(
@@ -122,14 +200,14 @@ def approach(
     start: ArrayLike = 0.0,
     flanks: "tuple[FlankForm, FlankForm] | None" = None,
     order: ArrayLike = 0,
-) -> tuple[NDArray, NDArray]:
-    """Approach, shared by both gears, at which a flank point touches the other flank (see the module).
+) -> Met:
+    """Approach, shared by both gears, at which a point of one side touches the other side (see the module).
 
     Parameters
     ----------
     pair : GearPair
     roll : float or ndarray
-        Roll length of a point on the pinion's flank (``driver=True``) or the wheel's [mm].
+        Place on the pinion's side (``driver=True``) or the wheel's, flank or fillet, as of `geometry.tooth.side` [mm].
     nominal : ndarray
         Abscissa of the pair's contact on the line of action [mm]; off the path of contact, where it would be.
     driver : bool
@@ -142,9 +220,8 @@ def approach(
 
     Returns
     -------
-    gap, met : ndarray
-        The approach [mm] and the roll length of the point met on the other flank [mm]; nan where the two never touch (more than a
-        base pitch apart, or inside the base circle).
+    Met
+        nan where the two never touch (more than a base pitch apart, or beyond the tip or the root circle).
     """
     sense = 1 if driver else -1
     roll, nominal = np.broadcast_arrays(np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float))
@@ -155,15 +232,16 @@ def approach(
         own, mate = (form.of(order) for form in (flanks if driver else flanks[::-1]))
         back, behind = own.removed(roll) + own.shift(order), mate.shift(order)
     for _ in range(STEPS):
-        distance, met, arm = distances(sense * (gap / 2 - back))
+        distance, met, *arms = distances(sense * (gap / 2 - back))
         if mate is not None:
             distance = distance + back + mate.removed(met) + behind
-        step = (distance - gap) / ((1 + arm) / 2)
-        gap = gap + np.where((np.abs(distance) < pair.p_bt) & (arm > 0), step, np.nan)  # else the flanks face away: no contact
+        step = 2 * (distance - gap) / (1 + arms[0] / arms[1])
+        facing_it = (np.abs(distance) < pair.p_bt) & (arms[0] > 0) & (arms[1] > 0)
+        gap = gap + np.where(facing_it, step, np.nan)  # else the flanks face away: no contact
         if not (np.abs(step) >= SETTLED * pair.p_bt).any():
             break
     there = np.abs(step) < SETTLED * pair.p_bt
-    return np.where(there, gap, np.nan), np.where(there, met, np.nan)
+    return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))
 
 
 def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
@@ -177,23 +255,23 @@ def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: b
     Returns
     -------
     gap, roll : ndarray
-        Distance to the other flank along the line of action, i.e. the turn of the *other gear alone* that closes it times its
-        base radius [mm], and the roll length of the point met there [mm]; nan where the point lies inside the base circle.
+        Distance to the other side along the line of action, i.e. the turn of the *other gear alone* that closes it times its
+        base radius [mm], and the roll length of the place met there [mm]; nan where the point lies beyond the tip or root circle.
     """
     return facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 
 
 def facing(pair, roll, nominal, driver, turns=None):
-    """What flank points face with both gears moved on from `nominal` by a length on the line of action [mm].
+    """What points of a side face with both gears moved on from `nominal` by a length on the line of action [mm].
 
-    Gives `opposite`, and the distance at which the met normal passes the point's own centre, over its base radius. `turns` is
-    ``pair.turn(nominal)``, if it is known.
+    Gives `opposite`, and the arms at which the met normal passes the point's own centre and the other, over their base radii (1 on
+    the line of action). `turns` is ``pair.turn(nominal)``, if it is known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
     own, other = (0, 1) if driver else (1, 0)
     turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]
-    radius, angle = flank(gears[own], roll)
+    radius, angle = side(gears[own], roll)
     ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
     r_b, base = gears[own].r_b, mate.r_b
 
@@ -201,10 +279,10 @@ def facing(pair, roll, nominal, driver, turns=None):
         x, y = cartesian(radius, ahead + pushes[own] * moved / r_b)
         y = y + apart
         away, seen = np.hypot(x, y), np.arctan2(x, y)
-        met = np.sqrt(np.where(away >= base, away**2 - base**2, np.nan))
-        behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - flank(mate, met)[1]
-        across = pushes[other] * (base * y + met * x) / away**2  # of the met flank's unit normal, across the centre line
-        arm = pushes[own] * (pushes[other] * base - apart * across) / r_b
-        return base * ((behind + math.pi) % (2 * math.pi) - math.pi), met, arm
+        met = place(mate, away)
+        behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
+        across = pushes[other] * (met.arm * y + met.lean * x) / away**2  # of the met normal, across the centre line
+        arm = pushes[own] * (pushes[other] * met.arm - apart * across) / r_b
+        return base * ((behind + math.pi) % (2 * math.pi) - math.pi), met.roll, arm, met.arm / base
 
     return distances

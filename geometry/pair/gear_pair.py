@@ -276,7 +276,7 @@ class GearPair:
         order: ArrayLike = 0,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Approach at which a flank point touches the other flank, see `geometry.pair.contacts.approach`."""
-        return approach(self, roll, nominal, driver=driver, start=start, flanks=flanks, order=order)
+        return approach(self, roll, nominal, driver=driver, start=start, flanks=flanks, order=order)[:2]
 
 
 def free_centre_distance(one: Gear, two: Gear) -> float:

@@ -7,8 +7,8 @@ which faces the wheel's point at rho2, touches at the approach::
 
     delta(rho) = C1(rho) + C2(rho2) + D(n + delta / 2 - C1(rho))
 
-The gap of the pair is the least of these over the pinion's flank up to its tip corner, whose other end is the wheel's tip corner:
-both modified flanks' envelope, at the pose in which the pair first touches. The sum of both modifications at the nominal point, a
+The gap of the pair is the least of these over the pinion's whole side, fillet included, and over the corners of both: the
+envelope of both modified sides, at the pose in which the pair first touches. The sum of both modifications at the nominal point, a
 common approximation, errs by up to a quarter of the deflection at corners.
 """
 
@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..tooth.flank_form import FlankForm
-from ..tooth.profile import arc_at, roll_at_arc
-from .contacts import Contacts, approach, contacts, facing
+from ..tooth.profile import arc_at, fillet_length, roll_at_arc
+from .contacts import TIP, Contacts, approach, contacts, corners_of, facing
 
 if TYPE_CHECKING:
     from .gear_pair import GearPair
@@ -58,21 +58,26 @@ def modified_contacts(
     """
     plain = contacts(pair, phase, extended=extended)
     there = np.nonzero(np.isfinite(plain.gap))
-    roll_1, roll_2 = plain.roll_1.copy(), plain.roll_2.copy()
+    roll_1, roll_2, corner = plain.roll_1.copy(), plain.roll_2.copy(), np.zeros(plain.gap.shape, dtype=int)
     gap, radius = np.full(plain.gap.shape, np.inf), np.ones(plain.gap.shape)
+    corner_gap, corner_roll = np.full_like(plain.corner_gap, np.inf), np.full_like(plain.corner_roll, np.nan)
     touch = first_touch(pair, forms, plain.nominal[there], plain.order[there[1]], plain.gap[there])
-    roll_1[there], roll_2[there], gap[there], radius[there] = touch.roll_1, touch.roll_2, touch.gap, touch.radius
-    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius)
+    for values, found in zip((roll_1, roll_2, gap, radius, corner), touch[:5], strict=True):
+        values[there] = found
+    corner_gap[:, *there], corner_roll[:, :, *there] = touch.corner_gap, touch.corner_roll
+    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius, corner, corner_gap, corner_roll)
 
 
 class Touch(NamedTuple):
-    """Where pairs of sections first touch, arrays of n: roll lengths, gap, relative radius [mm]; tip corner (1, 2) or 0."""
+    """Where pairs of sections first touch, arrays of n, those by corner longer: as of `Contacts`."""
 
     roll_1: NDArray[np.float64]
     roll_2: NDArray[np.float64]
     gap: NDArray[np.float64]
     radius: NDArray[np.float64]
     corner: NDArray[np.int64]
+    corner_gap: NDArray[np.float64]
+    corner_roll: NDArray[np.float64]
 
 
 def first_touch(
@@ -118,14 +123,17 @@ def first_touch(
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
     inner = [form.at(None if h is None else h[near]).of(order[near]) for form, h in zip(forms, own_z, strict=True)]
     rolls_1[near], rolls_2[near], found[near] = _inside(pair, inner, nominal[near], order[near], start[near])
-    for driver, own, met in ((True, rolls_1, rolls_2), (False, rolls_2, rolls_1)):
-        tip, other = (pair.gear_1, pair.gear_2) if driver else (pair.gear_2, pair.gear_1)
-        distance, facing_roll = approach(pair, tip.roll_a, nominal, driver=driver, start=start, flanks=here, order=order)
-        low, high = sorted((other.roll_f, other.roll_a))
-        first = (facing_roll >= low) & (facing_roll <= high) & (distance <= found + 1e-12) & ~never
-        own[first], met[first], found[first] = tip.roll_a, facing_roll[first], distance[first]
-        corner[first] = 1 if driver else 2
-    return Touch(rolls_1, rolls_2, found, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)), corner)
+    gaps, places = np.full((4, nominal.size), np.inf), np.full((2, 4, nominal.size), np.nan)
+    for number, roll, driver in corners_of(pair):
+        if number in TIP and forms[number - 1].edge is not None:
+            continue
+        own, met = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
+        distance, facing_roll, *_ = approach(pair, roll, nominal, driver=driver, start=start, flanks=here, order=order)
+        gaps[number - 1] = np.where(np.isnan(distance) | never, np.inf, distance)
+        places[:, number - 1] = (np.full(nominal.size, roll), facing_roll)[:: 1 if driver else -1]
+        first = np.isfinite(gaps[number - 1]) & (gaps[number - 1] <= found + 1e-12)
+        own[first], met[first], found[first], corner[first] = roll, facing_roll[first], distance[first], number
+    return Touch(rolls_1, rolls_2, found, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)), corner, gaps, places)
 
 
 def _radius(pair, forms, roll_1, roll_2, there):
@@ -152,12 +160,15 @@ def _inside(pair, forms, nominal, order, start):
     if edges:  # a tip's edge is part of the flank and may touch beyond the path; sharp corners are looked at by `first_touch`
         range_ = range_ + start + EDGE * max(edges)
     shift = forms[0].shift(order) + forms[1].shift(order)
-    low, high = (arc_at(one, roll) for roll in pair.path)
+    on_path = [arc_at(one, roll) for roll in pair.path]
+    low, high = arc_at(one, one.roll_f) - fillet_length(one), arc_at(one, one.roll_a)
     ends = np.linspace(*pair.path, 9)
     reach = float(np.abs(pair.relative_radius(ends, pair.mate_roll(ends))).max())
-    middle = arc_at(one, np.maximum(nominal, 0.0))
-    off = np.abs(middle - np.clip(middle, low, high))
+    middle = arc_at(one, nominal)
+    off = np.abs(middle - np.clip(middle, *on_path))
     half = 1.1 * np.sqrt(off**2 + 2 * reach * (range_ + np.abs(shift))) + 1e-3 * one.m_n
+    if edges:
+        half = half + np.abs(nominal - np.clip(nominal, *pair.path))  # rounded tips slide on into the mate's fillet
     first, last = np.clip(middle - half, low, high), np.clip(middle + half, low, high)
     roll_0 = np.clip(nominal, *pair.path)
     pose = start + shift + forms[0].removed(forms[0].before_edge(roll_0))
@@ -173,13 +184,11 @@ def _inside(pair, forms, nominal, order, start):
     for steps in (8, 16):
         arc = _least(lambda s, at=found: _residual(pair, forms, s, turns, order, at), *bounds, steps)
         roll = roll_at_arc(one, arc)
-        found, met = approach(pair, roll, nominal, start=found, flanks=forms, order=order)
+        found, met, *_ = approach(pair, roll, nominal, start=found, flanks=forms, order=order)
         found = np.where(np.isfinite(found), found, pose)
         width = (bounds[1] - bounds[0]) / 8
         bounds = np.maximum(arc - width, bounds[0]), np.minimum(arc + width, bounds[1])
-    two_low, two_high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
-    slack = 1e-9 * one.m_n
-    on = np.isfinite(met) & (met >= two_low - slack) & (met <= two_high + slack)
+    on = np.isfinite(met)
     return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, found, np.inf)
 
 
@@ -188,13 +197,10 @@ def _residual(pair, forms, arc, turns, order, pose):
     roll = roll_at_arc(pair.gear_1, arc)
     forms = [form.of(order) for form in forms]
     back = forms[0].removed(roll) + forms[0].shift(order)
-    distance, met, _ = facing(pair, roll, None, True, turns)(pose / 2 - back)
-    low, high = sorted((pair.gear_2.roll_f, pair.gear_2.roll_a))
-    slack = 1e-6 * pair.gear_1.m_n
-    on = (met >= low - slack) & (met <= high + slack)
-    value = back + forms[1].removed(np.where(on, met, low)) + forms[1].shift(order) + distance - pose
-    off = np.abs(met - np.clip(met, low, high))  # leads the search back
-    return np.where(on, value, np.where(np.isfinite(off), OFF + off, np.inf))
+    distance, met, *_ = facing(pair, roll, None, True, turns)(pose / 2 - back)
+    away = np.maximum(pair.outward * (met - pair.gear_2.roll_a), 0.0)  # beyond the tip: leads the search back
+    value = back + forms[1].removed(np.where(away > 0, pair.gear_2.roll_a, met)) + forms[1].shift(order) + distance - pose
+    return np.where(np.isfinite(distance), value, np.where(np.isfinite(away), OFF + away, np.inf))
 
 
 def _least(function, low, high, steps):

@@ -132,8 +132,12 @@ class FlankForm:
                 )
 
     def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
-        """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out."""
+        """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out.
+
+        The fillet goes on with what is removed at the form point.
+        """
         roll, n = np.asarray(roll, dtype=float), derivative
+        roll = np.maximum(roll, self.low) if self.high > self.low else np.minimum(roll, self.low)
         out = self._shaped(roll, n)
         if self._scales.size:
             own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], roll)

@@ -25,13 +25,17 @@ def flank(gear, roll):
 
 
 def arc_at(gear, roll):
-    """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings)."""
-    return gear.outward * np.square(roll) / (2 * gear.r_b)
+    """Place on the flank as an arc length [mm] that rises from root to tip, zero at the base circle (negative on rings).
+
+    Negative roll lengths are names of places below (`geometry.tooth.side`).
+    """
+    return gear.outward * roll * np.abs(roll) / (2 * gear.r_b)
 
 
 def roll_at_arc(gear, arc):
     """Roll length [mm] at an arc of `arc_at`."""
-    return np.sqrt(np.maximum(2 * gear.r_b * gear.outward * np.asarray(arc), 0.0))
+    square = 2 * gear.r_b * gear.outward * np.asarray(arc)
+    return np.sign(square) * np.sqrt(np.abs(square))
 
 
 def flank_normal(gear, roll):

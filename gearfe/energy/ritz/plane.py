@@ -13,20 +13,17 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from geometry.damage.crack import check_through
-from geometry.mesh.outline import GROWTH, stations
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
-from ...flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE, hat_knots
-from ...flexibility.hertz import half_plane, hat_logarithm
-from ...flexibility.plane import Flexibility, SeamFaces, TipHats
+from ...flexibility.plane import Flexibility, SeamFaces
 from ...flexibility.solved import solved_gears
 from .join import join
 from .panel import panel
 
 PLACES = 16  # loads on each flank
 NEAREST = 0.001  # of them to the tip corner, and to the form point 20 times as much [m_n]
-HATS = 2  # times finer hats at the tip corner than those of `fe`
+HATS = 2  # times finer hats at corners than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
@@ -71,9 +68,9 @@ def _healthy(gear, material, _, neighbours, state, order, refine, cache):
     one = loaded_sector(gear, material, (), state=state, order=order, refine=refine, cache=cache)
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
-    near, tip = _own_tooth(gear, influence[0, 0], half_plane(material, state), refine)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
-    return Flexibility(gear, {0: near}, far, {0: tip}, _limits(gear), one.unknowns)
+    near, own = _own_tooth(gear, influence[0, 0])
+    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns)
 
 
 def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
@@ -83,22 +80,23 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
     reach = max(1, neighbours - 1)
     teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
     one = loaded_sector(gear, material, (), **options)
-    own = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
-    panels = {tooth: loaded_sector(gear, material, found, **options) if found else one for tooth, found in own.items()}
+    hurt = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
+    panels = {tooth: loaded_sector(gear, material, found, **options) if found else one for tooth, found in hurt.items()}
     influence, opening = join(gear, panels, one)
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, tip, far = {}, {}, {}
+    near, own, far = {}, {}, {}
     for i in teeth:
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], tip[i] = _own_tooth(gear, glued, half_plane(material, state), refine)
+                near[i], own[i] = _own_tooth(gear, glued)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t].T) for t in teeth}, between, stiffness)
-    return Flexibility(gear, near, far, tip, _limits(gear), sum(p.unknowns for p in panels.values()), healthy, seam)
+    unknowns = sum(p.unknowns for p in panels.values())
+    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam)
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
@@ -166,21 +164,7 @@ def _spline(gear, influence):
     return RectBivariateSpline(arcs, arcs, matrix @ influence @ matrix.T)
 
 
-@lru_cache(maxsize=64)
-def _hats(gear, refine):
-    """Knots ``(3, n)`` of the hats next to the tip corner, and the matrix from values at the loads to values at their centres."""
-    edge = {name: size * gear.m_n / (HATS * refine) for name, size in FLANK_EDGES.items()}
-    graded = {"tip": edge["tip"], "low": edge["low"], "growth": GROWTH / refine}
-    arc = arc_at(gear, stations(gear, edge["flank"], span=SPAN, **graded))
-    knots = hat_knots(arc, corner=True)
-    knots = knots[:, knots[1] > arc[-1] - TIP_ZONE * gear.m_n]
-    return knots, carry(gear, knots.mean(axis=0))
-
-
-def _own_tooth(gear, influence, coefficient, refine):
-    """Spline S(s, s) of a tooth and its `TipHats`, from the smooth influence between its loads."""
+def _own_tooth(gear, influence):
+    """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads."""
     arcs, matrix = _knots(gear)
-    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, influence, matrix))
-    knots, matrix = _hats(gear, refine)
-    smooth = matrix @ influence @ matrix.T
-    return near, TipHats(knots.mean(axis=0), knots, smooth + coefficient * hat_logarithm(knots, knots))
+    return CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, influence, matrix)), _spline(gear, (influence + influence.T) / 2)

@@ -1,0 +1,176 @@
+"""A pair's contact at corners of the outlines as a row of hat pressures, with the exact gap at each.
+
+Where contact reaches a tip corner or the edge that undercut leaves at a form point, no parabola of Hertz describes it. Hats stand
+along one gear's side, fillet included, finest at every corner that takes part; a corner of the mate counts where it touches that
+side. So one row also holds a tip in its mate's fillet together with the flank contact beside it. The side is that of the gear with
+the first of the corners, so that neither gear is preferred.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.pair.contacts import approach
+from geometry.tooth.profile import arc_at, roll_at_arc
+
+from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE
+from ..flexibility.hertz import hat_logarithm
+
+GROWTH = 0.25  # of the hats' edges per length, away from corners
+WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
+
+
+class Row(NamedTuple):
+    """Hats of one row: places on both gears [mm], gaps [mm] and the displacement between them [mm per N/mm].
+
+    `turn_1`, `turn_2`: torque of the force along the line of action that a hat carries, over that of the same force on the path.
+    """
+
+    roll_1: NDArray[np.float64]
+    roll_2: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    influence: NDArray[np.float64]
+    turn_1: NDArray[np.float64]
+    turn_2: NDArray[np.float64]
+
+
+class Wanted(NamedTuple):
+    """A row to be made: number of the phase, column of the pair, its corners (bit n - 1 for corner n of `Contacts`).
+
+    `zone` is how far it goes on from its corners [mm]; `width` the half width [mm] of a Hertz contact that belongs to the row, away
+    from its corners, 0 without.
+    """
+
+    phase: int
+    column: int
+    corners: int
+    zone: float
+    width: float = 0.0
+
+
+@lru_cache(maxsize=256)
+def _offsets(m_n, fine, zone):
+    """Distances ``(n,)`` [mm] of the hats' tops from a corner, rising from 0, to the end of its zone."""
+    scale = SPAN * m_n / fine
+    least, most, growth = FLANK_EDGES["tip"] * scale, FLANK_EDGES["flank"] * scale, GROWTH / fine * SPAN
+    out = [0.0]
+    while out[-1] < zone:
+        out.append(out[-1] + min(least + growth * (out[-1] + least / 2), most))
+    return np.array(out)
+
+
+def finest_hat(m_n, fine):
+    """Length of the hat next to a corner [mm]."""
+    return float(_offsets(m_n, fine, TIP_ZONE * m_n)[1])
+
+
+def _side_of(offsets, length):
+    """Offsets up to half of `length` [mm], stretched so that they end there."""
+    half = length / 2
+    count = int(np.searchsorted(offsets, half))
+    if count >= offsets.size:  # further apart than the zone: even steps go on
+        step = offsets[-1] - offsets[-2]
+        more = np.arange(1, max(2, int(np.ceil((half - offsets[-1]) / step)) + 1))
+        offsets = np.append(offsets, offsets[-1] + more * (half - offsets[-1]) / more[-1])
+        return offsets
+    count = max(count, 1)
+    return offsets[: count + 1] * half / offsets[count]
+
+
+def _tops(marks, ends, offsets):
+    """Tops of the hats from the first to the last of rising `marks` [mm], a zone further at ends that are no `ends` of contact."""
+    out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
+    out.append(marks[:1])
+    for low, high in zip(marks[:-1], marks[1:], strict=True):
+        own = _side_of(offsets, high - low)
+        out += [low + own[1:], (high - own[-2::-1])]
+    if not ends[1]:
+        out.append(marks[-1] + offsets[1:])
+    return np.concatenate(out)
+
+
+def _knots(tops, ends):
+    """Start, top and end ``(3, n)`` of the hats; those at an end of contact are one-sided, others need a neighbour."""
+    start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
+    knots = np.array([start, tops, stop])
+    return knots[:, slice(None if ends[0] else 1, None if ends[1] else -1)]
+
+
+def corner_rows(contact, wanted):
+    """Rows of hats of pairs at corners.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    wanted : sequence of Wanted
+
+    Returns
+    -------
+    list of Row
+    """
+    out = [None] * len(wanted)
+    for host in (0, 1):
+        own = [k for k, one in enumerate(wanted) if _host(one) == host]
+        if own:
+            for k, row in zip(own, _on_side(contact, [wanted[k] for k in own], host), strict=True):
+                out[k] = row
+    return out
+
+
+def _numbers(one):
+    return [n for n in (1, 2, 3, 4) if one.corners >> (n - 1) & 1]
+
+
+def _host(one):
+    """Whose side a row stands on: 0 the pinion's, 1 the wheel's."""
+    return (_numbers(one)[0] - 1) % 2
+
+
+def _on_side(contact, wanted, host):
+    """Rows along the side of one gear."""
+    found, pair = contact.found, contact.pair
+    gear = (pair.gear_1, pair.gear_2)[host]
+    knots = [_placed(contact, one, host) for one in wanted]
+    count = [own.shape[1] for own in knots]
+    at = np.repeat([one.phase for one in wanted], count), np.repeat([one.column for one in wanted], count)
+    roll = roll_at_arc(gear, np.concatenate([own.mean(axis=0) for own in knots]))
+    own = {"flanks": contact.flanks, "order": found.order[at[1]], "driver": host == 0}
+    gap, met, *arms = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
+    rate = (arms[0] + arms[1]) / 2
+    sense = 1 if host == 0 else -1
+    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate])
+    out, ends = [], np.cumsum([0, *count])
+    for one, hats, first, last in zip(wanted, knots, ends[:-1], ends[1:], strict=True):
+        there = np.isfinite(gap[first:last])
+        *places, gaps, turn_1, turn_2, slow = values[:, first:last][:, there]
+        influence = sum(contact.coefficients) * hat_logarithm(hats[:, there], hats[:, there]) / np.outer(slow, slow)
+        order = int(found.order[one.column])
+        for flexible, own, turn, tooth in zip(contact.flexibility, places, (turn_1, turn_2), (order, -order), strict=True):
+            influence = influence + np.outer(turn, turn) * flexible.within(own, tooth)
+        out.append(Row(*places, gaps, influence, turn_1, turn_2))
+    return out
+
+
+def _placed(contact, one, host):
+    """Knots ``(3, n)`` of the hats of a row, on the arc of its side [mm]."""
+    found, at = contact.found, (one.phase, one.column)
+    gear = (contact.pair.gear_1, contact.pair.gear_2)[host]
+    marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
+    offsets = _offsets(gear.m_n, min(flexible.fine for flexible in contact.flexibility), one.zone)
+    # its own tip ends a side above; the mate's tip faces the lowest place that is in contact
+    ends = 2 - host in marks, 1 + host in marks
+    places = np.unique(list(marks.values()))
+    if ends[0]:
+        places = places[places >= marks[2 - host]]
+    if ends[1]:
+        places = places[places <= marks[1 + host]]
+    if not one.width:
+        return _knots(_tops(places, ends, offsets), ends)
+    middle = float(arc_at(gear, (found.roll_1, found.roll_2)[host][at]))
+    steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
+    tops = _tops(np.unique([*places, middle]), ends, offsets)
+    tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
+    tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
+    return _knots(tops, ends)

@@ -1,0 +1,86 @@
+"""One side of a tooth as one curve from the root circle to the tip circle, fillet and flank: by place, and by radius.
+
+A place of the flank is named by its roll length. In the fillet the name goes on so that `geometry.tooth.profile.arc_at` stays an
+arc length: a place so far down the fillet has the form point's arc less that far. Such a roll length is only a name; it may be
+negative.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+
+from .gear import Gear
+from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, roll_at_arc, root_curve
+
+POINTS = 400  # of the fillet between root circle and form point
+SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corner: the limit of undercut
+
+
+class Place(NamedTuple):
+    """Places of a side: roll length [mm], angle from the tooth's centre-line [rad], and how the outward normal lies there.
+
+    The normal passes the gear's centre at `arm` [mm] (r_b on the flank) and its foot is `lean` [mm] away from the place (the roll
+    length on the flank).
+    """
+
+    roll: NDArray[np.float64]
+    angle: NDArray[np.float64]
+    arm: NDArray[np.float64]
+    lean: NDArray[np.float64]
+
+
+@lru_cache(maxsize=256)
+def _fillet(gear):
+    """Splines of angle [rad] and arc length from the root circle [mm] over the root of the part of the fillet's height."""
+    phi = np.linspace(np.pi / 2, form_point(gear)[0], POINTS)
+    radius, angle = fillet(gear, phi)
+    height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cartesian(radius, angle), axis=1)))])
+    return CubicSpline(height, angle), CubicSpline(height, length)
+
+
+def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:
+    """Whether places lie in the fillet."""
+    return gear.outward * (np.asarray(roll) - gear.roll_f) < 0
+
+
+def side(gear: Gear, roll: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Radius [mm] and angle [rad] of places on the loaded side of a tooth, fillet included."""
+    roll = np.asarray(roll, dtype=float)
+    low = on_fillet(gear, roll)
+    if not low.any():
+        return flank(gear, roll)
+    length = fillet_length(gear) + arc_at(gear, roll) - arc_at(gear, gear.roll_f)
+    return tuple(np.where(low, *both) for both in zip(root_curve(gear, length), flank(gear, roll), strict=True))  # type: ignore[return-value]
+
+
+def place(gear: Gear, radius: ArrayLike) -> Place:
+    """`Place` of the loaded side at some radii [mm]; beyond the tip or root circle all but the roll length is nan."""
+    shape, radius = np.shape(radius), np.atleast_1d(radius)
+    roll = np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0))
+    angle, arm, lean = flank(gear, roll)[1], np.full(radius.shape, gear.r_b), roll.copy()
+    low = gear.outward * (radius - gear.r_form) < 0
+    if low.any():
+        down, whole = radius[low], abs(gear.r_form - gear.r_f)
+        height = np.sqrt(np.maximum(gear.outward * (down - gear.r_f), 0.0) / whole)
+        angles, lengths = _fillet(gear)
+        slope = down * gear.outward * angles(height, 1) / (2 * np.maximum(height, 1e-9) * whole)
+        angle[low], arm[low] = angles(height), down / np.hypot(1.0, slope)
+        lean[low] = -gear.outward * slope * arm[low]
+        roll[low] = roll_at_arc(gear, arc_at(gear, gear.roll_f) + lengths(height) - lengths(1.0))
+    least, most = sorted((gear.r_f, gear.r_a))
+    slack = 1e-9 * gear.m_n
+    outside = ~((radius >= least - slack) & (radius <= most + slack))
+    for values in (angle, arm, lean):
+        values[outside] = np.nan
+    return Place(*(values.reshape(shape) for values in (roll, angle, arm, lean)))
+
+
+@lru_cache(maxsize=256)
+def form_corner(gear: Gear) -> bool:
+    """Whether flank and fillet meet in an edge, as undercut leaves it, and not in a common tangent."""
+    slope = place(gear, np.array([gear.r_form - gear.outward * 1e-7 * gear.m_n]))
+    return bool(np.arctan2(gear.roll_f, gear.r_b) - np.arctan2(slope.lean, slope.arm)[0] > SHARPEST)
