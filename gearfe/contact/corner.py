@@ -1,10 +1,11 @@
 """What a corner at an end of the path adds to the local law of a contact line, taken from the plane section.
 
 Close to its tip corner a tooth is a wedge, no half-space, and pressure ends at the corner; at the edge that undercut leaves the
-flank ends. The plane resolves that contact hat by hat (`gearfe.contact.rows`); how much more it closes there than Hertz's strip on
-a half-plane would, at the same line load and place, is a property of the section: a few tenths of a millimetre across, whatever the
-load does along the width. Contact in three dimensions adds it to the logarithm of its strips, so that in the plane limit both are
-the same contact. For helical teeth the transverse section is taken for the normal one: widths and loads there differ by cos(beta_b).
+flank ends. The plane resolves that contact hat by hat (`gearfe.contact.rows`); how much more it closes there than Hertz's strip
+on a half-plane would, at the same line load and place, is a property of the section: a few tenths of a millimetre across,
+whatever the load does along the width. Contact in three dimensions adds it to the logarithm of its strips, so that in the plane
+limit both are the same contact. For helical teeth the transverse section is taken for the normal one: widths and loads there
+differ by cos(beta_b).
 """
 
 import math

@@ -3,6 +3,7 @@
 import numpy as np
 
 from geometry.tooth.profile import arc_at, roll_at_arc
+from geometry.tooth.side import on_fillet
 
 from ..flexibility.hertz import half_width, hat_logarithm
 from .rows import Row
@@ -122,5 +123,6 @@ def _hats(contact, i, column, tops):
         on = there[n]
         influence = bulk[n] + even - sum(contact.coefficients) * np.log(step[n])
         one = np.ones(on.sum())
-        rows.append(Row(roll_1[n, on], roll_2[n, on], gap[n, on], influence[np.ix_(on, on)], one, one))
+        fillet = on_fillet(pair.gear_1, roll_1[n, on]) | on_fillet(pair.gear_2, roll_2[n, on])
+        rows.append(Row(roll_1[n, on], roll_2[n, on], gap[n, on], influence[np.ix_(on, on)], one, one, fillet))
     return rows

@@ -21,6 +21,7 @@ CORNER = 1.0  # a contact whose middle is closer to a corner than so many half w
 BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
 KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
 SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
+UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "turn_1", "turn_2", "fillet")  # of a contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -39,13 +40,12 @@ def _within(contacts, reach):
 
 
 def _aligned(rows):
-    """`Row` of different lengths as arrays ``(rows, n)`` and ``(rows, n, n)``, nan as gap after each; no logarithms, radii of 1."""
-    values = [stacked([row[k] for row in rows]) for k in range(len(Row._fields))]
+    """Unknowns of rows of hats of different lengths, as of `_single`, nan as gap after each."""
+    out = {name: stacked([getattr(row, name) for row in rows]) for name in Row._fields}
     for k, row in enumerate(rows):
         size = row.gap.size
-        values[0][k, size:], values[1][k, size:], values[2][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
-    first, second, gap, influence, *turns = values
-    return first, second, gap, np.zeros(gap.shape), np.ones(gap.shape), *turns, influence
+        out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
+    return out | {"coefficient": np.zeros(out["gap"].shape), "radius": np.ones(out["gap"].shape)}
 
 
 class PairContact:
@@ -95,7 +95,7 @@ class PairContact:
         if self.opening is not None:
             done &= ~_closing(np.einsum("pcf,pc->pf", self.opening, line))
         open_ = np.flatnonzero(~done)
-        closed = []
+        closed, fillet = [], []
         if open_.size:
             at = np.argwhere((corner > 0) & ~done[:, None]).tolist()
             rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), float(width[i, k])) for i, k in at])
@@ -103,20 +103,21 @@ class PairContact:
             corner = np.where(kink, KINK, corner)
             sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows)
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
-            line[open_], pressure[open_], approach[open_], tangent[open_], closed = self._solved(sets, line_load)
+            line[open_], pressure[open_], approach[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
         least = found.gap.min(axis=1)
         unloaded = None if self.flanks is None and not least.any() else least
-        return Solved(found.order, approach, tangent, line, pressure, tuple(open_[closed].tolist()), unloaded)
+        marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
+        return Solved(found.order, approach, tangent, line, pressure, *marked, unloaded)
 
     def _solved(self, sets, line_load):
-        """Line loads and pressures by pair, approach and tangent of contact problems `sets`, and which crack faces touch."""
+        """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
         names = ("flexibility", "gap", "coefficient", "radius", "column")
         flexibility, gap, coefficient, radius, column = (stacked([contacts[name] for contacts in sets]) for name in names)
         there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
         radius[~there] = 1.0
         case = flexibility, gap, line_load, coefficient, radius, self.modulus, there
         force, approach, tangent, settled = line_contacts(*case)
-        closed = []
+        closed, fillet = [], []
         for k, contacts in enumerate(sets):
             own = force[k, : contacts["gap"].size]
             if not settled[k]:
@@ -124,6 +125,8 @@ class PairContact:
             if self.opening is not None and _closing(own @ contacts["opening"]):
                 closed.append(k)
                 own[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
+            if (contacts["fillet"] & (own > 0)).any():
+                fillet.append(k)
         row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
         np.add.at(line, (row, column), force)
@@ -131,7 +134,7 @@ class PairContact:
         pressure[row[hat], column[hat]] = np.nan
         pressure[row[single], column[single]] = peak_pressure(force[single], radius[single], self.modulus)
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
-        return line, pressure, approach, tangent, closed
+        return line, pressure, approach, tangent, closed, fillet
 
     def _share(self, contacts, line_load, weight=None):
         names = ("coefficient", "radius")
@@ -196,7 +199,7 @@ class PairContact:
         return corner, zone, np.where(apart, width, 0.0)
 
     def rows(self, wanted):
-        """Rows of hats of pairs at corners, for each `gearfe.contact.rows.Wanted`; those of one pose are the same for any load."""
+        """`Row` of each `gearfe.contact.rows.Wanted`; those that do not depend on the load are kept."""
         new = [one for one in dict.fromkeys(wanted) if one not in self._rows]
         made = dict(zip(new, corner_rows(self, new), strict=True))
         self._rows |= {one: row for one, row in made.items() if not one.width}
@@ -208,7 +211,8 @@ class PairContact:
         Parameters
         ----------
         wanted : sequence of (int, ndarray of int, ndarray of int)
-            Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a row.
+            Number of a phase; columns of the pairs that may touch; for each of them 0 for a single contact, or what makes it a
+            row.
         rows : dict of (int, int) to Row
             Rows of hats by phase and column.
 
@@ -229,28 +233,30 @@ class PairContact:
             _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column)
             for column, resolved in zip(near, row, strict=True)
         ]
-        column = np.repeat(near, [part[0].shape[1] for part in parts])
+        column = np.repeat(near, [part["gap"].shape[1] for part in parts])
         order = self.found.order[column]
-        roll_1, roll_2, gap, coefficient, radius, *turns = (np.concatenate(each, axis=1) for each in list(zip(*parts, strict=True))[:7])
-        first, second = (turn[:, :, None] * turn[:, None] for turn in turns)
-        total = first * self.flexibility[0].matrix(roll_1, order) + second * self.flexibility[1].matrix(roll_2, -order)
+        values = {name: np.concatenate([part[name] for part in parts], axis=1) for name in UNKNOWN}
+        total = 0.0
+        for k, teeth in enumerate((order, -order), start=1):
+            turn = values[f"turn_{k}"]
+            total = total + turn[:, :, None] * turn[:, None] * self.flexibility[k - 1].matrix(values[f"roll_{k}"], teeth)
         for part, k in zip(parts, near, strict=True):
-            own = np.flatnonzero(column == k)
-            if part[7] is not None:
-                total[:, own[:, None], own] = part[7]
-        opening = self._opening(roll_1, roll_2, order)
+            if "influence" in part:
+                own = np.flatnonzero(column == k)
+                total[:, own[:, None], own] = part["influence"]
+        opening = self._opening(values["roll_1"], values["roll_2"], order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
-        out, there = [], np.isfinite(gap)
+        out, there = [], np.isfinite(values["gap"])
         for k, on in enumerate(there):
-            values = {"gap": gap[k], "coefficient": coefficient[k], "radius": radius[k], "column": column}
-            own = {name: value[on] for name, value in values.items()} | {"flexibility": total[k][on][:, on]}
+            own = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "fillet")}
+            own |= {"column": column[on], "flexibility": total[k][on][:, on]}
             out.append(own | {"opening": None if opening is None else opening[k, on]})
         return out
 
     def _single(self, phases, column):
-        """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm: as of `_aligned`, no influence."""
-        found = self.found
-        roll_1, roll_2, gap, radius = (v[phases, column, None] for v in (found.roll_1, found.roll_2, found.gap, self.radius))
-        one = np.ones(gap.shape)
-        return roll_1, roll_2, gap, sum(self.coefficients) * one, radius, one, one, None
+        """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, each of `UNKNOWN`."""
+        out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
+        out |= {"radius": self.radius[phases, column, None], "coefficient": np.full(phases.size, sum(self.coefficients))[:, None]}
+        one = np.ones((phases.size, 1))
+        return out | {"turn_1": one, "turn_2": one, "fillet": np.zeros(one.shape, dtype=bool)}

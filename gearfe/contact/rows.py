@@ -2,8 +2,8 @@
 
 Where contact reaches a tip corner or the edge that undercut leaves at a form point, no parabola of Hertz describes it. Hats stand
 along one gear's side, fillet included, finest at every corner that takes part; a corner of the mate counts where it touches that
-side. So one row also holds a tip in its mate's fillet together with the flank contact beside it. The side is that of the gear with
-the first of the corners, so that neither gear is preferred.
+side. So one row also holds a tip in its mate's fillet together with the flank contact beside it. The side is that of the gear
+with the first of the corners, so that neither gear is preferred.
 """
 
 from functools import lru_cache
@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.pair.contacts import approach
+from geometry.pair.contacts import TIP, approach
 from geometry.tooth.profile import arc_at, roll_at_arc
+from geometry.tooth.side import on_fillet
 
 from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
@@ -26,6 +27,7 @@ class Row(NamedTuple):
     """Hats of one row: places on both gears [mm], gaps [mm] and the displacement between them [mm per N/mm].
 
     `turn_1`, `turn_2`: torque of the force along the line of action that a hat carries, over that of the same force on the path.
+    `fillet`: whether a hat stands in a fillet into which the mate's tip presses.
     """
 
     roll_1: NDArray[np.float64]
@@ -34,13 +36,14 @@ class Row(NamedTuple):
     influence: NDArray[np.float64]
     turn_1: NDArray[np.float64]
     turn_2: NDArray[np.float64]
+    fillet: NDArray[np.bool_]
 
 
 class Wanted(NamedTuple):
     """A row to be made: number of the phase, column of the pair, its corners (bit n - 1 for corner n of `Contacts`).
 
-    `zone` is how far it goes on from its corners [mm]; `width` the half width [mm] of a Hertz contact that belongs to the row, away
-    from its corners, 0 without.
+    `zone` is how far it goes on from its corners [mm]; `width` the half width [mm] of a Hertz contact that belongs to the row,
+    away from its corners, 0 without.
     """
 
     phase: int
@@ -80,7 +83,7 @@ def _side_of(offsets, length):
 
 
 def _tops(marks, ends, offsets):
-    """Tops of the hats from the first to the last of rising `marks` [mm], a zone further at ends that are no `ends` of contact."""
+    """Tops of the hats along rising `marks` [mm], and a zone further where those are no `ends` of contact."""
     out = [marks[0] - offsets[:0:-1]] if not ends[0] else []
     out.append(marks[:1])
     for low, high in zip(marks[:-1], marks[1:], strict=True):
@@ -149,7 +152,10 @@ def _on_side(contact, wanted, host):
         order = int(found.order[one.column])
         for flexible, own, turn, tooth in zip(contact.flexibility, places, (turn_1, turn_2), (order, -order), strict=True):
             influence = influence + np.outer(turn, turn) * flexible.within(own, tooth)
-        out.append(Row(*places, gaps, influence, turn_1, turn_2))
+        tips = [n for n in _numbers(one) if n in TIP]
+        fillet = on_fillet(pair.gear_1, places[0]) if 2 in tips else np.zeros(gaps.size, dtype=bool)
+        fillet = fillet | on_fillet(pair.gear_2, places[1]) if 1 in tips else fillet
+        out.append(Row(*places, gaps, influence, turn_1, turn_2, fillet))
     return out
 
 

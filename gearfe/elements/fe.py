@@ -220,8 +220,8 @@ def _face_columns(mesh):
 def own_tooth(on, influence, coefficient):
     """Splines S(s, s) and S(s, s') of one tooth, from the influence matrix of its hats.
 
-    S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat plus
-    what the wide one next to it finds more than its own.
+    S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat
+    plus what the wide one next to it finds more than its own.
     """
     smooth = influence - coefficient * hat_logarithm(on.knots, on.knots)
     arc, wide, single = on.arc[:-1], wider(on.knots[:, :-1]), np.diag(smooth)[:-1]  # without the corner's

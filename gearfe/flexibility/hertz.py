@@ -40,7 +40,8 @@ def hat_logarithm(knots_1, knots_2):
     """Mean of ``-ln |x - y|`` over hats of unit area: the flat-surface kernel between hat pressures.
 
     A hat of unit area on knots (s0, s1, s2) has as second derivative three point masses, so the double integral is nine
-    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2 or s0 = s1) is given a fall over a thousandth of its rise, or the other way round.
+    values of `log_kernel`; exact for uneven hats. A one-sided hat (s1 = s2 or s0 = s1) is given a fall over a thousandth of its
+    rise, or the other way round.
 
     Parameters
     ----------

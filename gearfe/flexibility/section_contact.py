@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # what a curve's `meta` says of single phases
+
 
 @dataclass(frozen=True, slots=True)
 class Solved:
@@ -11,9 +13,10 @@ class Solved:
 
     `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `approach` (phases,) [mm], `tangent` (phases,) [N/mm per mm],
     `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan in corner contact, where it is unbounded),
-    `closed` the phases at which crack faces touch and were kept from passing through each other, `unloaded` (phases,) the part of
-    the approach at which the first pair touches [mm], None for involutes, `supports` (phases,) what the supports of the hubs
-    give way [mm], None of rigid ones.
+    `closed` the phases at which crack faces touch and were kept from passing through each other, `fillet` those at which a tip
+    presses into its mate's fillet, `unloaded` (phases,) the part of
+    the approach at which the first pair touches [mm], None if it is zero everywhere, `supports` (phases,) what the supports of
+    the hubs give way [mm], None of rigid ones.
     """
 
     order: np.ndarray
@@ -22,5 +25,6 @@ class Solved:
     line_load: np.ndarray
     pressure: np.ndarray
     closed: tuple = ()
+    fillet: tuple = ()
     unloaded: np.ndarray | None = None
     supports: np.ndarray | None = None

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..files import missing, save, save_as
+from ..flexibility.section_contact import MARKS
 from ..pictures.inline import line_svg
 from ..pictures.stiffness_plots import plot_curves
 from ..units import NEWTON_PER_UM
@@ -265,6 +266,6 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
-    """What is said of the first, and at which phases of all of them cracks closed."""
-    meta, name = curves[0].meta, "crack_closed_phases"
-    return meta | {name: [at for one in curves for at in one.meta[name]]} if name in meta else meta
+    """What is said of the first, and of the phases of all of them."""
+    marked = [name for name in MARKS if any(name in one.meta for one in curves)]
+    return curves[0].meta | {name: [at for one in curves for at in one.meta.get(name, ())] for name in marked}

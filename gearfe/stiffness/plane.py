@@ -106,6 +106,8 @@ def curve(pair, phase, force, solve, meta, damage=None):
     if damage is not None:
         _warn_if_unseen(pair, damage, solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
+    if solved.fillet:
+        meta["tip_in_fillet_phases"] = phase[list(solved.fillet)].tolist()
     return StiffnessCurve(
         phase=phase,
         k=force / (closing * 1e-3),

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..flexibility.section_contact import MARKS
+
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
 SETTLED = 1e-7  # of a base pitch
 MOST = 20
@@ -48,8 +50,7 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
         lte = curve.te - unloaded * 1e-3
         curve = replace(curve, lte=lte, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / lte)
     meta = curve.meta | {"pose": pose}
-    if "crack_closed_phases" in meta:
-        meta["crack_closed_phases"] = phase[np.isin(at, meta["crack_closed_phases"])].tolist()
+    meta |= {name: phase[np.isin(at, meta[name])].tolist() for name in MARKS if name in meta}
     return replace(curve, phase=phase, meta=meta)
 
 

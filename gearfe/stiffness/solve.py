@@ -167,7 +167,8 @@ def mesh_stiffness(
     damage : dict, optional
         Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
         the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums.
-        Crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where.
+        Crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where. (Likewise
+        ``meta["tip_in_fillet_phases"]`` says where a tip presses into its mate's fillet, if any does.)
     flanks : dict, optional
         Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods; what
         changes along the width needs ``ritz3d``, ``fe3d`` or a plain sum. The curve's `te` then is the transmission error under
@@ -178,7 +179,7 @@ def mesh_stiffness(
         Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; default: rigid bores. Hubs that
         tilt need ``ritz3d`` or ``fe3d``. The curve's `lte_supports` is their part of the deflection.
     extended : bool
-        Let tip corners touch before the start and after the end of the path of contact (all but the closed
+        Let corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
     state : {"plane strain", "plane stress"}
         For ``ritz`` and ``fe``; the beams of the closed forms use E as their sources do.

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..flexibility.section_contact import MARKS
 from .curve import joined
 
 LONGEST = {"revolution": "z of the pinion", "hunting": "the least common multiple of both numbers of teeth"}
@@ -62,7 +63,5 @@ def _later(curve, phase, cycles):
     """The same curve so many cycles later: its tooth pairs are those so many behind."""
     if not cycles:
         return curve
-    meta = curve.meta
-    if "crack_closed_phases" in meta:
-        meta = meta | {"crack_closed_phases": [at + cycles for at in meta["crack_closed_phases"]]}
+    meta = curve.meta | {name: [at + cycles for at in curve.meta[name]] for name in MARKS if name in curve.meta}
     return replace(curve, phase=phase, order=curve.order - cycles, meta=meta)

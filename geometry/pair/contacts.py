@@ -17,12 +17,12 @@ conventions, one at each end.
 
 **Force.** Off the line of action the contact normal is that of the side that is met: of a flank it passes its gear's centre at
 r_b, the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass both centres at
-``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a shared
-approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F d delta``
-with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth bends by torque: its deflection as a turn of the
-flank times r_b is that of a force along its own involute normal with the same torque, ``(q / rate) F``; the local deflection
-belongs to ``N = F / rate``. Both count by as much more of an approach as they take to be closed, again ``q / rate`` and
-``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py`` for its size against CalculiX).
+``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a
+shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F
+d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth bends by torque: its deflection as a
+turn of the flank times r_b is that of a force along its own involute normal with the same torque, ``(q / rate) F``; the local
+deflection belongs to ``N = F / rate``. Both count by as much more of an approach as they take to be closed, again ``q / rate``
+and ``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py`` for its size against CalculiX).
 
 **Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
 mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
@@ -62,8 +62,8 @@ class Contacts:
     k is k base pitches ahead of it, `nominal` the abscissa of the pair on the line of action [mm], `corner` what touches: 0 both
     flanks, 1 or 2 the tip corner of pinion or wheel, 3 or 4 the form corner of an undercut pinion or wheel. `corner_gap`
     (4, phases, pairs) is the approach at which each of these corners touches (inf: never), `corner_roll` (2, 4, phases, pairs)
-    the places of both gears there [mm]. Pair k is formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the wheel's k-th
-    on the other.
+    the places of both gears there [mm]. Pair k is formed by the pinion's k-th tooth beside tooth 0 on the loaded side and the
+    wheel's k-th on the other.
     """
 
     order: NDArray[np.int64]
@@ -103,9 +103,9 @@ class Met(NamedTuple):
 def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Contacts:
     """Contacts of all tooth pairs of a `GearPair`.
 
-    On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of one
-    tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or the form
-    corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module).
+    On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of
+    one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or the
+    form corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module).
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
 
 @lru_cache(maxsize=256)
 def near_pitches(pair: "GearPair") -> tuple[int, int]:
-    """How many base pitches before the start and after the end of the path teeth are close enough to touch under load, at least 1.
+    """How many base pitches before the start and after the end of the path teeth may touch under load, at least 1.
 
     Teeth of external gears turn out of each other's reach; those of a ring with hardly more teeth than its pinion stay close.
     """
@@ -264,8 +264,8 @@ def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: b
 def facing(pair, roll, nominal, driver, turns=None):
     """What points of a side face with both gears moved on from `nominal` by a length on the line of action [mm].
 
-    Gives `opposite`, and the arms at which the met normal passes the point's own centre and the other, over their base radii (1 on
-    the line of action). `turns` is ``pair.turn(nominal)``, if it is known.
+    Gives `opposite`, and the arms at which the met normal passes the point's own centre and the other, over their base radii (1
+    on the line of action). `turns` is ``pair.turn(nominal)``, if it is known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres

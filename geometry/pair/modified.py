@@ -8,8 +8,8 @@ which faces the wheel's point at rho2, touches at the approach::
     delta(rho) = C1(rho) + C2(rho2) + D(n + delta / 2 - C1(rho))
 
 The gap of the pair is the least of these over the pinion's whole side, fillet included, and over the corners of both: the
-envelope of both modified sides, at the pose in which the pair first touches. The sum of both modifications at the nominal point, a
-common approximation, errs by up to a quarter of the deflection at corners.
+envelope of both modified sides, at the pose in which the pair first touches. The sum of both modifications at the nominal point,
+a common approximation, errs by up to a quarter of the deflection at corners.
 """
 
 import math

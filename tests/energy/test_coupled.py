@@ -213,7 +213,7 @@ LIMITS = {  # gear, and the largest error there: wide roots are hardly beams, an
     "many teeth": (thin(60, 0.5), 0.036),
     "alpha 25": (thin(30, 0.5, alpha_n=math.radians(25), tip_radius=0.3), 0.062),
     "sharp fillet": (thin(30, 0.5, tip_radius=0.2), 0.042),
-    "thin rim": (thin(18, 0.85), 0.049),
+    "thin rim": (thin(18, 0.85), 0.053),
 }
 
 
