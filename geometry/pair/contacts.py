@@ -159,14 +159,15 @@ def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> To
     corner_gap, corner_roll = np.full((4, *nominal.shape), np.inf), np.full((2, 4, *nominal.shape), np.nan)
     out = Touching(roll_1, roll_2, gap, corner, corner_gap, corner_roll)
     before, after = near_pitches(pair) if extended else (0, 0)
-    near = np.nonzero((nominal > start - before * pair.p_bt) & (nominal < end + after * pair.p_bt))
-    if not extended or not near[0].size:
+    near = (nominal > start - before * pair.p_bt) & (nominal < end + after * pair.p_bt)
+    if not extended or not near.any():
         return out
     rolls_1, rolls_2, gaps = _corners(pair, nominal[near])
-    corner_gap[:, *near], corner_roll[:, :, *near] = gaps, np.array([rolls_1, rolls_2])
+    corner_gap[:, near], corner_roll[:, :, near] = gaps, np.array([rolls_1, rolls_2])
     each = (least := np.argmin(gaps, axis=0), np.arange(least.size))
     first = gaps[each] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
-    there, chosen = tuple(index[first] for index in near), tuple(index[first] for index in each)
+    there, chosen = near.copy(), tuple(index[first] for index in each)
+    there[near] = first
     roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
     gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
     return out

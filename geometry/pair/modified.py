@@ -57,14 +57,14 @@ def modified_contacts(
         If flanks are so hollow that they would conform.
     """
     plain = contacts(pair, phase, extended=extended)
-    there = np.nonzero(np.isfinite(plain.gap))
+    there = np.isfinite(plain.gap)
     roll_1, roll_2, corner = plain.roll_1.copy(), plain.roll_2.copy(), np.zeros(plain.gap.shape, dtype=int)
     gap, radius = np.full(plain.gap.shape, np.inf), np.ones(plain.gap.shape)
     corner_gap, corner_roll = np.full_like(plain.corner_gap, np.inf), np.full_like(plain.corner_roll, np.nan)
-    touch = first_touch(pair, forms, plain.nominal[there], plain.order[there[1]], plain.gap[there])
+    touch = first_touch(pair, forms, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
     for values, found in zip((roll_1, roll_2, gap, radius, corner), touch[:5], strict=True):
         values[there] = found
-    corner_gap[:, *there], corner_roll[:, :, *there] = touch.corner_gap, touch.corner_roll
+    corner_gap[:, there], corner_roll[:, :, there] = touch.corner_gap, touch.corner_roll
     return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius, corner, corner_gap, corner_roll)
 
 

@@ -136,18 +136,18 @@ class FlankForm:
 
         The fillet goes on with what is removed at the form point.
         """
-        roll, n = np.asarray(roll, dtype=float), derivative
-        roll = np.maximum(roll, self.low) if self.high > self.low else np.minimum(roll, self.low)
-        out = self._shaped(roll, n)
+        given, n = np.asarray(roll, dtype=float), derivative
+        at = np.maximum(given, self.low) if self.high > self.low else np.minimum(given, self.low)
+        out = self._shaped(at, n)
         if self._scales.size:
-            own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], roll)
+            own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
             out = out * own
         if self._worn is not None:
-            out = out + self._wear(roll, n)
+            out = out + self._wear(at, n)
         if self.edge is not None:
-            out = out + self.edge.removed(roll, n)
+            out = out + self.edge.removed(at, n)
         if self.flank.eccentricity and self._tooth is not None:
-            out = out + self._off_centre(roll, n)
+            out = out + self._off_centre(at, n)
         return out
 
     def _wear(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:

@@ -54,7 +54,8 @@ def side(gear: Gear, roll: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.f
     if not low.any():
         return flank(gear, roll)
     length = fillet_length(gear) + arc_at(gear, roll) - arc_at(gear, gear.roll_f)
-    return tuple(np.where(low, *both) for both in zip(root_curve(gear, length), flank(gear, roll), strict=True))  # type: ignore[return-value]
+    down, up = root_curve(gear, length), flank(gear, roll)
+    return np.where(low, down[0], up[0]), np.where(low, down[1], up[1])
 
 
 def place(gear: Gear, radius: ArrayLike) -> Place:

@@ -1,4 +1,4 @@
-"""Corners in three dimensions: undercut pinions, whose path starts where no corner of the mate is, and the lightest loads."""
+"""Corners in three dimensions: undercut pinions, whose path starts at the edge of their own flank, and the lightest loads."""
 
 import math
 
@@ -33,15 +33,15 @@ def test_wide_undercut_spur_pair_is_that_of_the_plane(z, line_load):
     assert_allclose(solid[1:8], plane[1:8], rtol=5e-3)
 
 
-def test_the_corner_that_misses_the_start_of_the_path_meets_the_flank_further_out():
+def test_the_edge_that_undercut_leaves_touches_from_the_start_of_the_path_on():
     pair = pair_of(10, 20.0)
     away, gap = lines3d.gaps(pair)[0]
-    assert away[0] > 0.1 * pair.p_bt
-    assert gap[0] > 1e-3
-    assert lines3d.beyond(pair, 0.5 * gap[0])[0] == 0.0
-    found = touching(pair, pair.path[0] - np.array([0.5 * away[0], away[1]]))[2]
-    assert np.isfinite(found).tolist() == [False, True]
-    assert_allclose(lines3d.beyond(pair, found[1])[0], away[1], rtol=1e-9)
+    assert away[0] < 1e-5 * pair.p_bt
+    assert gap[0] < 1e-6
+    assert (np.diff(gap) >= 0).all()
+    found = touching(pair, pair.path[0] - away[:3])
+    assert (found.corner == 3).all()
+    assert_allclose(lines3d.beyond(pair, gap[2])[0], away[2], rtol=1e-9)
 
 
 @pytest.mark.slow
