@@ -141,6 +141,8 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
+        for text in figure.findobj(lambda one: hasattr(one, "set_parse_math") and "$" in one.get_text()):
+            text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
         with written(path) as name:
             figure.savefig(name, dpi=dpi)
     return figure

@@ -149,7 +149,7 @@ def main(argv=None):
     _verb(verbs, "scenes", run.scenes, "list the built-in scenes with their assumptions")
     _verb(verbs, "info", tools.info, "versions, what this machine has, and what would make it faster")
     arguments = parser.parse_args(argv)
-    return shell.run(lambda: arguments.run(arguments))
+    return shell.run(lambda: arguments.run(arguments), [name for name in vars(arguments) if name not in ("verb", "run", "verbs")])
 
 
 class _Version(argparse.Action):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft, rfft
 
+from ..markdown import table_row
 from .orders import residual_signal, synchronous_average
 from .series import Signal
 
@@ -132,7 +133,7 @@ def gear_table_text(table: Mapping[str, Mapping[str, float]]) -> str:
     lines += [
         [name, *(f"{row[name]:.4g}" if math.isfinite(row[name]) else "-" for row in table.values())] for name in GEAR_SOURCES
     ]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return "\n".join(map(table_row, lines))
 
 
 def _oscillation(average: Any) -> NDArray[np.float64]:

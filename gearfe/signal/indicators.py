@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..markdown import table_row
 from .spectra import spectrum
 from .spectral_lines import find_lines
 
@@ -270,7 +271,7 @@ def table_text(table):
     names = list(next(iter(table.values())))
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
     lines += [[LABELS.get(name, name), *(_cell(*row[name]) for row in table.values())] for name in names]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return "\n".join(map(table_row, lines))
 
 
 def _cell(value, more):

@@ -8,6 +8,7 @@ import numpy as np
 from geometry.damage.pit import Pit
 
 from ..machine.of_scene import build_machine
+from ..markdown import table_row
 from ..motion.simulate import simulate
 from ..motion.step_control import default_step
 from ..signal.indicators import LOBES, indicator_table, table_text
@@ -47,7 +48,7 @@ class Analysis:
         rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
         for name, frequency in self.lines.items():
             rows.append([name, f"{frequency:.2f}", *(f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)])
-        return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+        return "\n".join(map(table_row, rows))
 
     def indicators_text(self):
         """Indicators as Markdown, increments against healthy in brackets."""
