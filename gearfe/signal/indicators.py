@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..markdown import table_row
+from .given import hertz
 from .spectra import spectrum
 from .spectral_lines import find_lines
 
@@ -203,6 +204,9 @@ def indicators(
     }
     if (mesh_frequency is None) != (fault_frequency is None):
         raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
+    for name, value in {"mesh_frequency": mesh_frequency, "fault_frequency": fault_frequency}.items():
+        if value is not None:
+            hertz(name, value)
     if mesh_frequency is None:
         return out
     found = spectrum(signal, window=window)
