@@ -18,7 +18,7 @@ TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
 SAID_NOTHING = ("", "none", "unknown")
 # what scipy and npTDMS, which trust their files, raise when these are damaged (NameError: a chunk is missing)
 DAMAGE: tuple[type[Exception], ...] = (ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, NameError)
-DAMAGE += (NotImplementedError, OSError, TypeError, ValueError, Warning, struct.error)
+DAMAGE += (NotImplementedError, OSError, RecursionError, TypeError, ValueError, Warning, struct.error)
 
 
 def wav_file(path: str | os.PathLike[str]) -> Found:
@@ -190,4 +190,6 @@ def _damaged(path, kind, error):
     if isinstance(error, OSError) and error.strerror:
         return ValueError(f"cannot read {path}: {error.strerror}")
     told = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, RecursionError):
+        told = "something in it, such as the source of a scale, refers to itself"
     return ValueError(f"{path} is not a whole {kind} file: {told}")

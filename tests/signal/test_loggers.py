@@ -154,3 +154,17 @@ def test_two_rates_and_how_to_say_which(tmp_path, capsys):
     csv = written(tmp_path / "x.csv", times(50), np.arange(50), "{:.9f},{:g}\n")
     assert main(["signal", str(csv), "--rate", "100"]) == 1
     assert re.search(r"rate = 100 Hz, but its times are 5120 Hz; leave --rate out", capsys.readouterr().err)
+
+
+@pytest.mark.parametrize("source", [1, -1, 0, 5])
+def test_a_tdms_scale_of_no_source(tmp_path, source):
+    """Scale 1 takes its values from itself, or from a scale that is not there."""
+    nptdms = pytest.importorskip("nptdms")
+    path = tmp_path / "s.tdms"
+    scale = {"Scale_Type": "Linear", "Linear_Slope": 2.0, "Linear_Y_Intercept": 0.0, "Linear_Input_Source": source}
+    properties = {f"NI_Scale[1]_{name}": value for name, value in scale.items()} | {"NI_Number_Of_Scales": 2}
+    properties |= {"wf_increment": 1e-3, "unit_string": "g", "NI_Scaling_Status": "unscaled"}
+    with nptdms.TdmsWriter(path) as file:
+        file.write_segment([nptdms.ChannelObject("g", "a", np.arange(100, dtype="i2"), properties=properties)])
+    with pytest.raises(ValueError, match="not a whole TDMS file: " + ("something in it" if source in (1, -1) else ".")):
+        gf.read_signal(path)
