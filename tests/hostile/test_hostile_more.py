@@ -123,7 +123,7 @@ def commands():
     scene = "planetary_pitting"
     for value in ("-1", "nan", "inf", "x", ""):
         yield ["report", scene, "-o", "x.html", "--duration", value], ["duration"]
-    for value in ("", "x", "2.5", "1", "-3"):
+    for value in ("", "x", "2.5", "0", "-3"):
         yield ["mesh", scene, "-o", "x.msh", "--teeth", value], ["teeth"]
     for options in (["-o", ""], ["-o", "x", "--scheduler", ""], ["-o", "x", "--workers", "0"], []):
         yield ["sweep", "s.toml", *options], ["folder", "scheduler", "workers", "required"]
