@@ -4,10 +4,13 @@ A curve or a response becomes a `Content`, which every format of numbers can hol
 libraries into the path that `written` gives. Readers give lines of text or arrays by name.
 """
 
+import codecs
 import contextlib
 import json
 import os
+import re
 import tempfile
+import warnings
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,6 +18,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +146,8 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
+        for text in figure.findobj(lambda one: hasattr(one, "set_parse_math") and "$" in one.get_text()):
+            text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
         with written(path) as name:
             figure.savefig(name, dpi=dpi)
     return figure
@@ -199,13 +206,31 @@ def write_json(name, content):
 
 
 def read_text(path):
-    """Lines of a text file in UTF-8."""
+    """Lines of a text file: in UTF-8, in UTF-16, or, with a warning, in Windows-1252, which holds Latin-1."""
     try:
-        return Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except OSError as error:
-        raise ValueError(f"cannot read {path}: {error.strerror or error}") from error
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{path} is not text in UTF-8: export it as CSV in UTF-8, with um for micrometres") from error
+        content = Path(path).read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
+        raise ValueError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    text = _decoded(content)
+    if text is None:
+        raise ValueError(f"{path} is not text in UTF-8, UTF-16 or Windows-1252: export it as CSV in UTF-8")
+    if text[1] == "cp1252":
+        warnings.warn(f"{path} is not UTF-8: read as Windows-1252 (Latin-1)", stacklevel=4)
+    return text[0].splitlines()
+
+
+def _decoded(content):
+    """Text of bytes and its encoding; None if they are no text in one of those that tables are exported in."""
+    marks = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16", codecs.BOM_UTF8: "utf-8-sig"}
+    marked = next((name for mark, name in marks.items() if content.startswith(mark)), None)
+    wide = {"utf-16-le": content[1:400:2], "utf-16-be": content[:400:2]}  # of text in Latin letters one byte in two is zero
+    guessed = [name for name, high in wide.items() if len(high) > 1 and high.count(0) > 0.9 * len(high)]
+    for name in [marked] if marked else [*guessed, "utf-8", "cp1252"]:
+        with contextlib.suppress(UnicodeDecodeError):
+            text = content.decode(name)
+            if name == "utf-8" or not CONTROLS.search(text):
+                return text, name
+    return None
 
 
 def read_npz(path):

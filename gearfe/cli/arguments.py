@@ -149,7 +149,16 @@ def main(argv=None):
     _verb(verbs, "scenes", run.scenes, "list the built-in scenes with their assumptions")
     _verb(verbs, "info", tools.info, "versions, what this machine has, and what would make it faster")
     arguments = parser.parse_args(argv)
-    return shell.run(lambda: arguments.run(arguments))
+    _refuse_nothing(verbs.choices[arguments.verb], arguments)
+    return shell.run(lambda: arguments.run(arguments), [name for name in vars(arguments) if name not in ("verb", "run", "verbs")])
+
+
+def _refuse_nothing(parser, arguments):
+    """Refuse ``--force=--``, of which argparse of older Pythons makes an empty list."""
+    for action in parser._actions:
+        value = getattr(arguments, action.dest, None)
+        if action.nargs is None and value != action.default and (value == [] or value == [[]]):
+            parser.error(f"argument {'/'.join(action.option_strings)}: expected one argument")
 
 
 class _Version(argparse.Action):

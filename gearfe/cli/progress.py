@@ -4,34 +4,30 @@ import contextlib
 import sys
 
 from ..steps import listening
-
-
-def note(line):
-    """Print a line to standard error."""
-    print(f"gearfe: {line}", file=sys.stderr, flush=True)
+from .shell import harmless, tell
 
 
 @contextlib.contextmanager
 def working(text):
     """A bar with the seconds gone and, once a step is done, left, on a terminal only; gives a function that prints a note."""
     if sys.stderr is None or not sys.stderr.isatty():
-        yield note
+        yield tell
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TimeElapsedColumn(),
         TextColumn("gone, left"),
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True, speed_estimate_period=600) as progress:
-        task = progress.add_task(text, total=None)
+        task = progress.add_task(harmless(text), total=None)
 
         def step(what, done):
-            progress.update(task, completed=done, total=1.0, **({"description": what} if what else {}))
+            progress.update(task, completed=done, total=1.0, **({"description": harmless(what)} if what else {}))
 
         with listening(step):
-            yield lambda line: progress.console.print(f"gearfe: {line}", markup=False, highlight=False)
+            yield lambda line: progress.console.print(harmless(f"gearfe: {line}"), markup=False, highlight=False)

@@ -1,5 +1,8 @@
 """Between a verb and the shell: one line for each way it can end, and an exit code; no traceback reaches a user.
 
+Texts of files (titles, names of cases and columns, paths) are printed by every verb; all of it passes here, where characters
+that would steer the terminal are spelled out.
+
 0: done. 1: something given cannot be, or cannot be written; standard error says what. 2: wrong options (argparse). 130:
 interrupted. 141: whoever read the output has gone (as of a program ended by SIGPIPE).
 """
@@ -8,10 +11,32 @@ import codecs
 import contextlib
 import errno
 import os
+import re
 import sys
 import warnings
 
 SPELLED = {"±": "+-", "µ": "u", "·": "*", "°": "deg", "→": "->", "–": "-", "…": "..."}  # for terminals that know only ASCII
+
+STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")  # controls, turns of direction
+
+
+def harmless(text):
+    """Text in which characters that steer a terminal are spelled out; line ends and tabs stay."""
+    return STEERING.sub(lambda found: ascii(found[0])[1:-1], text)
+
+
+class Harmless:
+    """A stream to which only harmless text is written; all else is the stream's."""
+
+    def __init__(self, stream):
+        self._stream = stream
+
+    def write(self, text):
+        """Write text."""
+        return self._stream.write(harmless(text))
+
+    def __getattr__(self, name):
+        return getattr(self._stream, name)
 
 
 def spelled(error):
@@ -25,27 +50,33 @@ def tell(text):
     """Print a line to standard error, if there is one."""
     if sys.stderr is not None:
         with contextlib.suppress(OSError, ValueError):  # closed, or full: nowhere left to say it
-            print(f"gearfe: {text}", file=sys.stderr, flush=True)
+            print(harmless(f"gearfe: {text}"), file=sys.stderr, flush=True)
 
 
-def run(work):
-    """Do `work`, a function without arguments; returns the exit code."""
+def as_options(error, options):
+    """Text of an error in which arguments of Python, ``unit=``, are called as the verb calls its `options`, ``--unit``."""
+    names = "|".join(map(re.escape, options))
+    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", str(error)) if names else str(error)
+
+
+def run(work, options=()):
+    """Do `work`, a function without arguments; returns the exit code. `options`: names of the verb's options."""
     codecs.register_error("spelled", spelled)
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="spelled")
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
             warnings.simplefilter("always", UserWarning)
             warnings.showwarning = lambda message, *_: tell(f"note: {message}")
             work()
-        if sys.stdout is not None:
-            sys.stdout.flush()
+            if sys.stdout is not None:
+                sys.stdout.flush()
     except KeyboardInterrupt:
         tell("interrupted; nothing half-written is left")
         return 130
     except (ValueError, RuntimeError) as error:
-        tell(error)
+        tell(as_options(error, options))
         return 1
     except MemoryError as error:
         tell(f"not enough memory{f': {error}' if str(error) else ''}; a smaller --refine or fewer --phases need less")

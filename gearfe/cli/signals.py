@@ -16,6 +16,8 @@ def signal(arguments):
         return
     if arguments.teeth is not None and arguments.shaft is None and arguments.tacho is None:
         raise ValueError("--teeth needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
+    if arguments.pulses < 1:
+        raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
     with working("reading"):
         with part("", 0.0, 0.5):
             signals = _read(arguments)

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from ..markdown import table_row
 from .conditions import Condition
 from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
@@ -168,4 +169,4 @@ def _made(made):
 
 
 def _table(rows):
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    return "\n".join(map(table_row, rows))

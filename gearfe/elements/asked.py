@@ -13,6 +13,7 @@ from ..material import Material
 
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
 FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
+MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
 SAMPLES = 65  # heights at which a load along the width is looked at
 
 
@@ -61,17 +62,23 @@ def check_length(name, value):
         raise ValueError(f"{name} = {value!r} mm, but it is a length: give {name} > 0, or leave it out")
 
 
-def check_line_load(line_load):
-    """ValueError unless the line load is a finite push."""
+def check_line_load(line_load, gear, material):
+    """ValueError unless the line load is a finite push that teeth of this module and material stand at small strains."""
     if not (is_number(line_load) and line_load > 0 and math.isfinite(line_load)):
         raise ValueError(f"line_load = {line_load!r} N/mm, but a tooth is pushed: give a finite line_load > 0")
+    most = MOST_LOAD * material.E * gear.m_n
+    if line_load > most:
+        raise ValueError(
+            f"line_load = {line_load:g} N/mm, but under more than {most:.3g} N/mm (E m_n / {1 / MOST_LOAD:g}) a tooth bends by a "
+            "quarter of the module and breaks: give a smaller one, in N/mm, lengths in mm, E in MPa"
+        )
 
 
-def check_load_along(line_load, b):
+def check_load_along(line_load, gear, material):
     """ValueError unless it is a finite push, or a function of heights z [mm] that gives finite pushes, not all zero."""
     if not callable(line_load):
-        return check_line_load(line_load)
-    z = np.linspace(0.0, b, SAMPLES)
+        return check_line_load(line_load, gear, material)
+    z, b = np.linspace(0.0, gear.b, SAMPLES), gear.b
     try:
         found = np.asarray(line_load(z))
         load = np.broadcast_to(found, z.shape)
@@ -82,6 +89,7 @@ def check_load_along(line_load, b):
             f"line_load from z = 0 to {b:g} mm gives {load[0]!s} to {load[-1]!s}, but a tooth is pushed: give numbers >= 0 "
             "[N/mm], somewhere > 0"
         )
+    check_line_load(float(load.max()), gear, material)
 
 
 def check_cracks(cracks):

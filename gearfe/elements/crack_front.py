@@ -95,7 +95,7 @@ def stress_intensity_along_front(
         If the mesh cannot follow the front, or the system does not fit into memory.
     """
     check_one(gear, material, refine)
-    check_load_along(line_load, gear.b)
+    check_load_along(line_load, gear, material)
     if not isinstance(crack, Crack):
         raise ValueError(f"crack = {crack!r}, but give a Crack")
     if crack.tooth % gear.z or bends(crack):

@@ -61,7 +61,7 @@ def write_inp(
     check_output(path, "deck")
     check_state(state)
     check_one(gear, material, refine)
-    check_line_load(line_load)
+    check_line_load(line_load, gear, material)
     check_cracks(cracks)
     edge = edge_lengths(gear, EDGES, refine)
     arc, width = load_at(gear, radius), 0.05 * gear.m_n

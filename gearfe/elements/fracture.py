@@ -72,7 +72,7 @@ def stress_intensity(
         If the load is not positive, the point is off the flank, or the crack leaves the body.
     """
     check_one(gear, material, refine)
-    check_line_load(line_load)
+    check_line_load(line_load, gear, material)
     if not isinstance(crack, Crack):
         raise ValueError(f"crack = {crack!r}, but give a Crack")
     edge = edge_lengths(gear, EDGES, refine)

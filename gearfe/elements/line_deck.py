@@ -86,7 +86,7 @@ def write_line_inp(
     """
     check_output(path, "deck")
     check_one(gear, material, refine)
-    check_line_load(line_load)
+    check_line_load(line_load, gear, material)
     check_cracks(cracks)
     check_length("half_width", half_width)
     check_length("layer", layer)

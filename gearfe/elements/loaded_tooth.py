@@ -162,7 +162,7 @@ def root_stress(
         If the load is not positive, or the point is off the flank.
     """
     check_one(gear, material, refine)
-    check_line_load(line_load)
+    check_line_load(line_load, gear, material)
     check_length("half_width", half_width)
     half_width = 0.05 * gear.m_n if half_width is None else half_width
     if not 0 < half_width <= gear.m_n:

@@ -96,7 +96,7 @@ def root_stress_along_width(
         If the system does not fit into memory.
     """
     check_one(gear, material, refine)
-    check_line_load(line_load)
+    check_line_load(line_load, gear, material)
     spread = check_spread(gear, half_width)
     return stress_under_line(gear, contact_line(gear, radius), line_load, material, spread=spread, refine=refine)
 

@@ -8,7 +8,7 @@ from ..scene.load import load_scene
 from ..steps import part, steps
 from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
-from ..studies.vibration import analysis, responses
+from ..studies.vibration import analysis, check_run, responses
 
 
 @dataclass(slots=True)
@@ -64,6 +64,8 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     -------
     Findings
     """
+    if duration != 0:
+        check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
     cases = list(dict.fromkeys(name for pair in scene.pairs.values() for name in pair.damage))
     if case is not None and case not in cases:

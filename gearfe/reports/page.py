@@ -8,6 +8,7 @@ import time
 from importlib import resources
 from pathlib import Path
 
+from ..markdown import table_cells
 from ..scene.load import Scene
 from ..steps import part
 from ..stiffness.methods import METHODS
@@ -187,9 +188,7 @@ def _vibration(found, figures):
 
 def _table(markdown):
     """Rows of a Markdown table, the head first."""
-    rows = [
-        [cell.strip() for cell in line.strip().strip("|").split("|")] for line in markdown.splitlines() if line.startswith("|")
-    ]
+    rows = [table_cells(line) for line in markdown.splitlines() if line.startswith("|")]
     return [row for row in rows if not all(set(cell) <= set("-: ") for cell in row)]
 
 

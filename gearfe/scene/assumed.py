@@ -14,7 +14,7 @@ In a copy in which the face width is another one, that assumption is no longer t
 printed results are no longer compared with.
 """
 
-from .strict import known_path
+from .strict import known_path, shown
 
 
 def split(file, assumptions, given, tables):
@@ -48,11 +48,11 @@ def split(file, assumptions, given, tables):
     kept, changed = [], {}
     for i, one in enumerate(assumptions):
         away = _away(file, f"assumption {i + 1}", one["holds"], tables)
-        changed |= {key: f"{key} = {found!r} (assumed in the original: {value!r})" for key, (found, value) in away.items()}
+        changed |= {key: f"{key} = {found!r} (assumed in the original: {shown(value)})" for key, (found, value) in away.items()}
         if not away:
             kept.append({name: one[name] for name in ("what", "why", "depends")})
     away = _away(file, "given", given, tables)
-    changed |= {key: f"{key} = {found!r} (its source: {value!r})" for key, (found, value) in away.items()}
+    changed |= {key: f"{key} = {found!r} (its source: {shown(value)})" for key, (found, value) in away.items()}
     return tuple(kept), tuple(changed.values()), bool(away)
 
 

@@ -17,8 +17,9 @@ from geometry.tooth.modified import Flank
 from ..material import Material
 from ..supports.shaft import Shaft
 from ..supports.support import Support
-from . import assumed, machine_table
+from . import assumed, strict
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
+from .machine_table import checked_machine
 from .references import Reference, read_references
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 from .support_table import SUPPORTS, supports_of
@@ -83,12 +84,6 @@ DAMAGE = {
         "pair": (TEXT, None),
     },
 }
-MACHINE = {
-    "model": (TEXT, REQUIRED),
-    "speed_rpm": (NUMBER, REQUIRED),
-    "torque_Nm": (NUMBER, REQUIRED),
-    "n_planets": (WHOLE, 3),
-} | machine_table.MACHINE
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, ""), "holds": (VALUES, {})}
 
 
@@ -197,14 +192,15 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     tables = {name: data.pop(name, {}) for name in TABLES}
     told, given = data.pop("assumption", []), data.pop("given", {})
     damage = {kind: data.pop(kind, []) for kind in DAMAGE}
-    run = _machine(file, data.pop("machine")) if "machine" in data else {}
+    run = checked_machine(file, data.pop("machine")) if "machine" in data else {}
     printed = data.pop("reference", [])
     top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "given", "reference"))
-    for name in ("gear", "pair", "material"):
-        if not isinstance(tables[name], dict) or not tables[name]:
-            raise ValueError(f"{file}: no table [{name}.NAME]; a scene needs at least one")
-    if not isinstance(told, list):
-        raise ValueError(f"{file}: assumptions are written as [[assumption]] tables")
+    for kind, one in tables.items():
+        strict.named_tables(file, kind, one)
+        if not one and kind in ("gear", "pair", "material"):
+            raise ValueError(f"{file}: no table [{kind}.NAME]; a scene needs at least one")
+    for kind, one in {**damage, "assumption": told, "reference": printed}.items():
+        strict.listed_tables(file, kind, one)
     if not isinstance(given, dict):
         raise ValueError(f'{file}: [given] is a table of values by dotted key, such as "gear.sun.z" = 21')
     rows = {
@@ -249,14 +245,6 @@ def _by_case(tables):
     return out
 
 
-def _machine(file, table):
-    """Check a [machine] table, its [machine.impact] and its [machine.bodies.NAME]."""
-    flat = {key: value for key, value in table.items() if key not in ("impact", "bodies")} if isinstance(table, dict) else table
-    out = checked(file, "machine", flat, MACHINE, extra=("impact", "bodies"))
-    bodies = machine_table.checked_bodies(file, table.get("bodies", {}))
-    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), machine_table.IMPACT), "bodies": bodies}
-
-
 def _cases(file, damage, gears, name, pairs):
     """Damage of the pair `name` by case, from the scene's [[crack]] and [[pits]] tables.
 
@@ -264,8 +252,6 @@ def _cases(file, damage, gears, name, pairs):
     """
     out, pair = {}, pairs[name]
     for kind, tables in damage.items():
-        if not isinstance(tables, list):
-            raise ValueError(f"{file}: damage is written as [[{kind}]] tables")
         for i, table in enumerate(tables):
             where = f"{kind} {i + 1}"
             row = checked(file, where, table, DAMAGE[kind])

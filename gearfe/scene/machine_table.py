@@ -1,7 +1,8 @@
-"""Keys of a scene's ``[machine]`` and ``[machine.impact]`` tables beyond those every machine needs: kind and default.
+"""Keys of a scene's ``[machine]``, ``[machine.impact]`` and ``[machine.bodies.NAME]`` tables: kind and default.
 
 ``[machine]``
 
+- ``model, speed_rpm, torque_Nm, n_planets``: see `gearfe.machine.of_scene`.
 - ``contact``: ``"linear"`` (stiffness curves of the pairs) or ``"impact"`` (``F = K delta**1.5`` with K from Hertz's theory and
   STEP damping, pits as lost contact line; planetary and helical_pair).
 - ``backlash_um``: play along the line of action; default: none, the mesh never opens (impact law: 100).
@@ -22,9 +23,13 @@
 - ``pulse_Nm, pulse_period_s, pulse_width_s``: what the load on the carrier rises by, how often and how long. Planetary only.
 """
 
-from .strict import NUMBER, REQUIRED, TEXT, TWO, checked
+from .strict import NUMBER, REQUIRED, TEXT, TWO, WHOLE, checked, shown
 
 MACHINE = {
+    "model": (TEXT, REQUIRED),
+    "speed_rpm": (NUMBER, REQUIRED),
+    "torque_Nm": (NUMBER, REQUIRED),
+    "n_planets": (WHOLE, 3),
     "contact": (TEXT, "linear"),
     "backlash_um": (NUMBER, None),
     "profile_error_um": (NUMBER, 0.0),
@@ -42,13 +47,32 @@ IMPACT = {
     "pulse_width_s": (NUMBER, 0.05),
 }
 BODY = {"mass_kg": (NUMBER, REQUIRED), "inertia_kgm2": (NUMBER, REQUIRED)}
+LIMITS = {  # smallest and largest value of a machine that can be; a length in um reaches 100 mm
+    "speed_rpm": (1e-3, 1e6),
+    "torque_Nm": (0.0, 1e9),
+    "n_planets": (1, 100),
+    "backlash_um": (0.0, 1e5),
+    **dict.fromkeys(("profile_error_um", "runout_um", "misplaced_um", "misplaced_y_um"), (-1e5, 1e5)),
+}
 BODIES = ("sun", "planet", "ring", "carrier")
+
+
+def checked_machine(file, table):
+    """Check a [machine] table, its [machine.impact] and its [machine.bodies.NAME]."""
+    flat = {key: value for key, value in table.items() if key not in ("impact", "bodies")} if isinstance(table, dict) else table
+    out = checked(file, "machine", flat, MACHINE, extra=("impact", "bodies"))
+    for key, (low, high) in LIMITS.items():
+        if out[key] is not None and not low <= out[key] <= high:
+            raise ValueError(f"{file} [machine] {key} = {out[key]}, but give a number from {low:g} to {high:g}")
+    bodies = checked_bodies(file, table.get("bodies", {}))
+    return out | {"impact": checked(file, "machine.impact", table.get("impact", {}), IMPACT), "bodies": bodies}
 
 
 def checked_bodies(file, tables):
     """Masses [kg] and inertias [kg m2] by body, of none or of all."""
-    if tables and (not isinstance(tables, dict) or set(tables) != set(BODIES)):
-        raise ValueError(f"{file} [machine.bodies]: give a table for each of {', '.join(BODIES)}, or none")
+    if not isinstance(tables, dict) or (tables and set(tables) != set(BODIES)):
+        told = f"{', '.join(tables)}" if isinstance(tables, dict) else shown(tables)
+        raise ValueError(f"{file} [machine.bodies]: {told}, but give a table for each of {', '.join(BODIES)}, or none")
     rows = {name: checked(file, f"machine.bodies.{name}", table, BODY) for name, table in tables.items()}
     for name, row in rows.items():
         if not min(row.values()) > 0:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from ..units import NEWTON_PER_UM
-from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known
+from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known, listed_tables
 
 KINDS = ("input", "arithmetic", "model")
 REFERENCE = {
@@ -117,8 +117,7 @@ def read_references(file, tables, pairs):
     ValueError
         Naming file, table and key.
     """
-    if not isinstance(tables, list):
-        raise ValueError(f"{file}: references are written as [[reference]] tables")
+    listed_tables(file, "reference", tables)
     out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
     names = [one.id for one in out]
     twice = sorted({name for name in names if names.count(name) > 1})

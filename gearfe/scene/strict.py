@@ -1,17 +1,26 @@
 """Strict TOML tables: known keys of known kinds, and messages that name file, table and key. Units stand in the key names."""
 
-import math
-
 REQUIRED = object()
 NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
 TWO, TRUTH, TABLES, VALUES = "two numbers", "true or false", "a list of tables", "a table of values by dotted key"
 NUMBERS = "a list of numbers"
+LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
+SHOWN = 60  # characters of a value in a message
+
+
+def shown(value):
+    """A value for a message: no longer than a line, whatever was given."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole numbers of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def checked(file, where, table, keys, extra=()):
     """Check one table against its keys and fill in defaults."""
     if not isinstance(table, dict):
-        raise ValueError(f"{file} [{where}]: expected a table, got {table!r}")
+        raise ValueError(f"{file} [{where}]: expected a table of keys and values, got {shown(table)}")
     out = {}
     for key in table:
         if key not in keys:
@@ -23,9 +32,25 @@ def checked(file, where, table, keys, extra=()):
             out[key] = default
             continue
         if not _fits(table[key], kind):
-            raise ValueError(f"{file} [{where}] {key} = {table[key]!r}: expected {kind}{_unit(key)}")
+            raise ValueError(f"{file} [{where}] {key} = {shown(table[key])}: expected {kind}{_unit(key)}{_limits(table[key])}")
         out[key] = table[key]
     return out
+
+
+def named_tables(file, kind, tables):
+    """Refuse what is no table of tables by name, as ``[flank.NAME]`` writes them."""
+    if isinstance(tables, list) and all(isinstance(one, dict) for one in tables):
+        raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
+    if not isinstance(tables, dict):
+        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
+
+
+def listed_tables(file, kind, tables):
+    """Refuse what is no list of tables, as ``[[crack]]`` writes them."""
+    if isinstance(tables, dict):
+        raise ValueError(f"{file}: [{kind}] is one table, but there may be several: write [[{kind}]]")
+    if not isinstance(tables, list):
+        raise ValueError(f"{file}: {kind} = {shown(tables)}, but give a list of tables: [[{kind}]]")
 
 
 def _unit(key):
@@ -35,6 +60,11 @@ def _unit(key):
     units = {"mm": "mm", "deg": "degrees", "um": "um", "N": "N", "MPa": "MPa"}
     end = key.rpartition("_")[2]
     return f" in {units[end]}" if end in units and "_" in key else ""
+
+
+def _limits(value):
+    """What else is said of a number that is too large to be one."""
+    return f", below {LARGEST:g}" if isinstance(value, (int, float)) and abs(value) >= MOST else ""
 
 
 def _fits(value, kind):
@@ -54,15 +84,15 @@ def _fits(value, kind):
         return isinstance(value, list) and all(isinstance(v, str) for v in value)
     if isinstance(value, bool):
         return False
-    if kind == WHOLE:
-        return isinstance(value, int)
-    return isinstance(value, (int, float)) and math.isfinite(value)
+    if isinstance(value, int):
+        return abs(value) < MOST
+    return kind == NUMBER and isinstance(value, float) and abs(value) < LARGEST
 
 
 def known(file, where, key, name, names, kind):
     """Refuse a `name` that is not among `names`."""
     if name not in names:
-        raise ValueError(f"{file} [{where}] {key} = {name!r}: no such {kind}; there is {', '.join(names)}")
+        raise ValueError(f"{file} [{where}] {key} = {shown(name)}: no such {kind}; there is {', '.join(names)}")
 
 
 def placed(file, where, make):

@@ -13,7 +13,7 @@ def read_toml(file: Any) -> dict[str, Any]:
     """Tables of a file (a path, or a resource of the package); ValueError that names it if it is not TOML."""
     try:
         return tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: no UTF-8, no TOML, whole numbers of 4300 digits
         raise ValueError(f"{file.name}: not readable as TOML: {error}") from error
 
 

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from ..markdown import table_row
 from ..units import NEWTON_PER_UM
 
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
@@ -153,7 +154,7 @@ def text(references, rows):
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
             cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
-            lines.append(f"| {' | '.join(cells)} |")
+            lines.append(table_row(cells))
     return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
 
 

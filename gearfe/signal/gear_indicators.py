@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft, rfft
 
+from ..markdown import table_row
+from .given import samples
 from .orders import residual_signal, synchronous_average
 from .series import Signal
 
@@ -80,6 +82,8 @@ def gear_indicators(
     mesh = amplitude[teeth::teeth].sum()
     if not mesh > EMPTY * np.abs(x).max():
         raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
+    if not isinstance(before, (list, tuple)):
+        raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
     history = [x, *map(_oscillation, before)]
     residuals = [residual_signal(one, teeth, shaft_orders=shaft_orders) for one in history]
     envelopes = [_band_envelope(one, teeth) for one in history]
@@ -132,13 +136,13 @@ def gear_table_text(table: Mapping[str, Mapping[str, float]]) -> str:
     lines += [
         [name, *(f"{row[name]:.4g}" if math.isfinite(row[name]) else "-" for row in table.values())] for name in GEAR_SOURCES
     ]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return "\n".join(map(table_row, lines))
 
 
 def _oscillation(average: Any) -> NDArray[np.float64]:
-    x = np.asarray(average, dtype=float)
+    x = given = samples("average", average)
     x = x - x.mean()
-    if not np.abs(x).max() > 1e-12 * np.abs(average).max():
+    if not np.abs(x).max() > 1e-12 * np.abs(given).max():
         raise ValueError("a constant average has no indicators")
     return x
 

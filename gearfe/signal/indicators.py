@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..markdown import table_row
+from .given import hertz
 from .spectra import spectrum
 from .spectral_lines import find_lines
 
@@ -202,6 +204,9 @@ def indicators(
     }
     if (mesh_frequency is None) != (fault_frequency is None):
         raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
+    for name, value in {"mesh_frequency": mesh_frequency, "fault_frequency": fault_frequency}.items():
+        if value is not None:
+            hertz(name, value)
     if mesh_frequency is None:
         return out
     found = spectrum(signal, window=window)
@@ -270,7 +275,7 @@ def table_text(table):
     names = list(next(iter(table.values())))
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
     lines += [[LABELS.get(name, name), *(_cell(*row[name]) for row in table.values())] for name in names]
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return "\n".join(map(table_row, lines))
 
 
 def _cell(value, more):

@@ -8,9 +8,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
+from .given import samples, whole
 from .series import Signal
 from .spectra import Spectrum, amplitudes
 
+MOST = 10**8  # samples per turn
 SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples
 
 
@@ -45,7 +47,9 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.f
             "on average; cut out where it stands or starts"
         )
     needed = math.ceil(1 / step.min() - 1e-6)
-    count = needed if samples_per_turn is None else samples_per_turn
+    count = needed if samples_per_turn is None else whole("samples_per_turn", samples_per_turn, 1)
+    if count > MOST:
+        raise ValueError(f"{signal.name}: {count} samples per turn, but {MOST} is the most that makes sense: give fewer")
     if count < needed:
         raise ValueError(f"samples_per_turn = {count}, but {signal.name} has {needed} where it is slowest: give at least that")
     turns = math.floor(angle[-1] + 1 / count + 1e-9)
@@ -99,7 +103,7 @@ def synchronous_average(
     P. D. McFadden, Mech. Syst. Signal Process. 1(1) (1987) 83-95.
     """
     turns = by_turn(signal, samples_per_turn)
-    periods = turns.shape[0] // turns_per_period if turns_per_period > 0 else 0
+    periods = turns.shape[0] // whole("turns_per_period", turns_per_period, 1)
     if periods < 1:
         raise ValueError(f"turns_per_period = {turns_per_period}, but {signal.name} has {turns.shape[0]} whole turns")
     rows = turns[: periods * turns_per_period].reshape(periods, -1)
@@ -127,9 +131,10 @@ def residual_signal(average: ArrayLike, teeth: int, *, sidebands: int = 0, shaft
     ----------
     J. J. Zakrajsek, D. P. Townsend, H. J. Decker, NASA TM 105950 (1993): residual and difference signal, FM4, NA4.
     """
-    average = np.asarray(average, dtype=float)
+    average = samples("average", average)
     top = average.size // 2
-    if not 2 <= teeth <= top:
+    sidebands, shaft_orders = whole("sidebands", sidebands, 0), whole("shaft_orders", shaft_orders, 0)
+    if not 2 <= whole("teeth", teeth, 2) <= top:
         raise ValueError(f"teeth = {teeth}, but an average of {average.size} samples holds the orders 0 to {top}")
     if not (0 <= 2 * sidebands + 1 < teeth and 0 <= shaft_orders < teeth):
         raise ValueError(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..files import missing
-from .found import Found, numeric
+from .found import TIMES, Found, numeric, plain
 from .text_table import named
 
 TIME_RESPONSE = 1  # function type of a data set 58 that holds a quantity over time
@@ -18,7 +18,7 @@ TDMS_UNITS = ("unit_string", "NI_UnitDescription", "unit")
 SAID_NOTHING = ("", "none", "unknown")
 # what scipy and npTDMS, which trust their files, raise when these are damaged (NameError: a chunk is missing)
 DAMAGE: tuple[type[Exception], ...] = (ArithmeticError, AttributeError, EOFError, LookupError, MemoryError, NameError)
-DAMAGE += (NotImplementedError, OSError, TypeError, ValueError, Warning, struct.error)
+DAMAGE += (NotImplementedError, OSError, RecursionError, TypeError, ValueError, Warning, struct.error)
 
 
 def wav_file(path: str | os.PathLike[str]) -> Found:
@@ -159,6 +159,9 @@ def parquet_file(path: str | os.PathLike[str]) -> Found:
         found.state(key.decode("utf-8", "replace"), value.decode("utf-8", "replace"))
     for field, column in zip(table.schema, table.columns, strict=True):
         name, unit = named(field.name)
+        if pa.types.is_timestamp(field.type) or pa.types.is_duration(field.type):
+            _clock(path, found, name, column, pa)
+            continue
         if not (pa.types.is_integer(field.type) or pa.types.is_floating(field.type)):
             found.other.append(f"{field.name!r} ({field.type})")
             continue
@@ -168,9 +171,25 @@ def parquet_file(path: str | os.PathLike[str]) -> Found:
     return found
 
 
+def _clock(path, found, name, column, pa):
+    """Dates of a clock, or times since a start, as the time [s] from the first on, whatever the column is called."""
+    if column.null_count:
+        raise ValueError(f"{path}: {column.null_count} times of {name!r} are missing; cut or mend these rows")
+    if found.axes(TIMES):
+        found.other.append(f"{name!r} ({column.type}, beside {found.axes(TIMES)[0]!r})")
+        return
+    count = column.cast(pa.int64()).to_numpy()
+    seconds = (count - (count[0] if count.size else 0)) * {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}[column.type.unit]
+    taken = name if plain(name) in TIMES else "time"
+    found.vectors[taken], found.units[taken] = seconds, "s"
+    warnings.warn(f"{path}: {name!r} ({column.type}) is taken for the time, in seconds from its first row on", stacklevel=4)
+
+
 def _damaged(path, kind, error):
     """Return what to raise for a file that its library cannot read, in one line."""
     if isinstance(error, OSError) and error.strerror:
         return ValueError(f"cannot read {path}: {error.strerror}")
     told = " ".join(str(error).split()) or type(error).__name__
+    if isinstance(error, RecursionError):
+        told = "something in it, such as the source of a scale, refers to itself"
     return ValueError(f"{path} is not a whole {kind} file: {told}")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample_poly
 
+from .given import hertz, samples, whole
 from .indicators import indicators
 from .spectra import analytic
 
@@ -41,20 +42,22 @@ class Signal:
     shaft_frequency: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "values", _samples(self.name, self.values))
-        for name in ("rate", "shaft_frequency"):
-            value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | float | np.integer | np.floating) and 0 < value < math.inf):
-                raise ValueError(f"{self.name}: {name} = {value!r}, but give a positive number of Hz")
-        if self.rate is None:
-            raise ValueError(f"{self.name}: rate = None, but give a positive number of Hz")
+        if not isinstance(self.name, str):
+            raise ValueError(f"name = {self.name!r}, but give a text")
+        values = samples(self.name, self.values)
+        values.flags.writeable = False
+        object.__setattr__(self, "values", values)
+        hertz(f"{self.name}: rate", self.rate)
+        if self.shaft_frequency is not None:
+            hertz(f"{self.name}: shaft_frequency", self.shaft_frequency)
         if not isinstance(self.unit, str) or not self.unit.strip():
             raise ValueError(f"{self.name}: unit = {self.unit!r}, but a signal needs one, for example 'm/s^2'")
         if self.angle is None:
             return
         if self.shaft_frequency is not None:
             raise ValueError(f"{self.name}: both angle and shaft_frequency; give one")
-        angle = _samples(f"{self.name}: angle", self.angle)
+        angle = samples(f"{self.name}: angle", self.angle)
+        angle.flags.writeable = False
         if angle.shape != self.values.shape:
             raise ValueError(f"{self.name}: {angle.size} angles for {self.values.size} samples")
         falls = np.flatnonzero(~(np.diff(angle) > 0))
@@ -92,20 +95,6 @@ class Signal:
         return indicators(self, mesh_frequency, fault_frequency, **options)
 
 
-def _samples(name, values):
-    values = np.array(values)
-    if values.ndim != 1 or values.size < 2 or values.dtype.kind not in "fiu":
-        raise ValueError(
-            f"{name}: values of shape {values.shape} and type {values.dtype}, but give a row of two or more real numbers"
-        )
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        raise ValueError(f"{name}: sample {bad[0]} is {values[bad[0]]}; cut or mend the {bad.size} samples that are not finite")
-    values = values.astype(float)
-    values.flags.writeable = False
-    return values
-
-
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
     return Signal(
@@ -139,6 +128,7 @@ def decimate(signal: Signal, rate: float) -> Signal:
     ValueError
         If the rate is higher than that of the signal, or no such ratio.
     """
+    hertz("rate", rate)
     ratio = Fraction(rate / signal.rate).limit_denominator(1000) if 0 < rate <= signal.rate else Fraction(0)
     if not ratio or abs(ratio * signal.rate / rate - 1) > 1e-9:
         raise ValueError(
@@ -168,8 +158,10 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
     -------
     Signal
     """
-    if times < 1 or not 0 < above < signal.rate / 2:
-        raise ValueError(f"times = {times}, above = {above} Hz: give times >= 1 and above between 0 and {signal.rate / 2:g} Hz")
+    whole("times", times, 1)
+    hertz("above", above)
+    if not 0 < above < signal.rate / 2:
+        raise ValueError(f"above = {above} Hz, but give one between 0 and {signal.rate / 2:g} Hz")
     frequency = rfftfreq(signal.values.size, 1 / signal.rate)
     weight = np.zeros(frequency.size, dtype=complex)
     kept = frequency >= above

@@ -17,11 +17,11 @@ from .recorder_file import parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
 from .tachometer import with_tachometer
 from .text_table import text_table
+from .time_axis import step_of
 
 TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
-UNEVEN = 0.1  # of a step: times printed with few digits stay below, a lost sample does not
 LONGEST = 60  # characters of a unit
 AGREE = 1e-3  # between a stated rate and the time column
 READERS = {
@@ -48,12 +48,14 @@ def read_signal(
     - ``.csv``, ``.txt``: columns by comma, semicolon, tab or blanks, numbers with a decimal point or comma. The last row above
       the numbers, or the last comment (# or %), names the columns and their units: ``time [s], housing [m/s^2]``; units may
       stand in a row below the names. Rows above are titles. Time in s, ms or us, a shaft's ``angle`` in rad or deg. Titles and
-      comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``.
+      comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``. In UTF-8 or UTF-16. Warned of:
+      Windows-1252, marks between thousands, times rounded to more than a tenth of a step.
     - ``.mat`` (also of version 7.3), ``.npz``, ``.h5``, ``.hdf5``: vectors by name, columns of long matrices (``acc 1``), fields
       of structs (``run.acc``) and cells (``run{2}``); ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency`` [Hz];
       text or attribute ``unit``. A response that gearfe wrote: columns by channel.
     - ``.wav``: ``channel 1``...; parts of full scale, to be given `unit` and `scale`.
-    - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated.
+    - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated;
+      dates of a clock in Parquet are the time.
 
     Nothing is unpickled. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
 
@@ -241,7 +243,9 @@ def _one(path, name, values):
     if values[0] is not None and any(abs(number / numbers[0] - 1) < 1e-9 for number in numbers[1:]):
         return numbers[0]
     if max(numbers) > min(numbers) * (1 + 1e-9):
-        raise ValueError(f"{path}: {name} is given as {' and '.join(f'{number:g}' for number in numbers)} Hz; give it once")
+        raise ValueError(
+            f"{path}: {name} is given as {' and '.join(f'{number:g}' for number in numbers)} Hz; say which holds by {name}="
+        )
     return numbers[0]
 
 
@@ -266,17 +270,8 @@ def _rate(path, given, stated, time, samples):
         return rate
     if time.size != samples or samples < 2:
         raise ValueError(f"{path}: {time.size} times for {samples} samples")
-    bad = np.flatnonzero(~np.isfinite(time))
-    if bad.size:
-        raise ValueError(f"{path}: time {bad[0]} is {time[bad[0]]}")
-    step = (time[-1] - time[0]) / (samples - 1)
-    off = np.abs(time - np.linspace(time[0], time[-1], samples))
-    if not step > 0 or off.max() > UNEVEN * step:
-        i = int(np.argmax(off)) if step > 0 else samples - 1
-        raise ValueError(
-            f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
-            "a gap, or a varying rate; resample first"
-        )
+    step = step_of(path, np.asarray(time, dtype=float), rate)
     if rate is not None and abs(rate * step - 1) > AGREE:
-        raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; give one of them")
+        told = "leave rate= out, or mend the times" if given is not None else "mend one of them in the file"
+        raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; {told}")
     return 1 / step if rate is None else rate

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.fft import fft, fftfreq, ifft
 from scipy.signal import get_window, periodogram, welch
 
+from .given import band_of
+
 if TYPE_CHECKING:
     from .series import Signal
 
@@ -140,9 +142,7 @@ def analytic(signal, band=None):
     The band is cut between bins of the discrete Fourier transform, as `scipy.signal.envelope` does: exact for a record that
     closes; any other rings at its ends, for about ``1 / (high - low)``.
     """
-    low, high = (0.0, signal.rate / 2) if band is None else band
-    if not 0 <= low < high <= signal.rate / 2 * (1 + 1e-12):
-        raise ValueError(f"band = {band} Hz, but {signal.name} has 0 to {signal.rate / 2:g} Hz: give low < high inside")
+    low, high = band_of(band, signal.rate, signal.name)
     n = signal.values.size
     frequency = fftfreq(n, 1 / signal.rate)
     frequency[frequency < -signal.rate / 2 * (1 - 1e-12)] *= -1  # Nyquist's bin of an even n

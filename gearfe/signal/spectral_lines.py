@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from .given import hertz
 from .spectra import Spectrum
 
 HANN = 1.5  # equivalent noise bandwidth of its window, in bins
@@ -52,8 +53,7 @@ def expected_lines(
     given = {"f_fault": fault_frequency, "f_carrier": carrier_frequency}
     spacings = {name: value for name, value in given.items() if value is not None}
     for name, value in {"f_m": mesh_frequency, **spacings}.items():
-        if not 0 < value < math.inf:
-            raise ValueError(f"{name} = {value} Hz, but give a positive number")
+        hertz(name, value)
     if count < 0 or harmonics < 1:
         raise ValueError(f"count = {count}, harmonics = {harmonics}: give count >= 0, harmonics >= 1")
     lines = {}

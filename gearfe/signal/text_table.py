@@ -1,7 +1,9 @@
 """Channels of text tables as people export them: title rows, comments, units below the names, decimal commas, no names at all."""
 
+import csv
 import os
 import re
+import warnings
 from collections import Counter
 from typing import NamedTuple
 
@@ -17,13 +19,24 @@ UNITS = re.compile(
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
 
 
+SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
+GROUPS = {  # by decimal mark, what stands between thousands (a regular expression), and numbers that have it
+    mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
+    for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
+}
+
+
 class Way(NamedTuple):
-    """How a table writes its numbers: what parts cells, the decimal mark, cells in a row, rows of text above the numbers."""
+    """How a table writes its numbers: what parts cells, the decimal mark, cells in a row, rows of text above the numbers.
+
+    `group` is what stands between thousands, as a regular expression; empty if nothing does.
+    """
 
     separator: str | None
     mark: str
     columns: int
     above: int
+    group: str = ""
 
 
 def text_table(path: str | os.PathLike[str], lines: list[str], header: str | None = None) -> Found:
@@ -74,37 +87,65 @@ def named(cell: str) -> tuple[str, str]:
 
 
 def _cells(line, separator):
+    if separator is not None and '"' in line:  # a separator between quotes parts nothing
+        return [cell.strip() for cell in next(csv.reader([line.rstrip(f"{separator} ")], delimiter=separator))]
     whole = line if separator is None else line.rstrip(f"{separator} ")
     return [cell.strip().strip('"').strip() for cell in whole.split(separator)]
 
 
-def _is_number(cell, mark):
+def _plain(cell, mark, group=""):
+    """A number as Python reads it."""
+    if group and GROUPS[mark][group].fullmatch(cell):
+        cell = re.sub(group, "", cell)
+    return cell.replace(mark, ".") if mark == "." or "." not in cell else ""
+
+
+def _is_number(cell, mark, group=""):
     try:
-        float(cell.replace(mark, "."))
+        float(_plain(cell, mark, group))
     except ValueError:
         return False
-    return mark == "." or "." not in cell
+    return True
 
 
-def _numbers(line, separator, mark):
+def _numbers(line, separator, mark, group=""):
     """Count of cells if all are numbers, else 0."""
     found = _cells(line, separator)
-    return len(found) if all(_is_number(cell, mark) for cell in found) else 0
+    return len(found) if all(_is_number(cell, mark, group) for cell in found) else 0
 
 
 def _way(rows, given):
     """The way in which most rows are numbers; of several one that fits the names of the columns. None if there is none."""
-    best, most = [], 0
-    for mark in ".,":
+    best, most = _ways(rows, [(mark, "") for mark in ".,"], 0)
+    fitting = _fitting(rows, best, given)
+    if most < len(rows[-LOOKED:]) or not fitting:  # some rows are no numbers, unless thousands are parted
+        grouped, more = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
+        found = _fitting(rows, grouped, given)
+        if more > most:
+            best, fitting = grouped, found
+        fitting = fitting or found
+    return next(iter(fitting or best), None)
+
+
+def _fitting(rows, ways, given):
+    """Those of several ways that fit the names of the columns."""
+    return [way for way in ways if (len(given) == way.columns if given else _fits(rows, way))]
+
+
+def _ways(rows, marks, most):
+    """Ways in which most rows, and at least so many, are numbers; and how many those are."""
+    best = []
+    for mark, group in marks:
         for separator in SEPARATORS:
-            counts = Counter(n for _, line in rows[-LOOKED:] if (n := _numbers(line, separator, mark)))
+            if group and separator in (None, mark):  # thousands parted like cells would be cells
+                continue
+            counts = Counter(n for _, line in rows[-LOOKED:] if (n := _numbers(line, separator, mark, group)))
             score, count = sum(counts.values()), counts.most_common(1)[0][0] if counts else 0
             if score and score >= most:
-                above = next((i for i, (_, line) in enumerate(rows) if _numbers(line, separator, mark) == count), 0)
-                way = Way(separator, mark, count, above)
+                above = next((i for i, (_, line) in enumerate(rows) if _numbers(line, separator, mark, group) == count), 0)
+                way = Way(separator, mark, count, above, group)
                 best, most = [*best, way] if score == most else [way], score
-    fitting = [way for way in best if (len(given) == way.columns if given else _fits(rows, way))]
-    return next(iter(fitting or best), None)
+    return best, most
 
 
 def _fits(rows, way):
@@ -135,6 +176,8 @@ def _names(titles, comments, way, found):
 
 
 def _table(path, rows, way, count):
+    if way.group:
+        return _grouped(path, rows, way, count)
     lines = [line if way.separator is None else line.rstrip(f"{way.separator} ") for _, line in rows]
     if way.mark == ",":
         if any("." in line for line in lines):  # 1.5 among decimal commas, or 1.234,5
@@ -149,9 +192,20 @@ def _table(path, rows, way, count):
     return table
 
 
+def _grouped(path, rows, way, count):
+    """Numbers with something between their thousands, which is told."""
+    wrong = _bad_row(path, rows, way, count)
+    if wrong:
+        raise ValueError(wrong)
+    cells = [_cells(line, way.separator) for _, line in rows]
+    one = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
+    warnings.warn(f"{path}: thousands are taken to be parted: {one!r} is {_plain(one, way.mark, way.group)}", stacklevel=6)
+    return np.array([[float(_plain(cell, way.mark, way.group)) for cell in row] for row in cells])
+
+
 def _bad_row(path, rows, way, count):
     for i, line in rows:
-        if _numbers(line, way.separator, way.mark) != count:
+        if _numbers(line, way.separator, way.mark, way.group) != count:
             shown = line if len(line) <= 80 else f"{line[:80]}..."
             return f"{path}, line {i}: {shown!r} is not a row of {count} numbers"
     return None

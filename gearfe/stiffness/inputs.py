@@ -8,7 +8,7 @@ from inspect import signature
 import numpy as np
 
 from geometry.damage.crack import Crack, check_apart, check_through
-from geometry.damage.pit import Pit
+from geometry.damage.pit import Pit, takes_all
 
 from ..elements.asked import is_number
 from ..energy.closed.plain_sum import plain_sum
@@ -225,6 +225,12 @@ def by_gear(pair, damage):
         for one in given:
             if not isinstance(one, (Crack, Pit)):
                 raise ValueError(f"damage of the {name}: {one!r} is neither a Crack nor a Pit")
+            if isinstance(one, Pit) and takes_all(gear, one):
+                warnings.warn(
+                    f"pit with semi-axes {one.axes[0]:g} x {one.axes[1]:g} mm takes the whole flank of z = {gear.z}: nothing "
+                    f"of it is left to carry, but the pit's floor, {one.depth:g} mm lower; lengths are in mm",
+                    stacklevel=4,
+                )
         check_apart(gear, [one for one in given if isinstance(one, Crack)])
         own = [replace(one, tooth=sense * one.tooth) for one in given]
         cracks.append(tuple(one for one in own if isinstance(one, Crack)))

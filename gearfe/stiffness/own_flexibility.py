@@ -65,8 +65,8 @@ class OwnFlexibility:
     ------
     ValueError
         If something is none of these, such as a plain sum of tooth pairs (``"textbook"``, ``"published"``). `mesh_stiffness`
-        raises one if a function fails, or its matrix has another shape, is not finite, not symmetric, or (``bulk``) gives way
-        against a load.
+        raises one if a function fails, or its matrix has another shape, is not real or finite, not symmetric, or (``bulk``)
+        gives way against a load.
 
     Examples
     --------
@@ -163,15 +163,12 @@ class OwnGear:
 
         The function is asked for contacts on the flank only; the others get zeros, and never touch.
         """
-        roll, teeth = np.asarray(roll, dtype=float), np.asarray(teeth)
-        low, high = sorted((self.gear.roll_f, self.gear.roll_a))
-        slack = 1e-6 * self.gear.m_n
-        on = (roll > low - slack) & (roll < high + slack)
+        (roll, on), teeth = _on_flank(self.gear, roll), np.asarray(teeth)
         out = np.zeros((*roll.shape, teeth.size))
         for place in np.ndindex(roll.shape[:-1]):
             own = np.flatnonzero(on[place])
             if own.size:
-                out[(*place, own[:, None], own)] = self._among(np.clip(roll[place][own], low, high), teeth[own])
+                out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
         return out
 
     def _among(self, roll, teeth):
@@ -179,31 +176,69 @@ class OwnGear:
         radius = np.hypot(self.gear.r_b, roll)
         name, n = getattr(self.function, "__name__", "own flexibility"), radius.size
         where = f"{name} of z = {self.gear.z} at radius = {np.array2string(radius, precision=6)} mm, tooth = {teeth.tolist()}"
-        given = self.function(self.gear, self.material, radius, teeth)
-        if isinstance(given, Components):
-            raise ValueError(
-                f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
-                "of their `total`"
-            )
-        try:
-            values = np.asarray(given, dtype=float)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"{where}: it gives {given!r}, but give a matrix of numbers [mm per N/mm]") from error
-        if values.shape != (n, n):
-            raise ValueError(
-                f"{where}: it gives an array of shape {values.shape}, but give ({n}, {n}): displacement of contact i under a "
-                "unit load at contact j (numpy.diag makes one of teeth that do not move each other)"
-            )
-        if not np.isfinite(values).all():
-            raise ValueError(f"{where}: it gives values that are not finite")
-        if np.abs(values - values.T).max() > SAME * np.abs(values).max():
-            raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
+        values = _checked(where, (n, n), lambda: self.function(self.gear, self.material, radius, teeth))
         if self.given == "smooth":
             return values
         if np.linalg.eigvalsh(values).min() < -SAME * np.abs(values).max():
             raise ValueError(f"{where}: its matrix is not positive (semi)definite, so some loads would gain work from the gear")
         dent = coupled.local_remainder(self.gear, self.material, roll, state=self.state)
         return values + np.diag(dent)
+
+
+@dataclass(frozen=True, slots=True)
+class OwnMatrix:
+    """A user's object that has ``matrix(roll, teeth)`` and nothing else, as what contact reads of a gear; its values checked."""
+
+    made: Any
+    gear: Gear
+    seam = None
+    dofs = 0
+
+    def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
+        """Smooth flexibility ``(..., n, n)`` [mm per N/mm] as the object gives it; zeros for contacts off the flank."""
+        roll, on = _on_flank(self.gear, roll)
+        shape = (*roll.shape, np.size(teeth))
+        where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
+        values = _checked(where, shape, lambda: self.made.matrix(roll, teeth))
+        return np.where(on[..., :, None] & on[..., None, :], values, 0.0)
+
+
+def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Roll lengths brought onto the flank where they are beside it, and which were on it."""
+    roll = np.asarray(roll, dtype=float)
+    low, high = sorted((gear.roll_f, gear.roll_a))
+    slack = 1e-6 * gear.m_n
+    return np.clip(np.nan_to_num(roll, nan=low), low, high), (roll > low - slack) & (roll < high + slack)
+
+
+def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDArray[np.float64]:
+    """What a user's function gives, if it is real, finite and symmetric and has the shape; else a ValueError that names it."""
+    try:
+        given = work()
+    except Exception as error:  # it may raise whatever it likes
+        raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
+    if isinstance(given, Components):
+        raise ValueError(
+            f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
+            "of their `total`"
+        )
+    try:
+        values = np.asarray(given)
+    except ValueError as error:  # rows of different lengths
+        raise ValueError(f"{where}: it gives rows that make no array, but give a matrix of numbers [mm per N/mm]") from error
+    if values.dtype.kind not in "fiu":
+        raise ValueError(f"{where}: it gives values of type {values.dtype}, but give a matrix of real numbers [mm per N/mm]")
+    if values.shape != shape:
+        raise ValueError(
+            f"{where}: it gives an array of shape {values.shape}, but give {shape}: displacement of contact i under a "
+            "unit load at contact j (numpy.diag makes one of teeth that do not move each other)"
+        )
+    values = values.astype(float)
+    if not np.isfinite(values).all():
+        raise ValueError(f"{where}: it gives values that are not finite")
+    if np.abs(values - np.swapaxes(values, -1, -2)).max() > SAME * np.abs(values).max():
+        raise ValueError(f"{where}: its matrix is not symmetric, but contact i moves j as j moves i (Maxwell, Betti)")
+    return values
 
 
 def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
@@ -217,5 +252,5 @@ def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Materia
                 f"a Flexibility of z = {one.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; give "
                 "those of pinion and wheel"
             )
-        return one
+        return one if hasattr(one, "seam") else OwnMatrix(one, gear)
     return OwnGear(one, gear, material, state, own.given)

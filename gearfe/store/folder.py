@@ -110,6 +110,8 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
     ValueError
         If the folder cannot be made or written, or holds anything else.
     """
+    if not os.fspath(folder):
+        raise ValueError("an empty name of a folder: give one")
     folder = Path(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)

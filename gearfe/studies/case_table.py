@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..markdown import table_row
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
 from ..steps import steps
@@ -92,7 +93,7 @@ class CaseTable:
             truth = self.curves[pair, case, self.reference]
             cells = [_percent(error, "+.1f") for name in others for error in self.errors(pair, case, name)[:2]]
             head = [pair, case or "healthy", in_newton_per_um(truth.mean, 5), in_newton_per_um(truth.largest, 5)]
-            lines.append("| " + " | ".join([*head, *cells]) + " |")
+            lines.append(table_row([*head, *cells]))
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
         return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
 
@@ -102,7 +103,7 @@ class CaseTable:
         for pair, case in self.cases():
             if case is not None:
                 cells = [_percent(self.drops(pair, case, name)[0], ".2f") for name in self.methods]
-                lines.append("| " + " | ".join([pair, case, *cells]) + " |")
+                lines.append(table_row([pair, case, *cells]))
         return "\n".join(lines)
 
 

@@ -170,8 +170,8 @@ def _called(name, function, given, where):
     once = f"it is called once, with arrays of {n} values; numpy.vectorize(f) makes a function of single numbers fit"
     try:
         k = np.asarray(function(*given))
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"model {name!r} failed: {error} ({once})") from error
+    except Exception as error:  # a function of the user's may raise whatever it likes
+        raise ValueError(f"model {name!r} failed with {type(error).__name__}: {error} ({once})") from error
     if k.shape != (n,):
         raise ValueError(f"model {name!r} returned an array of shape {k.shape}, but give ({n},): one k for each value ({once})")
     if k.dtype.kind not in "fiu":

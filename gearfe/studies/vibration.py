@@ -2,12 +2,15 @@
 
 import math
 from dataclasses import dataclass, replace
+from numbers import Real
 
 import numpy as np
 
 from geometry.damage.pit import Pit
 
 from ..machine.of_scene import build_machine
+from ..markdown import table_row
+from ..motion.reference import SOLVERS
 from ..motion.simulate import simulate
 from ..motion.step_control import default_step
 from ..signal.indicators import LOBES, indicator_table, table_text
@@ -47,7 +50,7 @@ class Analysis:
         rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
         for name, frequency in self.lines.items():
             rows.append([name, f"{frequency:.2f}", *(f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)])
-        return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+        return "\n".join(map(table_row, rows))
 
     def indicators_text(self):
         """Indicators as Markdown, increments against healthy in brackets."""
@@ -81,8 +84,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
     dict of str to Response
         ``"healthy"`` and the case.
     """
-    if not 0 < duration < math.inf:
-        raise ValueError(f"duration = {duration} s, but it must be positive and finite")
+    check_run(duration, method)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
     if case is not None and case not in cases:
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
@@ -102,6 +104,14 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
             name: recorded(made[name], duration, rate, method=method, progress=progress)
             for name in steps(names, lambda name: f"motion, {name}")
         }
+
+
+def check_run(duration, method="fast"):
+    """Raise ValueError for a duration or a method of a run that cannot be: to be called before curves are computed for it."""
+    if isinstance(duration, bool) or not isinstance(duration, Real) or not 0 < duration < math.inf:
+        raise ValueError(f"duration = {duration!r} s, but it must be positive and finite")
+    if method != "fast" and method not in SOLVERS:
+        raise ValueError(f"method = {method!r}, but it must be 'fast' or one of {', '.join(SOLVERS)}")
 
 
 def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None):
@@ -193,8 +203,13 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     -------
     Analysis
     """
+    for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
+        if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):
+            raise ValueError(f"{name} = {value!r} Hz, but a frequency is positive and finite")
     spectra = {case: spectrum(replace(one, values=one.values - one.values.mean())) for case, one in signals.items()}
     first = next(iter(spectra.values()))
+    if mesh is not None and mesh >= first.frequency[-1]:
+        raise ValueError(f"mesh = {mesh:g} Hz, but {channel} shows what lies below {first.frequency[-1]:g} Hz, half of its rate")
     lines = {} if mesh is None else _lines(mesh, fault, turning, carrier, first.resolution)
     lines = {name: value for name, value in lines.items() if value < first.frequency[-1]}
     placed = {case: find_lines(one, lines, between=True) for case, one in spectra.items()}

@@ -3,7 +3,7 @@
 import copy
 
 from ..scene import machine_table
-from ..scene.load import DAMAGE, MACHINE, TABLES
+from ..scene.load import DAMAGE, TABLES
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
 BEFORE_LOAD = ("gear", "material")  # what the healthy gears depend on; then damage; the rest shares the gears
@@ -38,7 +38,7 @@ def _known(parts, tables, options):
             return [["impact"], list(machine_table.IMPACT)]
         if parts[1:2] == ["bodies"]:
             return [["bodies"], list(tables["machine"].get("bodies", {})), list(machine_table.BODY)]
-        return [[*MACHINE, "impact", "bodies"]]
+        return [[*machine_table.MACHINE, "impact", "bodies"]]
     there = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
     raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(there)} or options, or is pair or case")
 

@@ -62,6 +62,8 @@ def sweep(
         If pyarrow or, for a scheduler, distributed is missing; the message names what to install.
     """
     check_workers(workers)
+    if scheduler is not None and not (isinstance(scheduler, str) and scheduler.strip()):
+        raise ValueError(f"scheduler = {scheduler!r}, but give the address of a Dask scheduler, such as 'tcp://host:8786'")
     if workers is not None and scheduler is not None:
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
@@ -79,7 +81,7 @@ def sweep(
         _say(done, total, progress)
         work = jobs(checked, todo, fields)
         count = min(workers or os.cpu_count() or 1, max(1, len(todo)))
-        for name, content, source in cluster(work, scheduler) if scheduler else local(work, count):
+        for name, content, source in local(work, count) if scheduler is None else cluster(work, scheduler):
             if source != about["made"]["source"]:
                 raise RuntimeError(
                     f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"

@@ -1,11 +1,13 @@
 """Values of a study's sample: points of the unit cube by scipy.stats.qmc, through distributions, with correlations."""
 
-import math
-
 import numpy as np
 from scipy import stats
 from scipy.stats import qmc
 
+from ..scene.strict import LARGEST, shown
+
+WIDEST = 10.0  # standard deviation of a logarithm: two thirds of the values over nine decades
+LEAST = 1e-9  # part of a distribution that must lie within its limits: below, its values are rounding
 METHODS = ("sobol", "random", "latin", "saltelli")
 SHAPES = {  # name: number of parameters, and what they are
     "uniform": (2, "low, high"),
@@ -57,29 +59,47 @@ def check_shape(where, spec):
     names = [name for name in spec if name in SHAPES]
     unknown = [name for name in spec if name not in (*SHAPES, "within", "also")]
     if len(names) != 1 or unknown:
-        raise ValueError(f"{where}: {spec!r} is no distribution; give one of {', '.join(SHAPES)}, and within = [low, high]")
+        raise ValueError(f"{where}: {shown(spec)} is no distribution; give one of {', '.join(SHAPES)}, and within = [low, high]")
     (name,) = names
     count, said = SHAPES[name]
     values = spec[name]
     if not isinstance(values, (list, tuple)) or not values or (count is not None and len(values) != count):
-        raise ValueError(f"{where}: {name} = {values!r}, but give a list: {said}")
+        raise ValueError(f"{where}: {name} = {shown(values)}, but give a list: {said}")
     if name == "choice":
+        if "within" in spec:
+            raise ValueError(f"{where}: within is of a distribution; leave out of the choice what is not in it")
         return
-    if not all(isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v) for v in (*values, *_within(spec))):
-        raise ValueError(f"{where}: {name} = {values!r}, but give finite numbers: {said}")
+    if not all(map(_finite, values)):
+        raise ValueError(f"{where}: {name} = {shown(values)}, but give finite numbers: {said}")
     rising = {"uniform": values, "triangular": values}.get(name, [0, 1])
     if sorted(rising) != list(rising) or rising[0] == rising[-1]:
         raise ValueError(f"{where}: {name} = {values!r}, but the values must rise: {said}")
     if name in ("normal", "lognormal") and not values[1] > 0:
         raise ValueError(f"{where}: {name} = {values!r}, but a standard deviation is > 0")
+    if name == "lognormal" and values[1] > WIDEST:
+        raise ValueError(
+            f"{where}: lognormal = {values!r}, but a standard deviation of the logarithm above {WIDEST:g} is none of gears"
+        )
     if name == "lognormal" and not values[0] > 0:
         raise ValueError(f"{where}: lognormal = {values!r}, but a median is > 0")
-    if "within" in spec and (len(_within(spec)) != 2 or not _within(spec)[0] < _within(spec)[1]):
-        raise ValueError(f"{where}: within = {spec['within']!r}, but give [low, high] with low < high")
+    if "within" in spec:
+        _check_within(where, name, spec)
 
 
-def _within(spec):
-    return spec.get("within", ())
+def _finite(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) < LARGEST
+
+
+def _check_within(where, name, spec):
+    """Refuse what is no interval, or leaves nothing of a distribution."""
+    within = spec["within"]
+    if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
+        raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")
+    low, high = _distribution(spec).cdf(within)
+    if not high - low > LEAST:
+        raise ValueError(
+            f"{where}: within = {within} leaves nothing of {name} = {spec[name]}; give an interval in which values lie"
+        )
 
 
 def quantiles(spec, u):

@@ -47,7 +47,7 @@ from ..scene.load import DAMAGE, read_tables, scene_of
 from ..scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
 from ..scene.toml_file import given_tables
 from . import samples
-from .axes import axes, checked_sample
+from .axes import MOST, axes, checked_sample
 from .keys import check_key, trimmed
 from .kinds import KINDS
 
@@ -130,8 +130,13 @@ def _study(file, place, data):
     options = checked(file, "options", top["options"], kind.options)
     grid = tuple(axes(file, top["vary"], top["along"]))
     sample = checked_sample(file, top["sample"])
+    cases = math.prod([len(next(iter(axis.values()))) for axis in grid]) * sample.get("count", 1)
+    if cases > MOST:
+        raise ValueError(f"{file}: {cases} cases, but a study has at most {MOST:.0e}: vary less, or part it")
     if top["block"] is not None and top["block"] < 1:
         raise ValueError(f"{file} block = {top['block']}: give the cases of a shard, a whole number >= 1")
+    if top["seed"] < 0:
+        raise ValueError(f"{file} seed = {top['seed']}: give a whole number >= 0")
     keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
     for key in keys:
         _checked_key(file, key, tables, options)

@@ -9,6 +9,7 @@ import numpy as np
 from ..tooth.profile import arc_at, flank, roll_at_arc
 
 MOST = 5000  # pits in a row
+LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,8 @@ class Pit:
         for name, value in (("radius", self.radius), ("depth", self.depth), ("axes", min(self.axes))):
             if not value > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
+        if not (min(self.axes) >= LEAST and max(self.axes) <= LONGEST):
+            raise ValueError(f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm: it is squared")
         if not abs(self.angle) <= math.pi:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between -pi and pi; angles are radians in Python")
         if self.side not in ("loaded", "unloaded"):
@@ -108,6 +111,14 @@ def rolls(gear, pit):
     middle, reach = centre_arc(gear, pit), pit.reach[0]
     low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
     return roll_at_arc(gear, np.clip([middle - reach, middle + reach], low, high))
+
+
+def takes_all(gear, pit):
+    """Whether a pit takes its whole flank: all four corners of it lie within the ellipse."""
+    u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, pit)
+    w = np.array([0.0, gear.b]) - pit.z
+    across, mixed, along = pit.form
+    return bool((across * w[:, None] ** 2 + 2 * mixed * w[:, None] * u + along * u**2 <= 1).all())
 
 
 def check_pits(gear, pits):

@@ -25,6 +25,8 @@ def deck(path, gear=GEAR, radius=18.0, line_load=100.0, material=STEEL, **option
     ("given", "message"),
     [
         ({"line_load": True}, "line_load = True"),
+        ({"line_load": 1e30}, r"line_load = 1e\+30 N/mm, but under more than 2.07e\+04 N/mm \(E m_n / 20\)"),
+        ({"line_load": lambda z: 1e30 * z}, r"line_load = 8e\+30 N/mm, but under more than"),
         ({"line_load": lambda z: z * math.nan}, "gives nan to nan"),
         ({"line_load": lambda z: -z}, "gives -0.0 to -8.0"),
         ({"line_load": lambda z: 0 * z}, "somewhere > 0"),

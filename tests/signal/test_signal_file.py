@@ -148,7 +148,8 @@ def test_files_that_are_something_else(tmp_path):
             b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM" + b"\x89HDF",
             "but holds no HDF5: it is damaged",
         ),
-        ("a.csv", b"\xff\xfe\x00\x01", "is not text in UTF-8"),
+        ("a.csv", b"\x81\x00\x01", "is not text in UTF-8"),
+        ("w.csv", b"\xff\xfe\x00\x01", "no rows of numbers"),
     ):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ValueError, match=message):

@@ -107,8 +107,12 @@ def test_displacement_from_acceleration(n):
     found = gf.integrate(signal, 2, 10.0, "m")
     assert found.unit == "m"
     assert_allclose(found.values, sine(3e-6, 480.0, n, rate), atol=1e-15)
-    for arguments in ((0, 10.0), (2, 0.0), (2, 3000.0)):
-        with pytest.raises(ValueError, match="give times >= 1 and above between 0 and"):
+    for arguments, said in (
+        ((0, 10.0), "times = 0, but it is a whole number from 1 on"),
+        ((2, 0.0), "above = 0.0, but give a positive number of Hz"),
+        ((2, 3000.0), "above = 3000.0 Hz, but give one between 0 and"),
+    ):
+        with pytest.raises(ValueError, match=said):
             gf.integrate(signal, *arguments, "m")
 
 
@@ -123,6 +127,13 @@ def test_displacement_from_acceleration(n):
         ([1.0, 2.0], {"rate": None}, "case: rate = None"),
         ([1.0, 2.0], {"rate": "5120"}, "case: rate = '5120'"),
         ([1.0, 2.0], {"rate": math.inf}, "case: rate = inf"),
+        ([1.0, 2.0], {"rate": True}, "case: rate = True"),
+        ([1.0, 2.0], {"rate": 1e-320}, "case: rate = 1e-320"),
+        ([1.0, 2.0], {"rate": 10**400}, "case: rate = 10"),
+        ([1.0, 2.0], {"shaft_frequency": True}, "case: shaft_frequency = True"),
+        ([1e200, 2.0], {}, r"case: the largest value is 1e\+200, no quantity that is measured"),
+        ([1e-200, 0.0], {}, "case: the largest value is 1e-200"),
+        ([], {}, "case: values of shape"),
         ([1.0, 2.0], {"unit": " "}, "case: unit = ' ', but a signal needs one"),
         ([1.0, 2.0], {"shaft_frequency": -1.0}, "case: shaft_frequency = -1.0"),
         ([1.0, 2.0], {"shaft_frequency": 1.0, "angle": [0.0, 1.0]}, "both angle and shaft_frequency"),

@@ -38,9 +38,9 @@ def test_expected_lines_stay_above_zero_and_count_harmonics():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((0.0,), "f_m = 0.0 Hz, but give a positive number"),
-        ((280.0, -40.0), "f_fault = -40.0 Hz"),
-        ((280.0, 40.0, math.inf), "f_carrier = inf Hz"),
+        ((0.0,), "f_m = 0.0, but give a positive number of Hz"),
+        ((280.0, -40.0), "f_fault = -40.0, but"),
+        ((280.0, 40.0, math.inf), "f_carrier = inf, but"),
         ((280.0, 40.0, None, -1), "count = -1"),
     ],
 )

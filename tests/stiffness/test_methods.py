@@ -247,6 +247,32 @@ def test_teeth_are_counted_to_the_loaded_side_of_their_gear(steel, gear):
     assert weak.k[0] < healthy.k[0]
 
 
+class OnlyMatrix:
+    """What the documentation asks of an object: ``matrix(roll, teeth)`` and nothing else."""
+
+    def __init__(self, flexibility, change=lambda values: values):
+        self.flexibility, self.change = flexibility, change
+
+    def matrix(self, roll, teeth):
+        return self.change(self.flexibility.matrix(roll, teeth))
+
+
+def test_an_object_with_only_a_matrix(steel, solved):
+    want = curve_of(steel, gf.OwnFlexibility(*solved), phases=12, extended=False)
+    found = curve_of(steel, gf.OwnFlexibility(*map(OnlyMatrix, solved)), phases=12)
+    assert_allclose(found.k, want.k, rtol=1e-12)
+    assert found.meta["flexibility"] == ["OnlyMatrix", "OnlyMatrix"]
+    for change, message in (
+        (lambda values: values * (1 + 1j), "OnlyMatrix.matrix of z = 21.*complex128, but give a matrix of real numbers"),
+        (lambda values: values[..., 0], "but give .*displacement of contact i"),
+        (lambda values: values + np.triu(values + 1.0, 1), "not symmetric"),
+        (lambda values: values * np.nan, "not finite"),
+        (lambda values: [][0], "it failed with IndexError"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            curve_of(steel, gf.OwnFlexibility(OnlyMatrix(solved[0], change), solved[1]), phases=[0.2])
+
+
 def test_own_flexibility_in_compare():
     scene = gf.load_scene("planetary_pitting")
     models = {"energy": gf.OwnFlexibility("ritz"), "mine": gf.OwnFlexibility(sections)}
@@ -283,7 +309,12 @@ def test_what_is_no_flexibility(given, message):
         (lambda gear, material, radius, tooth: np.full((radius.size,) * 2, np.nan), "not finite"),
         (lambda gear, material, radius, tooth: np.diag(-1e-6 * radius), "not positive"),
         (lambda gear, material, radius, tooth: np.diag(radius) + np.triu(np.full((radius.size,) * 2, 0.1), 1), "not symmetric"),
-        (lambda gear, material, radius, tooth: "stiff", "but give a matrix of numbers"),
+        (lambda gear, material, radius, tooth: "stiff", "but give a matrix of real numbers"),
+        (lambda gear, material, radius, tooth: np.diag(radius) * (1 + 1j), "complex128, but give a matrix of real numbers"),
+        (lambda gear, material, radius, tooth: [[1.0], [1.0, 2.0]], "but give a matrix of numbers"),
+        (lambda gear, material, radius, tooth: {}["k"], "it failed with KeyError: 'k'"),
+        (lambda gear, material, radius, tooth: 1 // 0, "it failed with ZeroDivisionError"),
+        (lambda gear, material, radius: radius, "it failed with TypeError: .*positional"),
         (lambda gear, material, radius, tooth: textbook.components(gear, material, radius - gear.r_b), "gives Components"),
     ],
 )

@@ -157,8 +157,8 @@ def test_refused_files(tmp_path, text, message):
 def test_unreadable_files(tmp_path):
     with pytest.raises(ValueError, match=r"cannot read .*none.csv: No such file"):
         gf.read_model(tmp_path / "none.csv")
-    (tmp_path / "k.mat").write_bytes(b"MATLAB 5.0 \xff\xfe")
-    with pytest.raises(ValueError, match=r"k.mat is not text in UTF-8: export it as CSV"):
+    (tmp_path / "k.mat").write_bytes(b"MATLAB 5.0 \x00\x01IM\xff\xfe")
+    with pytest.raises(ValueError, match=r"k.mat is not text in UTF-8, UTF-16 or Windows-1252: export it as CSV"):
         gf.read_model(tmp_path / "k.mat")
 
 

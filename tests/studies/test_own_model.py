@@ -95,14 +95,17 @@ def test_functions_see_phases_of_one_cycle_and_radii_of_the_active_flank():
     [
         (lambda phase: 3e8, r"'mine' returned an array of shape \(\), but give \(50,\).*numpy.vectorize"),
         (lambda phase: np.full((50, 1), 3e8), r"shape \(50, 1\)"),
-        (lambda phase: 3e8 if phase < 0.6 else 2e8, "'mine' failed: .*ambiguous.*numpy.vectorize"),
-        (lambda: 3e8, "'mine' failed: .*positional argument"),
+        (lambda phase: 3e8 if phase < 0.6 else 2e8, "'mine' failed with ValueError: .*ambiguous.*numpy.vectorize"),
+        (lambda: 3e8, "'mine' failed with TypeError: .*positional argument"),
         (lambda phase: np.where(phase == 0.5, np.nan, 3e8), "returned k = nan N/m at phase 0.5, but"),
         (lambda phase: np.where(phase < 0.5, 3e8, -1.0), "returned k = -1 N/m at phase 0.5, but k must be finite and positive"),
+        (lambda phase: {}["k"], "'mine' failed with KeyError: 'k'"),
+        (lambda phase: phase.none, "'mine' failed with AttributeError: .*'none'"),
+        (lambda phase: 1 // 0, "'mine' failed with ZeroDivisionError"),
         (lambda phase: np.full(50, 3e8 + 1j), "complex128, but k is a real number"),
         (lambda phase: ["stiff"] * 50, "but k is a real number"),
         (gf.PairModel(lambda r, s: np.where(r > 22.9, np.inf, 2e8)), r"k = inf N/m at radius_1 = 22.9\d* mm, radius_2 = \d"),
-        (gf.PairModel(lambda radius: radius), "failed: .*positional argument"),
+        (gf.PairModel(lambda radius: radius), "failed with TypeError: .*positional argument"),
     ],
 )
 def test_refused_functions(function, message):

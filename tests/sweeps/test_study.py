@@ -101,6 +101,8 @@ def test_blocks_hold_every_case_once_and_keep_groups_together():
     assert [len(one.numbers) for one in alone] == [2, 2, 3]
 
 
+CORRELATED = {"count": 4, "of": {key: {"uniform": [0, 1]} for key in ("gear.sun.x", "gear.planet.x")}}
+AGAIN = {"between": ["gear.sun.x", "gear.planet.x"], "value": 0.5}
 REFUSED = {
     "no such pair": {"pair": "sun_moon"},
     "no such case": {"case": "broken"},
@@ -123,6 +125,19 @@ REFUSED = {
     "must rise": {"sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [1, 0]}}}},
     "standard deviation is > 0": {"sample": {"count": 4, "of": {"gear.sun.x": {"normal": [1, 0]}}}},
     "block = 0": {"block": 0},
+    "seed = -1": {"seed": -1},
+    "leaves nothing of uniform": {
+        "sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [1000, 2000], "within": [5000, 6000]}}}
+    },
+    "give .low, high. with low < high": {"sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "within": 3}}}},
+    "within is of a distribution": {"sample": {"count": 4, "of": {"gear.sun.x": {"choice": [0, 1], "within": [0, 1]}}}},
+    "also = 5: expected a list of texts": {"sample": {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "also": 5}}}},
+    "also = 'x': expected": {"vary": {"gear.sun.x": {"from": 0, "to": 1, "count": 3, "also": "x"}}},
+    "correlated twice": {"sample": CORRELATED | {"correlated": [AGAIN, AGAIN | {"between": AGAIN["between"][::-1]}]}},
+    "two different keys": {"sample": CORRELATED | {"correlated": [AGAIN | {"between": ["gear.sun.x", "gear.sun.x"]}]}},
+    "at most 1e.07": {"sample": {"count": 10**9, "of": {"gear.sun.x": {"uniform": [0, 1]}}}},
+    "cases, but a study has at most": {"sample": CORRELATED | {"count": 10**7}, "vary": {"gear.sun.b_mm": [19.0, 20.0]}},
+    "is no value of a scene": {"vary": {"gear.sun.x": [0.1, float("nan")]}},
 }
 
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.pit import centre_arc, check_pits, crossing, intervals, lost_width, pit_row, rolls, union_length
+from geometry.damage.pit import centre_arc, check_pits, crossing, intervals, lost_width, pit_row, rolls, takes_all, union_length
 from geometry.tooth.profile import arc_at
 
 GEAR = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
@@ -98,6 +98,8 @@ def test_crossing_of_upright_lines_is_the_lost_width(lean):
         ({"axes": (1.0,)}, "two semi-axes"),
         ({"axes": 1.0}, "two semi-axes"),
         ({"axes": (1.0, -1.0)}, "positive"),
+        ({"axes": (1e200, 1.0)}, r"axes = \(1e\+200, 1.0\) mm, but a semi-axis lies between 1e-50 and 1e\+50 mm"),
+        ({"axes": (1.0, 1e-200)}, "a semi-axis lies between"),
         ({"angle": 30.0}, "radians"),
         ({"tooth": 0.5}, "whole number"),
         ({"side": "left"}, "'loaded' or 'unloaded'"),
@@ -127,3 +129,12 @@ def test_pits_beside_the_flank_are_refused(numbers, message):
 def test_something_else_is_no_pit():
     with pytest.raises(ValueError, match="is not a Pit"):
         check_pits(GEAR, [gf.Crack(level=0.3)])
+
+
+def test_a_pit_larger_than_its_flank_takes_all_of_it():
+    for axes, turned, all_of_it in (((10.0, 30.0), 0.0, True), ((30.0, 10.0), 0.0, False), ((30.0, 10.0), math.pi / 2, True),
+                                    ((2.0, 30.0), 0.0, False), ((1e40, 1e40), 0.3, True)):  # fmt: skip
+        pit = gf.Pit(**GOOD | {"axes": axes, "angle": turned})
+        assert takes_all(GEAR, pit) == all_of_it
+        left = GEAR.b - lost_width(GEAR, [pit], np.linspace(*sorted(arc_at(GEAR, np.array([GEAR.roll_f, GEAR.roll_a]))), 9))
+        assert (left.max() < 1e-9) == all_of_it

@@ -1,0 +1,80 @@
+"""What functions of signals are given, checked at the border: rows of samples, frequencies, whole numbers."""
+
+import math
+from numbers import Integral
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+SMALLEST, LARGEST = 1e-30, 1e30  # of what is measured, in any unit: eighth powers of it stay numbers
+HERTZ = (1e-12, 1e15)  # frequencies that clocks have
+
+
+def _real(value: Any) -> bool:
+    """Whether it is a real number: no text, no truth value."""
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def samples(name: str, values: Any) -> NDArray[np.float64]:
+    """A row of real, finite numbers, copied.
+
+    Raises
+    ------
+    ValueError
+        If it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
+    """
+    try:
+        values = np.array(values)
+    except ValueError as error:  # rows of different lengths
+        raise ValueError(f"{name}: give a row of real numbers ({error})") from error
+    if values.ndim != 1 or values.size < 2 or values.dtype.kind not in "fiu":
+        raise ValueError(
+            f"{name}: values of shape {values.shape} and type {values.dtype}, but give a row of two or more real numbers"
+        )
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise ValueError(f"{name}: sample {bad[0]} is {values[bad[0]]}; cut or mend the {bad.size} samples that are not finite")
+    values = values.astype(float)
+    most = float(np.abs(values).max())
+    if most >= LARGEST or 0 < most < SMALLEST:
+        raise ValueError(f"{name}: the largest value is {most:g}, no quantity that is measured: scale it to its unit")
+    return values
+
+
+def hertz(name: str, value: Any) -> None:
+    """Raise ValueError unless it is a frequency: a positive number of Hz, of those that clocks have."""
+    if not (_real(value) and HERTZ[0] <= value <= HERTZ[1]):
+        raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """A whole number from `least` on.
+
+    Raises
+    ------
+    ValueError
+        If it is another kind of number, ``24.0``, or smaller.
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
+        close = _real(value) and math.isfinite(value) and value == int(value) and value >= least
+        told = f": give {name} = {int(value)}" if close else f" from {least} on"
+        raise ValueError(f"{name} = {value!r}, but it is a whole number{told}")
+    return int(value)
+
+
+def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
+    """The ends (low, high) [Hz] of a band within half the rate; of all of it if None.
+
+    Raises
+    ------
+    ValueError
+        If they are no two numbers, or not ``0 <= low < high <= rate / 2``.
+    """
+    if band is None:
+        return 0.0, rate / 2
+    two = band if isinstance(band, (tuple, list, np.ndarray)) else ()
+    fine = len(two) == 2 and all(map(_real, two))
+    if not fine or not 0 <= two[0] < two[1] <= rate / 2 * (1 + 1e-12):
+        raise ValueError(f"band = {band!r} Hz, but {name} has 0 to {rate / 2:g} Hz: give (low, high) with low < high inside")
+    return float(two[0]), float(two[1])

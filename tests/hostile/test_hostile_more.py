@@ -1,0 +1,163 @@
+"""More hostile inputs: scenes and studies of wrong kinds, models of the user's own, averages, folders and options of verbs."""
+
+import math
+
+import numpy as np
+import pytest
+from judge import CLEAR, judged, judged_command, tally
+
+import gearfe as gf
+from gearfe.scene.load import read_tables, scene_of
+from gearfe.sweeps.study import read_study
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)
+PAIR = gf.GearPair(GEAR, gf.Gear(z=31, r_bore=11.4, **RACK))
+STEEL = gf.Material(E=207e3, nu=0.3)
+KINDS = [3, 10**400, math.nan, True, "x", [], [1], [[]], [{"gear": "sun"}], {"x": 1}, {"x": [1]}, {"x": {"x": {}}}]
+
+
+def test_scenes_of_wrong_kinds():
+    _, whole = read_tables("planetary_pitting")
+    tables = (
+        "material",
+        "gear",
+        "pair",
+        "flank",
+        "support",
+        "shaft",
+        "crack",
+        "pits",
+        "machine",
+        "given",
+        "assumption",
+        "reference",
+    )
+    found = {}
+    for name in tables:
+        for k, value in enumerate(KINDS):
+            if value == [] and name in ("crack", "pits", "assumption", "reference"):
+                continue  # none of them
+            found[f"{name} #{k}"] = judged(lambda n=name, v=value: scene_of("own.toml", whole | {n: v}), ["own.toml"])
+    for key, value in (("speed_rpm", 0), ("speed_rpm", -1000), ("torque_Nm", -1.0), ("torque_Nm", 1e25), ("n_planets", 10**9)):
+        machine = whole["machine"] | {key: value}
+        found[f"machine {key} = {value}"] = judged(lambda m=machine: scene_of("own.toml", whole | {"machine": m}), [key])
+    counts, wrong = tally(found)
+    assert len(found) >= 140
+    assert counts == {CLEAR: len(found)}, wrong
+
+
+def test_studies_that_cannot_be():
+    base = {"scene": "planetary_pitting"}
+    one = {"gear.sun.x": {"uniform": [0, 1]}, "gear.planet.x": {"uniform": [0, 1]}}
+    both = {"between": ["gear.sun.x", "gear.planet.x"], "value": 0.5}
+    samples = [
+        {"count": 4, "of": {"gear.sun.x": {"uniform": [1000, 2000], "within": [5000, 6000]}}},
+        {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 1], "also": 5}}},
+        {"count": 4, "of": {"gear.sun.x": {"uniform": [0, 10**400]}}},
+        {"count": 4, "of": {"gear.sun.x": {"lognormal": [1.0, 1e9]}}},
+        {"count": 4, "of": one, "correlated": [both, both]},
+        {"count": 4, "of": one, "correlated": [both | {"between": ["gear.sun.x", "gear.sun.x"]}]},
+        {"count": 10**12, "of": one},
+    ]
+    vary = [{"gear.sun.x": value} for value in (3, [], [math.nan], [[{}]], {"from": 0, "to": 1, "count": 10**12}, {"also": 5})]
+    found = {f"sample {k}": judged(lambda s=s: read_study(base | {"sample": s}), ["sample"]) for k, s in enumerate(samples)}
+    found |= {f"vary {k}": judged(lambda v=v: read_study(base | {"vary": v}), ["gear.sun.x", "vary"]) for k, v in enumerate(vary)}
+    counts, wrong = tally(found)
+    assert counts == {CLEAR: len(found)}, wrong
+
+
+class Own:
+    """An object of the user's with a matrix of whatever kind."""
+
+    def __init__(self, give):
+        self.matrix = give
+
+
+GIVEN = [
+    lambda *_: None,
+    lambda *_: "stiff",
+    lambda *_: [][0],
+    lambda *_: {}["k"],
+    lambda *_: 1 // 0,
+    lambda *_: np.full((4, 4), 1j),
+    lambda *_: np.full((4, 4), math.nan),
+    lambda *_: [[1.0], [1.0, 2.0]],
+    lambda: 1.0,
+]
+
+
+def test_models_of_ones_own():
+    run = {"pair": PAIR, "force": 2000.0, "material": STEEL, "phases": [0.2]}
+    found = {}
+    for k, give in enumerate(GIVEN):
+        for kind, own in (("function", give), ("object", Own(give))):
+            method = gf.OwnFlexibility(own, name="mine")
+            found[f"{kind} {k}"] = judged(lambda m=method: gf.mesh_stiffness(**run, method=m), ["z = 21"])
+    counts, wrong = tally(found)
+    assert counts == {CLEAR: len(found)}, wrong
+
+
+def test_loads_pits_and_signals():
+    turn = np.cos(24 * np.linspace(0, 2 * math.pi, 512, endpoint=False))
+    rows = [[], [[]], turn.reshape(2, -1), 1e200 * turn, 1j * turn, "abc", None, 3.0, np.where(turn > 0.999, math.nan, turn)]
+    found = {f"average {k}": judged(lambda r=row: gf.gear_indicators(r, 24), ["average"]) for k, row in enumerate(rows)}
+    found |= {f"teeth {z!r}": judged(lambda z=z: gf.gear_indicators(turn, z), ["teeth"]) for z in (24.0, True, "24", None, -3)}
+    for rate in (True, None, "1", 1e-320, 10**400, math.nan, [1.0]):
+        found[f"rate {str(rate)[:9]}"] = judged(lambda r=rate: gf.Signal(turn, r, "g"), ["rate"])
+    for load in (1e30, 1e300, 3e4, True):
+        for work in (gf.root_stress, gf.root_stress_along_width):
+            found[f"{work.__name__} {load}"] = judged(lambda w=work, p=load: w(GEAR, 20.8, p, STEEL), ["line_load"])
+    for axes in ((50.0, 500.0), (1e30, 1e30), (1e200, 1.0), (1e-200, 1.0)):
+        found[f"pit {axes}"] = judged(
+            lambda a=axes: gf.mesh_stiffness(
+                PAIR, 2000.0, STEEL, method="ritz3d", refine=0.4, phases=[0.5], damage={"pinion": [gf.Pit(20.8, 10.0, a, 0.2)]}
+            ),
+            ["whole flank", "axes"],
+        )
+    counts, wrong = tally(found)
+    assert counts == {CLEAR: len(found)}, wrong
+
+
+def commands():
+    scene = "planetary_pitting"
+    for value in ("-1", "nan", "inf", "x", ""):
+        yield ["report", scene, "-o", "x.html", "--duration", value], ["duration"]
+    for value in ("", "x", "2.5", "0", "-3"):
+        yield ["mesh", scene, "-o", "x.msh", "--teeth", value], ["teeth"]
+    for options in (["-o", ""], ["-o", "x", "--scheduler", ""], ["-o", "x", "--workers", "0"], []):
+        yield ["sweep", "s.toml", *options], ["folder", "scheduler", "workers", "required"]
+    for verb in ("sweep", "dataset"):
+        yield [verb, "none.toml", "-o", "x"], ["no study", "none.toml"]
+        yield [verb, "b.toml", "-o", "x"], ["not readable as TOML"]
+    for value in ("", "x", "none/x.toml", "s.toml"):
+        yield ["new", value], ["toml", "cannot write"]
+    for option in ("--mesh", "--fault", "--carrier", "--shaft", "--rate", "--scale"):
+        for value in ("nan", "inf", "0", "x", ""):
+            yield ["signal", "a.csv", "--column", "a", "--mesh", "40", option, value], [option[2:], "shaft_frequency", "Hz"]
+    for option in ("--teeth", "--pulses"):
+        for value in ("0", "-1", "2.5", "x"):
+            yield ["signal", "a.csv", "--column", "a", "--shaft", "1", option, value], [option[2:]]
+    for option in ("--case", "--pair", "--force", "--method", "--phases", "--refine"):
+        yield ["stiffness", scene, f"{option}=--"], ["expected one argument", "invalid"]
+
+
+def test_more_command_lines(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.toml").write_text('scene = "planetary_pitting"\n[vary]\n"gear.sun.r_bore_mm" = [7.0, 7.4]\n')
+    (tmp_path / "b.toml").write_bytes(bytes(range(256)))
+    (tmp_path / "a.csv").write_text("time [s],a [g]\n" + "".join(f"{i / 100},{(7919 * i) % 101}\n" for i in range(400)))
+    before = sorted(path.name for path in tmp_path.iterdir())
+    found = {" ".join(map(repr, line)): judged_command(line, words) for line, words in commands()}
+    counts, wrong = tally(found)
+    assert len(found) >= 60
+    assert counts == {CLEAR: len(found)}, wrong
+    assert sorted(path.name for path in tmp_path.iterdir()) == before
+
+
+@pytest.mark.parametrize("name", ["x\x1b[31m", "x\x9b2J", "x\u202e"])
+def test_names_that_steer_a_terminal(name, tmp_path, capsys):
+    from gearfe.cli import main
+
+    assert main(["signal", str(tmp_path / f"{name}.csv")]) == 1
+    assert name not in capsys.readouterr().err

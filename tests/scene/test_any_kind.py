@@ -1,0 +1,211 @@
+"""Every table and key of a scene given as something else: a scene, or a ValueError that names the file, nothing else."""
+
+import copy
+import datetime
+import math
+import tomllib
+import warnings
+
+import pytest
+
+import gearfe as gf
+from gearfe.scene.load import ASSUMPTION, DAMAGE, TABLES, TOP, scene_of
+from gearfe.scene.machine_table import BODIES, BODY, IMPACT, MACHINE
+from gearfe.scene.references import REFERENCE, ROW
+from gearfe.scene.strict import shown
+
+RACK = {"m_n_mm": 2.0, "alpha_n_deg": 20.0, "b_mm": 20.0, "material": "steel", "beta_deg": 0.0, "x": 0.0, "z_cutter": 20}
+RACK |= {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.2}
+RELIEF = {"relief_um": 5.0, "start_roll_mm": 8.0, "exponent": 1.0}
+WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
+    "title": "whole",
+    "source": "own",
+    "later": ["nothing"],
+    "material": {"steel": {"E_MPa": 2.06e5, "nu": 0.3}},
+    "gear": {
+        "sun": {"z": 21, "r_bore_mm": 7.4, **RACK},
+        "ring": {"z": 84, "r_rim_mm": 95.0, **RACK, "addendum": 0.86, "x": -0.4617},
+    },
+    "pair": {
+        "stage": {
+            "gear_1": "sun", "gear_2": "ring", "force_N": 2000.0, "a_mm": 62.0, "face": "spur", "groove_mm": 0.0,
+            "F_beta_um": 5.0, "f_sigma_beta_um": 0.0, "f_sigma_delta_um": 0.0, "bearing_span_mm": 60.0,
+        }
+    },
+    "flank": {
+        "relieved": {
+            "gear": "sun", "pair": "stage", **{f"tip_{key}": value for key, value in (RELIEF | {"start_roll_mm": 11.0}).items()},
+            "root_relief_um": 0.0, "root_exponent": 1.0, "crowning_um": 3.0, "lead_crowning_um": 3.0, "lead_slope_um": 0.0,
+            "twist_um": 0.0, "end_relief_um": [5.0, 5.0], "end_length_mm": [2.0, 2.0], "end_exponent": 2.0, "slope_um": 0.0,
+            "table_roll_mm": [0.0, 12.0], "table_removed_um": [0.0, 2.0], "pitch_um": [0.0, 1.0] * 10 + [0.0],
+            "wear_roll_mm": [0.0, 12.0], "wear_um": [0.0, 2.0], "tip_rounding_mm": 0.0, "tip_chamfer_mm": 0.0,
+            "tooth_scale": [1.0, 1.1] * 10 + [1.0],
+            "eccentricity_um": 0.0, "eccentric_tooth": 0.0,
+        }
+    },
+    "support": {
+        "soft": {
+            "gear": "ring", "pair": "stage", "radial_N_per_um": 500.0, "tilt_Nm_per_mrad": 50.0, "torsion_Nm_per_mrad": 50.0,
+            "axial_N_per_um": 100.0, "coupling_urad_per_kN": 0.0,
+        }
+    },
+    "shaft": {
+        "thin": {
+            "gear": "sun", "pair": "stage", "material": "steel", "lengths_mm": [40.0, 40.0], "diameters_mm": [12.0, 12.0],
+            "bores_mm": [0.0, 2.0], "bearings_at_mm": [0.0, 80.0], "gear_at_mm": 30.0, "torque_at_mm": 80.0,
+            "bearings_N_per_um": [200.0, 200.0], "integral": False,
+        }
+    },
+    "crack": [
+        {
+            "case": "cracked", "gear": "sun", "level": 0.3, "angle_deg": 45.0, "start": "30deg", "turning": False, "tooth": 0,
+            "pair": "stage", "width_mm": [0.0, 10.0], "ends": [1.0, 1.0], "rounded": False,
+        }
+    ],
+    "pits": [
+        {
+            "case": "pitted", "gear": "sun", "radius_mm": 20.8, "count": 2, "first_mm": 5.0, "last_mm": 15.0,
+            "axes_mm": [1.0, 2.0], "depth_mm": 0.2, "angle_deg": 0.0, "tooth": 0, "pair": "stage",
+        }
+    ],
+    "machine": {
+        "model": "herringbone_planetary", "speed_rpm": 1000.0, "torque_Nm": 100.0, "n_planets": 3, "contact": "linear",
+        "backlash_um": 100.0, "profile_error_um": 0.0, "runout_um": 0.0, "misplaced_um": 0.0, "misplaced_y_um": 0.0,
+        "impact": {
+            "damping_Ns_per_mm": 1.0, "depth_mm": 0.1, "friction": [0.2, 0.1], "friction_speeds_mm_per_s": [0.1, 10.0],
+            "pulse_Nm": 0.0, "pulse_period_s": 0.5, "pulse_width_s": 0.05,
+        },
+        "bodies": {name: {"mass_kg": 1.0, "inertia_kgm2": 1e-3} for name in BODIES},
+    },
+    "given": {"gear.sun.z": 21},
+    "assumption": [{"what": "width", "why": "none given", "depends": "k", "holds": {"gear.sun.b_mm": 20.0}}],
+    "reference": [
+        {
+            "id": "k", "kind": "model", "quantity": "stiffness", "unit": "N/m", "source": "own", "relative": 0.1,
+            "tolerance": "own", "trend": False, "note": "", "reason": "", "correction": "",
+            "rows": [{"case": "healthy", "kind": "model", "pair": "stage", "printed": 3e8, "corrected": 3e8, "correction": "unit",
+                      "reason": ""}],
+        }
+    ],
+}  # fmt: skip
+ELSE = [
+    3, -1, 0, 10**9, 10**5000, -(10**30), 1e300, math.nan, -math.inf, True, "", "21", "sun", [], [1], [[]], ["x"], [True, False],
+    [1e300, 10**400], [math.nan, 1.0], {}, [{}], {"x": 1}, {"x": {}}, [{"x": [1]}], datetime.date(1979, 5, 27),
+]  # fmt: skip
+
+
+def places(value, path=()):
+    """Paths to every table, list and value of a scene, from the outside in."""
+    if path:
+        yield path
+    if isinstance(value, dict):
+        for key, one in value.items():
+            yield from places(one, (*path, key))
+    if isinstance(value, list):
+        for i, one in enumerate(value[:2]):
+            yield from places(one, (*path, i))
+
+
+def replaced(path, value):
+    """The whole scene with another value at a place."""
+    out = copy.deepcopy(WHOLE_SCENE)
+    home = out
+    for part in path[:-1]:
+        home = home[part]
+    home[path[-1]] = copy.deepcopy(value)
+    return out
+
+
+def vocabulary():
+    """Every key of every table, and those that exclude another one of the whole scene."""
+    tables = [TOP, *TABLES.values(), *DAMAGE.values(), MACHINE, IMPACT, BODY, ASSUMPTION, REFERENCE, ROW]
+    return {key for table in tables for key in table} | {*TABLES, *DAMAGE, "machine", "impact", "bodies", "given", "assumption"}
+
+
+def test_the_whole_scene_has_every_key():
+    """Those left out exclude another, and stand in `ALSO`."""
+    scene = scene_of("whole.toml", copy.deepcopy(WHOLE_SCENE))
+    assert set(scene.pair().damage) == {"cracked", "pitted"}
+    keys = {part for path in places(WHOLE_SCENE) for part in path if isinstance(part, str)}
+    assert vocabulary() - keys == {path[-1] for path, _ in ALSO}
+
+
+START = ("flank", "relieved")
+ALSO = [  # keys that exclude one of the whole scene, with what goes for them
+    *[((*START, f"{end}_start_{how}"), (*START, f"{end}_start_roll_mm")) for end in ("tip", "root")
+      for how in ("diameter_mm", "angle_deg")],
+    ((*START, "root_start_roll_mm"), ()),
+    (("crack", 0, "length_mm"), ("crack", 0, "level")),
+    (("reference", 0, "absolute"), ("reference", 0, "relative")),
+    (("reference", 0, "rows", 0, "claim"), ("reference", 0, "rows", 0, "printed")),
+]  # fmt: skip
+
+
+def without(tables, path):
+    home = tables
+    for part in path[:-1]:
+        home = home[part]
+    if path:
+        home.pop(path[-1], None)
+    return tables
+
+
+def attempts():
+    for path in places(WHOLE_SCENE):
+        for value in ELSE:
+            yield path, value, replaced(path, value)
+    for path, instead in ALSO:
+        for value in ELSE:
+            yield path, value, without(replaced(path, value), instead)
+            yield path, value, replaced(path, value)
+
+
+WORDS = [  # of a scene file, what is said of it
+    ("[[flank]]\ngear = 'sun'", r"\[\[flank\]\] is a list of tables, but they have names: write \[flank.NAME\]"),
+    ("[[support]]\ngear = 'sun'", r"write \[support.NAME\]"),
+    ("[[gear]]\nz = 21", r"write \[gear.NAME\]"),
+    ("flank = 3", r"flank = 3, but give tables with names: \[flank.NAME\]"),
+    ("flank.x = 3", r"\[flank.x\]: expected a table of keys and values, got 3"),
+    ("[crack]\ncase = 'x'", r"\[crack\] is one table, but there may be several: write \[\[crack\]\]"),
+    ("pits = 3", r"pits = 3, but give a list of tables: \[\[pits\]\]"),
+    ("[reference]\nid = 'x'", r"write \[\[reference\]\]"),
+    ("assumption = 'steel'", r"assumption = 'steel', but give a list of tables"),
+    ("[machine]\nmodel = 'planetary'\nspeed_rpm = 0\ntorque_Nm = 3", r"speed_rpm = 0, but give a number from 0.001 to 1e\+06"),
+    ("[machine]\nmodel = 'x'\nspeed_rpm = 1\ntorque_Nm = 3\nbodies = []", r"\[machine.bodies\]: \[\], but give a table for each"),
+]
+
+
+@pytest.mark.parametrize(("text", "message"), WORDS, ids=[text[:20] for text, _ in WORDS])
+def test_what_is_said_of_a_wrong_table(text, message):
+    with pytest.raises(ValueError, match=f"own.toml.*{message}"):
+        scene_of("own.toml", copy.deepcopy(WHOLE_SCENE) | tomllib.loads(text))
+
+
+@pytest.mark.parametrize("text", [f"a = {'9' * 5000}", f"a = {'[' * 5000}", 'a = "\\ud800"', 'a = "\x00"'])
+def test_what_no_parser_reads(tmp_path, text):
+    """More digits than Python reads, lists in lists, half a character."""
+    path = tmp_path / "own.toml"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=r"own.toml: not readable as TOML"):
+        gf.load_scene(path)
+
+
+def test_any_place_of_a_scene_given_as_anything():
+    wrong, told = [], {"a scene": 0, "refused": 0}
+    for path, value, tables in attempts():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)
+            warnings.simplefilter("error", RuntimeWarning)
+            try:
+                scene_of("whole.toml", tables)
+            except ValueError as error:
+                told["refused"] += 1
+                if not str(error).startswith("whole.toml") or "\n" in str(error):
+                    wrong.append(f"{'.'.join(map(str, path))} = {shown(value)}: {error}")
+            except Exception as error:
+                wrong.append(f"{'.'.join(map(str, path))} = {shown(value)}: {type(error).__name__}: {error}")
+            else:
+                told["a scene"] += 1
+    print(told)
+    assert min(told.values()) > 100, told
+    assert not wrong, f"{len(wrong)}:\n" + "\n".join(wrong)
