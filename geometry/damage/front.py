@@ -121,8 +121,8 @@ class Front:
     def crossings(self, part):
         """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
-        over = self._over(z, part) > 0
-        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(over[1:] != over[:-1])]
+        over, near = self._over(z, part) > 0, 1e-12 * self.width
+        return [brentq(self._over, z[k], z[k + 1], args=(part,), xtol=near) for k in np.flatnonzero(over[1:] != over[:-1])]
 
     def _over(self, z, part):
         return front(self.crack, self.width, z)[0] - part * deepest(self.crack)
