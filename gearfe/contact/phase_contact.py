@@ -63,8 +63,8 @@ class Batch(NamedTuple):
 class PhaseContact:
     """The contact lines of a pair, with pits, under a force.
 
-    Cells are those of the next larger force of a row (`ROW`), so that they do not change from one force to one almost alike, which
-    would show in the difference of their approaches.
+    Cells are those of the next larger force of a row (`ROW`), so that they do not change from one force to one almost alike:
+    that would show in the difference of their approaches.
 
     Parameters
     ----------

@@ -50,8 +50,12 @@ def whole(crack):
             f"turning crack of level {crack.level} over parts {crack.ends} of its length: only straight cracks change their "
             "depth along the width; give turning = False, or ends = (1, 1)"
         )
-    size = {"length": part * crack.length} if crack.level is None else {"level": part * crack.level}
-    return even if part == 1 else replace(even, **size)
+    return even if part == 1 else shallower(even, part)
+
+
+def shallower(crack, part):
+    """The crack with a `part` of its length."""
+    return replace(crack, **({"length": part * crack.length} if crack.level is None else {"level": part * crack.level}))
 
 
 def bends(crack):

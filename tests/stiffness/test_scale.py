@@ -1,4 +1,4 @@
-"""Nothing in geometry, meshes and cells knows a millimetre: gears s times as large are s times as stiff under s**2 times the load."""
+"""Meshes and cells know no millimetre: gears s times as large are s times as stiff under s**2 times the load."""
 
 import math
 from dataclasses import replace
@@ -129,7 +129,7 @@ def test_a_wide_pair_of_another_size_is_alike(name):
 @pytest.mark.slow
 @pytest.mark.parametrize(("beta", "cracked"), [(12.0, False), (0.0, True)])
 def test_hexahedra_of_another_size_are_alike(beta, cracked):
-    """What loads along the width do to each other on a helical gear, and on one with a crack that slopes over half of its width."""
+    """What loads along the width do to each other on a helical gear, and on one with a sloping crack in half of its width."""
 
     def influences(s):
         small = gear(s, 9, b=2.0, beta=beta, x=0.5)
