@@ -48,7 +48,7 @@ class SharedLines:
     def __init__(self, systems, kernel, modulus):
         self.joined, self._factors = JoinedLines(systems, kernel, modulus), [None] * len(systems)
 
-    def solve(self, load, local=None, which=None, start=None):
+    def solve(self, load, local=None):
         """Share loads.
 
         Parameters
@@ -58,15 +58,10 @@ class SharedLines:
         local : callable, optional
             From line loads ``(n,)`` [N/mm] of the cells of all problems to what each one's ``ln(2 / a) + 1/2`` is more than
             Hertz's ``(n,)``.
-        which : sequence of int, optional
-            The problems to solve; default: all.
-        start : list of Shared, optional
-            What other loads of the same problems came to, for the strips and active sets to start from.
 
         Returns
         -------
         list of Shared
-            None for problems that were not asked for.
 
         Raises
         ------
@@ -74,11 +69,10 @@ class SharedLines:
             If the load sharing does not settle, or the flexibility is not positive definite.
         """
         one = self.joined
-        which = list(range(len(one.systems)) if which is None else which)
         load = np.asarray(load, dtype=float)
-        forces, actives = self._started(load, start)
-        mean, x, open_ = one.smoother(load), None, list(which)
-        approaches, changes, slow = np.zeros(load.size), np.full(load.size, np.inf), np.full(load.size, start is None)
+        forces, actives = self._started(load)
+        mean, x, open_ = one.smoother(load), None, list(range(load.size))
+        approaches, changes, slow = np.zeros(load.size), np.full(load.size, np.inf), np.full(load.size, True)
         for attempt in range(MOST):
             if attempt < WIDTHS:
                 wide = one.wide(one.along(mean, forces, load), local)
@@ -101,26 +95,18 @@ class SharedLines:
                         actives[p][:n] = True
             open_ = still
             if not open_:
-                tangents, found = self._tangents(which, forces, load, x, local), [None] * load.size
-                for p in which:
-                    found[p] = Shared(forces[p], float(approaches[p]), tangents[p])
-                return found
+                tangents = self._tangents(forces, load, x, local)
+                return [Shared(*own) for own in zip(forces, approaches.tolist(), tangents, strict=True)]
         raise RuntimeError(f"load sharing along the contact lines did not settle at {load[open_[0]]:g} N")
 
-    def _started(self, load, start):
-        """First forces of each problem and what of it pushes: evenly all cells, or as in `start`."""
-        one, forces, actives = self.joined, [], []
+    def _started(self, load):
+        """First forces of each problem and what of it pushes: evenly all cells."""
+        one, forces = self.joined, []
         length = np.bincount(one.problem, one.width)
-        for p, system in enumerate(one.systems):
-            before = None if start is None else start[p]
-            if before is None:
-                even = load[p] * one.width[one.slices[p]] / length[p]
-                forces.append(np.append(even, np.zeros(one.gaps[p].size - even.size)))
-                actives.append(one.weights[p] > 0)
-            else:
-                forces.append(before.force * load[p] / before.force[: system.gap.size].sum())
-                actives.append(before.force > 0)
-        return forces, actives
+        for p, gap in enumerate(one.gaps):
+            even = load[p] * one.width[one.slices[p]] / length[p]
+            forces.append(np.append(even, np.zeros(gap.size - even.size)))
+        return forces, [weight > 0 for weight in one.weights]
 
     def _step(self, p, load, active, before, free):
         """Forces and approach of a problem, and which of its cells and faces should push; `before`: the last step's forces."""
@@ -163,7 +149,7 @@ class SharedLines:
             raise RuntimeError("bodies too coarse: some load on the contact lines would gain energy; raise refine")
         return at, factor, dpotrs(factor, self.joined.weights[p][at])[0]
 
-    def _tangents(self, which, forces, load, x, local):
+    def _tangents(self, forces, load, x, local):
         """Stiffness of each problem to a little more load, its active set kept [N/mm].
 
         With T the flexibility of what pushes, and the strips' distances x following forces and load, the forces P of a further
@@ -184,12 +170,12 @@ class SharedLines:
         jacobian = one.flat.copy()
         jacobian[one.places(slope.row, slope.col)] += slope.data
         by_load = change @ (further - along) / SLOPE / load[one.problem]
-        out = {}
-        for p in which:
+        out = []
+        for p in range(load.size):
             n, at = one.sizes[p], np.flatnonzero(forces[p] > 0)
             whole = jacobian[one.base[p] : one.base[p] + n * n].reshape(n, n)
             moved = np.append(by_load[one.slices[p]], np.zeros(n - one.systems[p].gap.size))[at]
             weight = one.weights[p][at]
             ones, moved = np.linalg.solve(whole[np.ix_(at, at)], np.array([weight, moved]).T).T
-            out[p] = float(weight @ ones / (1 + weight @ moved))
+            out.append(float(weight @ ones / (1 + weight @ moved)))
         return out

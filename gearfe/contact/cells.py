@@ -14,7 +14,7 @@ from geometry.pair.modified import first_touch
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
-BEYOND = 8  # cells at least on the part of a line that is beyond the path of contact: gaps open there
+BEYOND = 12  # cells at least on the part of a line that is beyond the path of contact: gaps open there
 
 
 @dataclass(frozen=True, slots=True)

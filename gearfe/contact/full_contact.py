@@ -112,7 +112,7 @@ def _zone(pair, found, k, line_load, modulus, per_width, reach, flanks):
     """Arcs of the hat tops on both flanks [mm] and their gaps [mm], pinion arc rising."""
     roll_1, roll_2 = found.roll_1[0, k], found.roll_2[0, k]
     a = float(half_width(line_load, pair.relative_radius(roll_1, roll_2), modulus))
-    driver = abs(roll_2 - pair.gear_2.roll_a) > 1e-9
+    driver = abs(roll_2 - pair.gear_2.roll_a) > 1e-9 * pair.gear_2.m_n
     gear, roll = (pair.gear_1, roll_1) if driver else (pair.gear_2, roll_2)
     middle, top = arc_at(gear, roll), arc_at(gear, gear.roll_a)
     arc = middle + a / per_width * np.arange(-round(2 * reach * per_width), round(reach * per_width) + 1)

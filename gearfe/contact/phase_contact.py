@@ -22,10 +22,11 @@ from .kink_law import KinkLaw
 from .pieces import beyond, gaps, pieces_of
 
 FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
-ALIKE = 1e-9  # difference of the cells of two halves that are solved once [mm]
+ALIKE = 1e-9  # difference of the cells of two halves that are solved once, in base pitches
 DEEPEST = 0.01  # modules: the floor of a pit that covers a whole line is looked for so deep
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
-REACH = 1.3  # search radius for gaps, in the approach found where the first guess was too small
+ROW = math.sqrt(2)  # of forces whose cells others have, each over the next smaller one
+REACH = 1.3  # of search radii for gaps, each over the one before, where the first is too small
 TOGETHER = 16  # phases that are solved at once
 
 
@@ -45,7 +46,7 @@ class Carried(NamedTuple):
 
 
 class Batch(NamedTuple):
-    """Cells of some phases made ready for any force.
+    """Cells of some phases made ready for the force.
 
     `cells` of each phase; `solved` the part of them that is solved for (of halves that are alike one), `alike` whether that is a
     half; `lines` their contact problems; `all` their cells joined; `yields` what hubs give way, `hubs.given_way`, or None.
@@ -60,15 +61,15 @@ class Batch(NamedTuple):
 
 
 class PhaseContact:
-    """The contact lines of a pair, with pits, under forces.
+    """The contact lines of a pair, with pits, under a force.
 
-    What does not depend on the force is shared by all of them: cells, gaps, flexibilities. They are those of the largest force,
-    which reaches furthest beyond the path of contact.
+    Cells are those of the next larger force of a row (`ROW`), so that they do not change from one force to one almost alike:
+    that would show in the difference of their approaches.
 
     Parameters
     ----------
     pair : GearPair
-    forces : sequence of float
+    force : float
         In the transverse section [N].
     materials : (Material, Material)
     pits : (sequence of Pit, sequence of Pit)
@@ -85,10 +86,10 @@ class PhaseContact:
     """
 
     def __init__(
-        self, pair, forces, materials, *, pits, face, groove, step, extended, longer, flanks=None, cache=True, supports=None
+        self, pair, force, materials, *, pits, face, groove, step, extended, longer, flanks=None, cache=True, supports=None
     ):
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
-        self.forces, self.force, self.hubs = list(forces), max(forces), hubs_of(supports)
+        self.force, self.hubs = force, hubs_of(supports)
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -98,21 +99,14 @@ class PhaseContact:
         radius = pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)) / math.cos(self.beta_b)
         self.radius, self.modulus = abs(float(radius)), contact_modulus(materials)
         self.furthest = max((float(gap[-1]) for _, gap in gaps(pair) if gap.size), default=0.0) if extended else 0.0
-        self.reach = self._guess(self.force)
-        self.laws = [None if not extended else self._law(materials, force, cache) for force in self.forces]
-
+        unit = self.modulus * pair.gear_1.m_n * self.width
+        self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
+        # first guess: the half-plane's logarithm over the size of a tooth, and as much for the tooth
+        load, self.reach = force / self.width, 40 / (math.pi * self.modulus) * self.sized / self.width
+        further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
+        self.law = CornerLaw(pair, materials, load, further, cache=cache) if extended else None
         kinked = flanks is not None and any(form.kinks for form in flanks)
-        self.kinks = [
-            KinkLaw(pair, materials, force / self.width, flanks, cache=cache) if kinked else None for force in self.forces
-        ]
-
-    def _guess(self, force):
-        """First guess of the approach [mm]: the half-plane's logarithm over the size of a tooth, and as much for the tooth."""
-        return 40 / (math.pi * self.modulus) * force / self.width
-
-    def _law(self, materials, force, cache):
-        further = self._further(self.least + 2 * self._guess(force))
-        return CornerLaw(self.pair, materials, force / self.width, further, cache=cache)
+        self.kinks = KinkLaw(pair, materials, load, flanks, cache=cache) if kinked else None
 
     @property
     def neighbours(self):
@@ -125,7 +119,7 @@ class PhaseContact:
         return beyond(self.pair, reach - self.least) if self.extended else (0.0, 0.0)
 
     def solve(self, phases, bodies):
-        """`Carried` of each force at each phase: a list of lists.
+        """`Carried` of each phase.
 
         Parameters
         ----------
@@ -139,39 +133,31 @@ class PhaseContact:
         RuntimeError
             If there is no contact; the message says at which phase.
         """
-        found = [[] for _ in self.forces]
         parts = [phases[k : k + TOGETHER] for k in range(0, len(phases), TOGETHER)]
-        for part in steps(parts, weights=[len(part) for part in parts]):
-            for whole, more in zip(found, self._part(part, bodies), strict=True):
-                whole.extend(more)
-        return found
+        return [one for part in steps(parts, weights=[len(part) for part in parts]) for one in self._part(part, bodies)]
 
     def _part(self, phases, bodies):
         """`solve` of phases that are solved at once; how far cells reach depends on their own phase alone, so that k does."""
-        found = [[None] * len(phases) for _ in self.forces]
+        found = [None] * len(phases)
         reaches, closings, open_ = np.full(len(phases), self.least + self.reach), np.zeros(len(phases)), list(range(len(phases)))
-        largest = self.forces.index(self.force)
         while open_:
             cells = self._cells([phases[i] for i in open_], reaches[open_], closings[open_])
             again, some = [], [(i, own) for i, own in zip(open_, cells, strict=True) if own is not None]
             empty = [i for i, own in zip(open_, cells, strict=True) if own is None]
             if some:
-                batch = self._batch([own for _, own in some], bodies)
-                carried, shared = self._shared(batch, largest)
-                done = []
-                for k, (i, one) in enumerate(zip((i for i, _ in some), carried, strict=True)):
+                carried = self._shared(self._batch([own for _, own in some], bodies))
+                for i, one in zip((i for i, _ in some), carried, strict=True):
                     closes = one.approach - one.least  # what of it teeth can close gaps by
                     normal = closes * math.cos(self.beta_b)
                     if any(closings[i] < depth < normal for depth in self.floors):
                         closings[i] = normal  # shallow pits: solved again with their floors, which can only make it stiffer
                         again.append(i)
                     elif self.extended and closes > reaches[i] and reaches[i] - self.least <= self.furthest:
-                        reaches[i] = self.least + REACH * (closes - self.least)
+                        needed = (closes - self.least) / (reaches[i] - self.least)
+                        reaches[i] = self.least + (reaches[i] - self.least) * REACH ** math.ceil(math.log(needed, REACH))
                         again.append(i)
                     else:
-                        found[largest][i] = one
-                        done.append(k)
-                self._others(found, batch, shared, done, [i for i, _ in some], largest)
+                        found[i] = one
             for i in empty:
                 if reaches[i] - self.least <= self.furthest:
                     reaches[i] *= 2
@@ -183,16 +169,6 @@ class PhaseContact:
                     )
             open_ = sorted([*again, *empty])
         return found
-
-    def _others(self, found, batch, shared, done, names, largest):
-        """The other forces, each from what the next larger one came to."""
-        order = np.argsort(self.forces, kind="stable")[::-1].tolist()
-        for number in order if done else []:
-            if number == largest:
-                continue
-            carried, shared = self._shared(batch, number, done, shared)
-            for k in done:
-                found[number][names[k]] = carried[k]
 
     def unloaded(self, found):
         """Approach at which the flanks first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
@@ -224,7 +200,7 @@ class PhaseContact:
         sizes = []
         for own in pieces:
             length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
-            finest = FINEST * float(half_width(self.force / length, self.radius, self.modulus)) if own else 0.0
+            finest = FINEST * float(half_width(self.sized / length, self.radius, self.modulus)) if own else 0.0
             sizes.append((finest, max(self.step, finest)))
         if not any(pieces):
             return [None] * len(phases)
@@ -236,7 +212,7 @@ class PhaseContact:
         """`Batch` of phases; two halves that are alike are solved once."""
         cos, found = math.cos(self.beta_b), bodies(max(int(np.ptp(own.order)) for own in cells))
         double = len(found) > 1 and self.hubs is None and _same(*found)
-        alike = np.array([double and _alike(own, own.half == 0) for own in cells])
+        alike = np.array([double and _alike(own, own.half == 0, ALIKE * self.pair.p_bt) for own in cells])
         solved = [own.some(own.half == 0) if half else own for own, half in zip(cells, alike.tolist(), strict=True)]
         systems, yields = [], []
         for own, matrix in zip(solved, between(solved, found), strict=True):
@@ -254,20 +230,16 @@ class PhaseContact:
         whole = Cells(*(np.concatenate([getattr(own, name) for own in solved]) for name in names))
         return Batch(cells, solved, alike, lines, whole, yields)
 
-    def _shared(self, batch, number, which=None, start=None):
-        """`Carried` of the phases of a batch under one of the forces, and what `SharedLines.solve` gave."""
-        cos, local = math.cos(self.beta_b), self._local(batch.all, number)
-        load = self.forces[number] / cos / np.where(batch.alike, 2, 1)
-        shared = batch.lines.solve(load, local, which, start)
-        carried = [
-            None if one is None else self._told(batch.cells[k], batch.solved[k], one, bool(batch.alike[k]), batch.yields[k])
-            for k, one in enumerate(shared)
-        ]
-        return carried, shared
+    def _shared(self, batch):
+        """`Carried` of the phases of a batch."""
+        load = self.force / math.cos(self.beta_b) / np.where(batch.alike, 2, 1)
+        shared = batch.lines.solve(load, self._local(batch.all))
+        own = zip(batch.cells, batch.solved, shared, batch.alike.tolist(), batch.yields, strict=True)
+        return [self._told(*one) for one in own]
 
-    def _local(self, cells, number):
-        """Local law of the cells under one of the forces, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
-        law, kinks = self.laws[number], self.kinks[number]
+    def _local(self, cells):
+        """Local law of the cells, as `SharedLines.solve` takes it; None if it is Hertz's everywhere."""
+        law, kinks = self.law, self.kinks
         at = np.full(cells.z.size, -1) if law is None else law.ends(self.pair, cells)
         for end, form in enumerate((self.flanks or ())[::-1]):
             at[(at == end) & (form.edge is not None) & np.isin(cells.corner, (0, *TIP))] = -1  # no sharp corner there
@@ -303,9 +275,9 @@ def _same(one, two):
     return all(first is second for (first, _), (second, _) in zip(one, two, strict=True))
 
 
-def _alike(cells, first):
+def _alike(cells, first, slack):
     one, two = cells.some(first), cells.some(~first)
     if one.z.size != two.z.size:
         return False
     names = ("order", "width", "depth", "nominal", "gap")
-    return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=ALIKE) for name in names)
+    return all(np.allclose(getattr(one, name), getattr(two, name), rtol=0, atol=slack) for name in names)

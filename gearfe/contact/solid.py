@@ -21,9 +21,8 @@ from .bodies import bodies_of
 from .cells import Cells
 from .phase_contact import PhaseContact
 
-STEP, PART = 0.4, 0.2  # longest cell along the width [mm], and [m_n] of modules below 2 mm
+STEP = 0.2  # longest cell along the width [m_n]
 LONGER = 2  # cells that are one in what the estimate compares with
-SPREAD = 4.0  # forces that share cells, over each other
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +85,7 @@ def pair_stiffness3d(
     pair : GearPair
         The faces, if of different width, lie centred on each other.
     force : float or sequence of float
-        [N]. Several forces share the gears, and those within a factor `SPREAD` the cells of the largest one, gaps and
-        flexibilities: their k differs from that of a call of their own by up to 5e-4, as much as the cells err themselves.
+        [N]. Several forces share the gears; each has its own cells, as in a call of its own.
     material : Material or (Material, Material)
     phases : int or ndarray
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
@@ -103,7 +101,7 @@ def pair_stiffness3d(
     groove : float
         Between the halves [mm].
     step : float, optional
-        Longest cell along the width [mm]; default 0.4 mm, or 0.2 normal modules of 2 mm or less.
+        Longest cell along the width [mm]; default 0.2 normal modules.
     order, axial, refine : int, int, float
         Of `flexibility3d`.
     extended : bool
@@ -136,7 +134,7 @@ def pair_stiffness3d(
     for value in forces:
         if not (math.isfinite(value) and value > 0):
             raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
-    step = min(STEP, PART * pair.gear_1.m_n) if step is None else step
+    step = STEP * pair.gear_1.m_n if step is None else step
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
@@ -148,10 +146,9 @@ def pair_stiffness3d(
     shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies
     hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
     options |= {"flanks": flanks, "supports": hubs}
-    groups = _groups(forces)
 
     def contacts_of(longer):
-        return [PhaseContact(pair, [forces[i] for i in group], materials, longer=longer, **options) for group in groups]
+        return [PhaseContact(pair, value, materials, longer=longer, **options) for value in forces]
 
     contacts = contacts_of(1)
 
@@ -180,11 +177,8 @@ def pair_stiffness3d(
         return within
 
     def solve(contacts, within):
-        found = {}
         with part("", 0.5, 1.0):
-            for group, contact in zip(groups, steps(contacts), strict=True):
-                found |= zip(group, _solved(contact, phase, within), strict=True)
-        return [found[i] for i in range(len(forces))]
+            return [_solved(contact, phase, within) for contact in steps(contacts)]
 
     with part("", 0.0, 0.6 if error else 1.0):
         bodies = bodies_by(model or energy(order, False))
@@ -200,32 +194,19 @@ def pair_stiffness3d(
     return solved if np.ndim(force) else solved[0]
 
 
-def _groups(forces):
-    """Numbers of the forces that share cells: those down to a `SPREAD`-th of the largest, and so on with the rest."""
-    groups = []
-    for i in sorted(range(len(forces)), key=lambda i: -forces[i]):
-        if groups and forces[groups[-1][0]] <= SPREAD * forces[i]:
-            groups[-1].append(i)
-        else:
-            groups.append([i])
-    return groups
-
-
 def _solved(contact, phase, bodies):
-    """`Contact3D` of each force."""
+    """`Contact3D` of one force."""
     dofs = tuple(body.unknowns for body, _ in bodies(0)[0])
-    found, carried = [], contact.solve(phase.tolist(), bodies)
-    for force, own in zip(contact.forces, carried, strict=True):
-        cells = tuple(one.cells for one in own)
-        approach, tangent = np.array([one.approach for one in own]), 1e3 * np.array([one.tangent for one in own])
-        orders = np.array(sorted({order for one in cells for order in one.order.tolist()}))
-        load = np.zeros((phase.size, orders.size))
-        for i, one in enumerate(cells):
-            np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))
-        closed = tuple(i for i, one in enumerate(own) if one.closed)
-        unloaded = found[0].unloaded if found else contact.unloaded(cells)
-        k = 1e3 * force / (approach - unloaded)
-        given = None if contact.hubs is None else np.array([one.given for one in own])
-        more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
-        found.append(Contact3D(phase, k, approach, orders, load, cells, dofs, **more))
-    return found
+    own = contact.solve(phase.tolist(), bodies)
+    cells = tuple(one.cells for one in own)
+    approach, tangent = np.array([one.approach for one in own]), 1e3 * np.array([one.tangent for one in own])
+    orders = np.array(sorted({order for one in cells for order in one.order.tolist()}))
+    load = np.zeros((phase.size, orders.size))
+    for i, one in enumerate(cells):
+        np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))
+    closed = tuple(i for i, one in enumerate(own) if one.closed)
+    unloaded = contact.unloaded(cells)
+    k = 1e3 * contact.force / (approach - unloaded)
+    given = None if contact.hubs is None else np.array([one.given for one in own])
+    more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
+    return Contact3D(phase, k, approach, orders, load, cells, dofs, **more)

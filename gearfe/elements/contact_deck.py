@@ -122,7 +122,7 @@ def write_contact_section(
     stiff = penalty * max(m.E for m in materials)
     contact = [f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiff:.6e}"]
     for k in range(order.size):
-        pinion_slave = abs(rolls[1][k] - pair.gear_2.roll_a) > 1e-9
+        pinion_slave = abs(rolls[1][k] - pair.gear_2.roll_a) > 1e-9 * pair.gear_2.m_n
         sides = (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[not pinion_slave]
         contact += ["*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", sides]
     step = ["*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends]

@@ -128,7 +128,7 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
         out.rolls[0].append(rolls[0])
         out.rolls[1].append(rolls[1])
         out.width.append(float(half_width(line_load, float(found.radius[near, k].max()), contact_modulus(materials))))
-        tips = [np.isclose(roll, gear.roll_a).any() for gear, roll in zip((pair.gear_1, pair.gear_2), rolls, strict=True)]
+        tips = [np.isclose(roll, gear.roll_a, atol=0).any() for gear, roll in zip((pair.gear_1, pair.gear_2), rolls, strict=True)]
         out.slave.append(int(tips[1] and not tips[0]))
     return out
 

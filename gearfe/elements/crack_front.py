@@ -147,7 +147,8 @@ def _tube(gear, crack, least):
 def _followed(mesh, crack):
     """Heights of the layers at which the mesh follows the front, depth there in the deepest with its slope, and the least."""
     low, high = crack.width or (0.0, mesh.gear.b)
-    z = mesh.levels[(mesh.levels >= low - 1e-9) & (mesh.levels <= high + 1e-9)]
+    slack = 1e-9 * mesh.gear.b
+    z = mesh.levels[(mesh.levels >= low - slack) & (mesh.levels <= high + slack)]
     if 0 not in mesh.fronts:
         return z, np.array([np.ones(z.size), np.zeros(z.size)]), 1.0
     front = mesh.fronts[0]

@@ -68,7 +68,7 @@ def _on_stubs(mesh, shaft):
     """The mesh held at the discs of its end faces, and the discs' motions at all nodes ``(3 nodes, 12)``."""
     gear, points = mesh.gear, mesh.points
     first, last = shaft.gear - gear.b / 2, shaft.gear + gear.b / 2
-    if first < -1e-9 or last > shaft.length + 1e-9:
+    if first < -1e-9 * gear.b or last > shaft.length + 1e-9 * gear.b:
         raise ValueError(
             f"shaft: the gear from {first:g} to {last:g} mm is one with its shaft, which reaches from 0 to {shaft.length:g} mm"
         )

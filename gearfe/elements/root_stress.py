@@ -141,7 +141,8 @@ def _fillet(mesh: Solid):
     a, b = ends[:, outer][:, own]
     first = np.hypot(*section.points[:, a]) * gear.outward
     last = np.hypot(*section.points[:, b]) * gear.outward
-    flip = np.where(np.isclose(first, last), np.arctan2(*section.points[:, a]) > np.arctan2(*section.points[:, b]), first < last)
+    same, turned = np.isclose(first, last, atol=0), np.arctan2(*section.points[:, a]) > np.arctan2(*section.points[:, b])
+    flip = np.where(same, turned, first < last)
     edges = np.array([np.where(flip, b, a), middles[outer][own], np.where(flip, a, b)])
     return edges[:, np.argsort(np.arctan2(*section.points[:, edges[1]]))]
 

@@ -139,8 +139,8 @@ def mesh_stiffness(
     ----------
     pair : GearPair
     force : float or sequence of float
-        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list (in three
-        dimensions those within a factor 4 share the cells of their contact lines, too: k within 5e-4 of that of a call for each).
+        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list, of the same
+        k as a call for each.
     material : Material or (Material, Material)
         Of both gears, or of pinion and wheel.
     torque : float or sequence of float, optional

@@ -213,7 +213,7 @@ def start_arc(gear, crack):
     radii = fillet(gear, phi)[0]
     if not min(radii) < wanted < max(radii):
         return fillet_length(gear) / 2
-    return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear))
+    return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear), xtol=1e-12 * gear.m_n)
 
 
 def crack_path(gear, crack):

@@ -50,8 +50,12 @@ def whole(crack):
             f"turning crack of level {crack.level} over parts {crack.ends} of its length: only straight cracks change their "
             "depth along the width; give turning = False, or ends = (1, 1)"
         )
-    size = {"length": part * crack.length} if crack.level is None else {"level": part * crack.level}
-    return even if part == 1 else replace(even, **size)
+    return even if part == 1 else shallower(even, part)
+
+
+def shallower(crack, part):
+    """The crack with a `part` of its length."""
+    return replace(crack, **({"length": part * crack.length} if crack.level is None else {"level": part * crack.level}))
 
 
 def bends(crack):
@@ -121,8 +125,8 @@ class Front:
     def crossings(self, part):
         """Heights [mm] between the crack's ends at which it has `part` of its largest depth."""
         z = np.linspace(*self.ends, SAMPLES)
-        over = self._over(z, part) > 0
-        return [brentq(self._over, z[k], z[k + 1], args=(part,)) for k in np.flatnonzero(over[1:] != over[:-1])]
+        over, near = self._over(z, part) > 0, 1e-12 * self.width
+        return [brentq(self._over, z[k], z[k + 1], args=(part,), xtol=near) for k in np.flatnonzero(over[1:] != over[:-1])]
 
     def _over(self, z, part):
         return front(self.crack, self.width, z)[0] - part * deepest(self.crack)

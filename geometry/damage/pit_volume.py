@@ -67,10 +67,11 @@ def _below(gear, pit, s, z):
     a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
     root = np.sqrt(np.maximum(half * half - a * c, 0.0))
     hit = half * half - a * c > 0
-    wall = np.where(a > 1e-12, a, 1.0)
+    flat = 1e-12 / min(pit.axes) ** 2
+    wall = np.where(a > flat, a, 1.0)
     inside = c < 0
-    low = np.where(a > 1e-12, (-half - root) / wall, np.where(inside, -np.inf, 0.0))
-    high = np.where(a > 1e-12, (-half + root) / wall, np.where(inside, np.inf, 0.0))
+    low = np.where(a > flat, (-half - root) / wall, np.where(inside, -np.inf, 0.0))
+    high = np.where(a > flat, (-half + root) / wall, np.where(inside, np.inf, 0.0))
     tip = np.maximum(gear.outward * (roll - gear.roll_a), 0.0)[:, None]  # beyond the tip the body begins deeper
     low = np.maximum(low, tip)
     high = np.minimum(high, (-deep - h) / dh)  # dh < 0: down to the bottom

@@ -5,6 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and what it does with points on
+# one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
+SEEN, DECIMALS = 50.0, 8
+
 
 @contextlib.contextmanager
 def gmsh_session():
@@ -36,6 +40,10 @@ def triangulate(loops, chains, ring, free=()):
 
     Nodes keep their order: loops, chains, free points, then those that gmsh adds.
     """
+    given = np.hstack([*loops, *(points for _, points in chains), np.reshape(free, (-1, 2)).T])
+    unit = np.abs(given).max() / SEEN
+    loops, free = [np.round(points / unit, DECIMALS) for points in loops], np.round(np.asarray(free) / unit, DECIMALS)
+    chains = [(start, np.round(points / unit, DECIMALS)) for start, points in chains]
     with gmsh_session() as gmsh:
         geo = gmsh.model.geo
         closed, last = [], 0
@@ -66,7 +74,9 @@ def triangulate(loops, chains, ring, free=()):
     order = np.argsort(tags)
     place = np.empty(int(tags.max()) + 1, dtype=np.int64)
     place[tags[order]] = np.arange(tags.size)
-    return coords.reshape(-1, 3)[order, :2].T, place[triangles].T
+    points = unit * coords.reshape(-1, 3)[order, :2].T
+    points[:, : given.shape[1]] = given
+    return points, place[triangles].T
 
 
 def quadrangulate(points, lines, surfaces, algorithm=8):
@@ -89,16 +99,19 @@ def quadrangulate(points, lines, surfaces, algorithm=8):
     label : ndarray, shape (m,)
         Surface of each quad.
     """
+    used = np.unique(lines)
+    unit = np.abs(points[:, used]).max() / SEEN
+    seen = np.round(points / unit, DECIMALS)
     with gmsh_session() as gmsh:
         geo, mesh = gmsh.model.geo, gmsh.model.mesh
-        tags = {int(n): geo.addPoint(*points[:, n], 0.0) for n in np.unique(lines[:, ::2])}
+        tags = {int(n): geo.addPoint(*seen[:, n], 0.0) for n in np.unique(lines[:, ::2])}
         curves = [geo.addLine(tags[int(a)], tags[int(c)]) for a, _, c in lines]
         faces = [
             geo.addPlaneSurface([geo.addCurveLoop([int(np.sign(i)) * curves[abs(i) - 1] for i in loop]) for loop in loops])
             for loops in surfaces
         ]
         geo.synchronize()
-        legs = np.hypot(*np.diff(points[:, lines], axis=2))
+        legs = np.hypot(*np.diff(seen[:, lines], axis=2))
         for curve, (first, second) in zip(curves, legs, strict=True):
             mesh.setTransfiniteCurve(curve, 3, "Progression", second / first)
         for face in faces:
@@ -116,10 +129,10 @@ def quadrangulate(points, lines, surfaces, algorithm=8):
         cells = [mesh.getElementsByType(3, face)[1].astype(int).reshape(-1, 4) for face in faces]
     found = found.astype(int)
     known = place[found] >= 0
-    if kinds != {3} or not np.array_equal(np.sort(place[found[known]]), np.unique(lines)):
+    if kinds != {3} or not np.array_equal(np.sort(place[found[known]]), used):
         raise RuntimeError("gmsh did not fill the section with quads between the given nodes; change the resolution")
     place[found[~known]] = points.shape[1] + np.arange((~known).sum())
-    points = np.hstack([points, coords.reshape(-1, 3)[~known, :2].T])
+    points = np.hstack([points, unit * coords.reshape(-1, 3)[~known, :2].T])
     return points, place[np.concatenate(cells)].T, np.repeat(np.arange(len(cells)), [len(c) for c in cells])
 
 

@@ -62,7 +62,7 @@ class TipEdge:
         low = gear.roll_f
         if apart(low) > 0 or apart(gear.roll_a) < 0:
             raise ValueError(f"tip_rounding = {size:g} mm does not fit on the flank of z = {gear.z}: give a smaller one")
-        start = brentq(apart, *sorted((low, gear.roll_a)), xtol=1e-12)
+        start = brentq(apart, *sorted((low, gear.roll_a)), xtol=1e-12 * gear.m_n)
         middle = centre(start)
         first = math.atan2(*flank_normal(gear, start)[::-1])
         out = gear.outward * middle
@@ -80,7 +80,7 @@ class TipEdge:
             raise ValueError(f"tip_chamfer = {size:g} mm leaves no flank of z = {gear.z}: give a smaller one")
         roll = math.sqrt(radius**2 - gear.r_b**2)
         start, normal = cartesian(*flank(gear, roll)), flank_normal(gear, roll)
-        step = cartesian(*flank(gear, roll_at_arc(gear, gear.outward * roll**2 / (2 * gear.r_b) + 1e-6))) - start
+        step = cartesian(*flank(gear, roll_at_arc(gear, gear.outward * roll**2 / (2 * gear.r_b) + 1e-6 * gear.m_n))) - start
         tangent = step - (step @ normal) * normal
         tangent /= np.hypot(*tangent)
         cut = math.cos(FROM_FLANK) * tangent - math.sin(FROM_FLANK) * normal

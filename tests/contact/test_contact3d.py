@@ -248,7 +248,7 @@ def test_error_estimate_covers_a_finer_solve():
 
 
 def test_problems_solved_together_are_those_solved_alone():
-    """With a local law, faces of cracks, floors and two bodies; from a cold start and from another load."""
+    """With a local law, faces of cracks, floors and two bodies."""
     systems, softer = [], []
     for seed in range(6):
         rng = np.random.default_rng(seed)
@@ -265,13 +265,10 @@ def test_problems_solved_together_are_those_solved_alone():
     loads = 500.0 + 100.0 * np.arange(6)
     both, whole = SharedLines(systems, 2.8e-6, 1.1e5), np.concatenate(softer)
     found = both.solve(loads, lambda along: whole * np.log1p(along))
-    warm = both.solve(loads, lambda along: whole * np.log1p(along), None, both.solve(1.7 * loads))
     assert any(one.force[-2:].max() > 0 for one in found[1::2]), "a face that would pass through the other is held back"
-    for system, load, own, one, other in zip(systems, loads.tolist(), softer, found, warm, strict=True):
+    for system, load, own, one in zip(systems, loads.tolist(), softer, found, strict=True):
         alone = SharedLines([system], 2.8e-6, 1.1e5).solve(np.array([load]), lambda along, own=own: own * np.log1p(along))[0]
-        for again in (one, other):
-            assert_allclose(again.force, alone.force, rtol=1e-4, atol=1e-5 * load)
-            assert_allclose([again.approach, again.tangent], [alone.approach, alone.tangent], rtol=1e-5)
+        assert_allclose([one.approach, one.tangent], [alone.approach, alone.tangent], rtol=1e-5)
         assert_allclose(one.force, alone.force, rtol=1e-9, atol=1e-9 * load)
 
 

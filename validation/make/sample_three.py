@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import PART, STEP, pair_stiffness3d
+from gearfe.contact.solid import STEP, pair_stiffness3d
 from gearfe.energy.ritz.solid import axial_degree
 from gearfe.files import written
 from geometry.damage.crack import crack_path
@@ -115,7 +115,7 @@ def timed(work):
 def finest(pair, force, material, damage, phases):
     """K [N/m] by the energy model of higher order, on finer triangles and half the cells, with more functions along the width."""
     cracks = tuple(tuple((damage or {}).get(name, ())) for name in ("pinion", "wheel"))
-    axial, step = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER, min(STEP, PART * pair.gear_1.m_n) / 2
+    axial, step = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER, STEP * pair.gear_1.m_n / 2
     return pair_stiffness3d(pair, force, material, phases, cracks=cracks, axial=axial, step=step, cache=False, **FINE).k
 
 

@@ -69,7 +69,8 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     bent = None
     for bend in filter(None, bends):
         bent = bent_triangles(sector, *bend, along, partial(_moved_section, sector, order, material, gear.twist_rate))
-    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order, bent=bent)
+    cubic = bent is not None
+    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order, bent=bent, cubic=cubic)
     apart, owner = _apart(sector, chain, load.shape[0])
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
@@ -102,7 +103,7 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     )
 
 
-def section_of(gear, sector, material, knots, order, *, plane=False, bent=None):
+def section_of(gear, sector, material, knots, order, *, plane=False, bent=None, cubic=False):
     """The section of a sector with its loads, short edges bound.
 
     Parameters
@@ -112,7 +113,10 @@ def section_of(gear, sector, material, knots, order, *, plane=False, bent=None):
     plane : bool
         As if it were a spur gear's.
     bent : BentTriangles, optional
-        The triangles that move with a front: bound too, and left out of `section`.
+        The triangles that move with a front: left out of `section`.
+    cubic : bool
+        Leave short edges cubic. Of a front that slopes they would lack up to a hundredth of what it adds: what cubics give at
+        its tip is not known from plane strain, as it is of cracks that are straight.
 
     Returns
     -------
@@ -135,8 +139,8 @@ def section_of(gear, sector, material, knots, order, *, plane=False, bent=None):
     if bent is not None:
         section[:, bent.index >= 0] = 0.0
     held = chain(sector.held)
-    if order == ORDER:
-        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector), bent))
+    if order == ORDER and not cubic:
+        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
     return every, section, load, sides, held, chain
 
 
@@ -149,7 +153,7 @@ def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
             moved = (np.abs(bend[0]) > 0).any(axis=0)[sector.triangles].any(axis=0)
             out[np.unique(numbers[:, moved])] = 4 + 4 * i
         if own:
-            out[_near(gear, sector, numbers, sector.faces[i])] = 3 + 4 * i
+            out[_near(gear, sector, numbers, sector.faces[i], own, bend)] = 3 + 4 * i
             out[next(right)] = 1 + 4 * i
     out[sides] = whole[sides]
     return out
@@ -175,13 +179,20 @@ def _apart(sector, chain, count):
     return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner
 
 
-def _near(gear, sector, numbers, face):
-    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack."""
-    line = sector.points[:, face[0]]
+def _near(gear, sector, numbers, face, bands, bend):
+    """Numbers of the nodes of triangles with a vertex closer than `CLOSE` to a crack, or than it is deep where it runs out."""
+    points, reach = sector.points, CLOSE * gear.m_n
+    if bend:
+        shift, front = bend
+        inside = [end for end in np.ravel(bands).tolist() if 0 < end < front.width]
+        if all(front.runs_out(end) for end in inside):
+            points = points + (front.least - 1) * shift
+            reach = min(reach, np.hypot(*np.diff(points[:, face[0]])).sum())
+    line = points[:, face[0]]
     part = np.arange(8) / 8
     line = (line[:, :-1, None] + np.diff(line, axis=1)[..., None] * part).reshape(2, -1)
-    away = np.hypot(*(sector.points[:, :, None] - line[:, None, :])).min(axis=1)
-    close = (away < CLOSE * gear.m_n)[sector.triangles].any(axis=0)
+    away = np.hypot(*(points[:, :, None] - line[:, None, :])).min(axis=1)
+    close = (away < reach)[sector.triangles].any(axis=0)
     return np.unique(numbers[:, close])
 
 

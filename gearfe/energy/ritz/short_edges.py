@@ -32,7 +32,7 @@ def quadratic_edges(gear, sector):
     return out
 
 
-def bind(section, load, numbers, edges, bent=None):
+def bind(section, load, numbers, edges):
     """Bind the inner nodes of quadratic `edges`, in place, and return the nodes that are left out.
 
     Parameters
@@ -45,8 +45,6 @@ def bind(section, load, numbers, edges, bent=None):
         Nodes of the triangles.
     edges : ndarray of bool, shape (3, m)
         Of `quadratic_edges`.
-    bent : BentTriangles, optional
-        Bound in place too.
     """
     s = (1 + lobatto(ORDER)[1]) / 2
     bound = np.tile(np.eye(numbers.shape[0]), (edges.shape[1], 1, 1))
@@ -71,9 +69,5 @@ def bind(section, load, numbers, edges, bent=None):
             load[min(pair)], load[max(pair)] = one + two, 0.0
     bound = np.kron(bound, np.eye(3))
     section[:] = bound.transpose(0, 2, 1) @ section @ bound
-    if bent is not None:
-        moved = bound[bent.index >= 0]
-        for part in (bent.even, bent.mixed):
-            part[:] = moved.transpose(0, 2, 1) @ part @ moved
     pairs = [np.max([numbers[3 + 2 * k, edges[k]], numbers[4 + 2 * k, edges[k]]], axis=0) for k in range(3)]
     return np.unique(np.concatenate(pairs))

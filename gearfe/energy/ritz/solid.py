@@ -10,9 +10,10 @@ from functools import partial
 from numbers import Integral
 
 import numpy as np
+from numpy.polynomial import chebyshev, legendre
 
 from geometry.damage.crack import crack_in_band
-from geometry.damage.front import whole
+from geometry.damage.front import shallower, whole
 from geometry.mesh.sector import sector
 
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth
@@ -24,6 +25,7 @@ from .panel3d import panel3d
 from .plane_strain import missing
 
 LOST = 2  # axial modes too poor to be kept
+DEPTHS, ALONG = 3, 12  # at which a sloping crack's section is compared with plane strain; Gauss points along each open part
 # edge lengths in modules, see `geometry.mesh.sector.SIZES`
 SIZES = {
     "flank": 0.28,
@@ -182,12 +184,16 @@ def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial
     influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
     missing = _missing(gear, material, (), order, refine, cache)
     for tooth in panels:
-        influence[tooth, tooth] = influence[tooth, tooth] + np.kron(missing, np.eye(degree + 1))
+        slopes = not all(crack.even for crack in cracks.get(tooth, ()))
+        own = _missing(gear, material, (), order, refine, cache, cubic=True) if slopes else missing
+        influence[tooth, tooth] = influence[tooth, tooth] + np.kron(own, np.eye(degree + 1))
     even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
     for tooth, own in cracks.items():
         if all(crack.even and crack.width is None for crack in own):
             shapes = tuple(whole(crack) for crack in own)
             influence[tooth, tooth][even] += _missing(gear, material, shapes, order, refine, cache) - missing
+        elif len(own) == 1 and not own[0].even:
+            influence[tooth, tooth][even] += _missing_along(gear, material, own[0], width, order, refine, cache)
     unknowns = sum(p.unknowns for p in panels.values())
     made = parted(gear, material, width, degree, influence, unknowns, healthy, cache=cache)
     if not cracks:
@@ -196,7 +202,33 @@ def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial
     return replace(made, seam=faces)
 
 
-def _missing(gear, material, cracks, order, refine, cache):
+def _missing_along(gear, material, crack, width, order, refine, cache):
+    """What a crack of changing depth adds to `_missing`: the mean over the width of what straight ones of those depths add.
+
+    Of the section as it follows the front; known at `DEPTHS` depths, by a polynomial between them.
+    """
+
+    def solve():
+        shape = whole(crack)
+        section, sound = (_sector(gear, own, refine, cache)[0] for own in ((shape,), ()))
+        shift, front = bent(gear, section, 0, crack, width)
+        x, weight = legendre.leggauss(ALONG)
+        parts = np.array(front.open())
+        half = np.diff(parts, axis=1) / 2
+        depth, weight = front.depth((parts[:, :1] + half * (1 + x)).ravel())[0], (half * weight).ravel() / width
+        low, high, nodes = depth.min(), depth.max(), chebyshev.chebpts1(DEPTHS)
+        at = np.clip((2 * depth - low - high) / max(high - low, 1e-9), -1, 1)
+        carry = chebyshev.chebvander(at, DEPTHS - 1) @ np.linalg.inv(chebyshev.chebvander(nodes, DEPTHS - 1))
+        out = -weight.sum() * _missing(gear, material, (), order, refine, cache, cubic=True)
+        for own, share in zip(((low + high + (high - low) * nodes) / 2).tolist(), weight @ carry, strict=True):
+            sections = replace(section, points=section.points + (own - 1) * shift), sound
+            out = out + share * missing(gear, material, (shallower(shape, own),), order, sections, cubic=True, cache=cache)
+        return out
+
+    return cache.get(("ritz3d missing along", gear, material, crack, width, order, refine), solve)
+
+
+def _missing(gear, material, cracks, order, refine, cache, cubic=False):
     """`plane_strain.missing` with the sections solved for: of all modes along the width, or what a crack adds, of the even one.
 
     Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
@@ -204,6 +236,6 @@ def _missing(gear, material, cracks, order, refine, cache):
 
     def solve():
         sections = tuple(_sector(gear, own, refine, cache)[0] for own in (cracks, ()))
-        return missing(gear, material, cracks, order, sections, cache=cache)
+        return missing(gear, material, cracks, order, sections, cubic=cubic, cache=cache)
 
-    return cache.get(("ritz3d missing", gear, material, cracks, order, refine), solve)
+    return cache.get(("ritz3d missing", gear, material, cracks, order, refine, cubic), solve)

@@ -1,0 +1,153 @@
+"""Meshes and cells know no millimetre: gears s times as large are s times as stiff under s**2 times the load."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements.fe_gear3d import solid_flexibility
+
+STEEL = gf.Material(206e3, 0.3)
+PHASES = np.array([0.05, 0.3, 0.62, 0.9, 0.98])
+SCALES = 0.25, 7.0, 25.0  # as a power of two, and such that the last digits of all lengths change
+# tables of the plane's contact at corners and kinks are for line loads that are powers of two in N/mm (`contact.corner`)
+SOLID_SCALES = 0.25, 32.0
+
+
+def gear(s, z, *, b=8.0, bore=0.4, beta=0.0, **options):
+    rack = {"m_n": 2.0 * s, "alpha_n": math.radians(20), "beta": math.radians(beta), "b": b * s}
+    body = {"r_rim": (z + 10) * s} if options.pop("ring", False) else {"r_bore": bore * z * s}
+    return gf.Gear(z=z, **rack, **body, **options)
+
+
+def pair(s, beta=0.0, **options):
+    return gf.GearPair(gear(s, 19, beta=beta, **options), gear(s, 31, beta=-beta, **options))
+
+
+def ring(s, **options):
+    return gf.GearPair(gear(s, 20, **options), gear(s, 62, ring=True, **options))
+
+
+def undercut(s):
+    gears = (gf.Gear(z=z, m_n=s, alpha_n=math.radians(20), beta=side * math.radians(8.2), b=15.68 * s, r_bore=bore * s, x=x)
+             for z, side, bore, x in ((11, 1, 2.5, 0.0), (36, -1, 8.0, -0.23)))  # fmt: skip
+    return gf.GearPair(*gears)
+
+
+def flanks(s):
+    one = gf.Flank(tip_relief=0.012 * s, tip_start_diameter=40.5 * s, tip_rounding=0.1 * s)
+    return {"pinion": one, "wheel": gf.Flank(crowning=0.005 * s, tip_chamfer=0.1 * s)}
+
+
+def flanks_along(s):
+    one, two = flanks(s).values()
+    return {"pinion": replace(one, lead_crowning=0.006 * s), "wheel": replace(two, end_relief=0.01 * s, end_length=s)}
+
+
+def crack(s, **options):
+    return {"pinion": [gf.Crack(length=1.2 * s, **options)]}
+
+
+def pits(s):
+    deep = gf.Pit(radius=19.2 * s, z=3 * s, axes=(0.6 * s, 0.9 * s), depth=0.2 * s)
+    return {"pinion": [deep], "wheel": [replace(deep, radius=31 * s, z=5 * s, depth=0.004 * s)]}
+
+
+def part(s):
+    return crack(s, width=(0.0, 4 * s))
+
+
+def slope(s):
+    return crack(s, width=(0.0, 8 * s), ends=(1.0, 0.3))
+
+
+def runs_out(s):
+    return crack(s, width=(0.0, 6 * s), ends=(1.0, 0.0), rounded=True)
+
+
+def curve(s, method, make, options):
+    made = {name: value(s) if callable(value) else value for name, value in options.items()}
+    load = 100.0 * s * made.pop("b", 8.0 * s)
+    return gf.mesh_stiffness(make(s), load, STEEL, method=method, phases=PHASES, cache=False, **made)
+
+
+def alike(case, scales, *, rtol=1e-6):
+    one = curve(1.0, *case)
+    for s in scales:
+        other = curve(s, *case)
+        assert_allclose(other.k / s, one.k, rtol=rtol, err_msg=f"{s:g} times as large")
+        assert_allclose(other.lte / s, one.lte, rtol=rtol)
+        if one.unloaded is not None:
+            assert_allclose(other.unloaded / s, one.unloaded, rtol=rtol, atol=rtol * np.ptp(one.te))
+        if one.error is not None:
+            assert_allclose(other.error / s, one.error, atol=1e-6 * one.k.max())
+
+
+SECTIONS = {
+    "energy": ("ritz", pair, {"error": True}),
+    "energy, crack": ("ritz", pair, {"damage": crack}),
+    "energy, flanks": ("ritz", pair, {"flanks": flanks}),
+    "energy, ring": ("ritz", ring, {}),
+    "finite elements": ("fe", pair, {"error": True}),
+    "finite elements, crack": ("fe", pair, {"damage": crack}),
+    "finite elements, flanks": ("fe", pair, {"flanks": flanks}),
+    "finite elements, ring": ("fe", ring, {}),
+    "coupled beams": ("coupled", pair, {}),
+    "textbook, crack": ("textbook", pair, {"damage": crack}),
+    "textbook, pits": ("textbook", pair, {"damage": pits}),
+    "textbook, helical": ("textbook", lambda s: pair(s, 15.0), {"flanks": flanks_along, "face": "helical"}),
+    "published, crack": ("published", pair, {"damage": crack}),
+}
+CHEAP = "energy", "energy, flanks", "finite elements, crack", "coupled beams", "textbook, crack", "published, crack"
+SOLIDS = {
+    "spur": ("ritz3d", pair, {}),
+    "helical": ("ritz3d", lambda s: pair(s, 15.0), {"error": True}),
+    "undercut": ("ritz3d", undercut, {}),
+    "ring": ("ritz3d", ring, {}),
+    "pits": ("ritz3d", lambda s: pair(s, 15.0), {"damage": pits}),
+    "flanks": ("ritz3d", lambda s: pair(s, 15.0), {"flanks": flanks_along}),
+    "crack": ("ritz3d", lambda s: pair(s, 15.0), {"damage": crack}),
+    "crack over a part": ("ritz3d", lambda s: pair(s, 15.0), {"damage": part}),
+    "sloping crack": ("ritz3d", pair, {"damage": slope}),
+    "crack that runs out": ("ritz3d", pair, {"damage": runs_out}),
+}
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name in CHEAP else pytest.mark.slow) for name in SECTIONS])
+def test_a_section_of_another_size_is_alike(name):
+    alike(SECTIONS[name], SCALES)
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=[] if name == "spur" else pytest.mark.slow) for name in SOLIDS])
+def test_a_wide_pair_of_another_size_is_alike(name):
+    alike(SOLIDS[name], SOLID_SCALES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("beta", "cracked"), [(12.0, False), (0.0, True)])
+def test_hexahedra_of_another_size_are_alike(beta, cracked):
+    """What loads along the width do to each other on a helical gear, and on one with a sloping crack in half of its width."""
+
+    def influences(s):
+        small = gear(s, 9, b=2.0, beta=beta, x=0.5)
+        cracks = (gf.Crack(length=0.8 * s, width=(0.0, s), ends=(1.0, 0.6)),) if cracked else ()
+        run = {"degree": 3, "refine": 0.4, "cache": False}
+        healthy = solid_flexibility(small, STEEL, **run) if cracked else None
+        found = solid_flexibility(small, STEEL, cracks, healthy=healthy, **run)
+        return found.near | found.far
+
+    one = influences(1.0)
+    for s in SCALES:
+        other = influences(s)
+        assert set(other) == set(one)
+        for key, values in one.items():
+            assert_allclose(other[key], values, atol=1e-6 * np.abs(values).max(), rtol=0, err_msg=f"{key}, {s:g} times as large")
+
+
+@pytest.mark.parametrize("s", SCALES)
+def test_root_stress_of_a_gear_of_another_size_is_the_same(s):
+    one, other = (gf.root_stress(gear(by, 19, b=2.0), 19.5 * by, 100.0 * by, STEEL) for by in (1.0, s))
+    assert_allclose(other, one, rtol=1e-6)
