@@ -20,12 +20,11 @@ from ..energy.ritz.plane_strain import plane_hats
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
-from .plane import CORNER, PairContact
+from .plane import CORNER, RESOLVED, PairContact
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 PLACES = 13  # abscissae of the table at each end of the path
-RESOLVED = 4.0  # hats at the corner that a half width must span: a narrower contact falls between them
 
 
 class CornerLaw:

@@ -5,6 +5,8 @@ formula: that pair becomes a row of hat pressures up to the corner, with the exa
 has a kink within the contact: a row of hats on both sides of the touching point (`gearfe.contact.kinks`).
 """
 
+import math
+
 import numpy as np
 from scipy.linalg import block_diag
 
@@ -19,6 +21,7 @@ from .sharing import line_contact, line_contacts, stacked
 # the corner a pair carries about half of it, and its own half width is then smaller by sqrt(2).
 CORNER = 0.7
 KINK = 3  # number of a pair whose contact reaches a kink of a flank; 1 and 2 are those at a tip corner
+RESOLVED = 4.0  # hats at a tip corner that a half width must span: a narrower contact falls between them
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -43,6 +46,12 @@ def _aligned(rows):
         size = row[0].size
         first[k, size:], second[k, size:], gap[k, size:], radius[k, size:] = row[0][-1], row[1][-1], np.nan, 1.0
     return first, second, gap, coefficient, radius, influence
+
+
+def _towards(arc, gear, scale):
+    """Arcs, their distances to the tip corner of a gear scaled."""
+    corner = arc_at(gear, gear.roll_a)
+    return corner + scale * (arc - corner)
 
 
 class PairContact:
@@ -82,10 +91,12 @@ class PairContact:
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         found, c = self.found, sum(self.coefficients)
-        reach = self._reach(line_load)
-        possible = found.gap < reach[:, None]
+        # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
+        least = np.zeros(len(found.gap)) if self.flanks is None else found.gap.min(axis=1)
+        reach, beyond = self._reach(line_load), found.gap - least[:, None]
+        possible = beyond < reach[:, None]
         corner = np.where(possible, self._corners(line_load), 0)
-        line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
+        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -95,11 +106,13 @@ class PairContact:
         open_ = np.flatnonzero(~done)
         closed = []
         if open_.size:
-            sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], kinks)
+            wanted = [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()]
+            sets = self.contacts_at(wanted, kinks, self._shrunk(line_load))
+            sets = [one | {"gap": one["gap"] - least[i]} for i, one in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
-            line[open_], pressure[open_], approach[open_], tangent[open_], closed = self._solved(sets, line_load)
-        unloaded = None if self.flanks is None else found.gap.min(axis=1)
-        return Solved(found.order, approach, tangent, line, pressure, tuple(open_[closed].tolist()), unloaded)
+            line[open_], pressure[open_], closing[open_], tangent[open_], closed = self._solved(sets, line_load)
+        unloaded = None if self.flanks is None else least
+        return Solved(found.order, closing, tangent, line, pressure, tuple(open_[closed].tolist()), unloaded)
 
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach and tangent of contact problems `sets`, and which crack faces touch."""
@@ -155,11 +168,12 @@ class PairContact:
         return np.concatenate(rows, axis=-1) if rows else None
 
     def _reach(self, line_load):
-        """Gap [mm] no contact can close, by phase: the best pair's, and twice what it gives alone."""
+        """Gap beyond the first touch [mm] that no contact can close, by phase: twice what the best pair gives alone."""
         best = np.argmin(self.found.gap, axis=1)
         at = np.arange(best.size), best
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
-        return self.found.gap[at] + 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
+        own = 0.0 if self.flanks is not None else self.found.gap[at]
+        return own + 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
     def _corners(self, line_load):
         """For each phase and pair: 0, or the gear (1, 2) whose tip corner it touches."""
@@ -173,27 +187,37 @@ class PairContact:
                 corner[arc_at(gear, gear.roll_a) - arc_at(gear, roll) < reach] = number
         return corner
 
-    def find_gaps(self, rows):
+    def _shrunk(self, line_load):
+        """By what hats at corners are shrunk towards them, so that a contact under `line_load` spans some."""
+        hats = [np.diff(np.sort(flexible.tip_of(0).arc))[-1] for flexible in self.flexibility if self.extended]
+        if not hats:
+            return 1.0
+        radius = self.pair.relative_radius(end := np.array(self.pair.path), self.pair.mate_roll(end))
+        width = half_width(line_load, np.abs(radius).min(), self.modulus)
+        return min(1.0, float(width) / (RESOLVED * max(hats)))
+
+    def find_gaps(self, rows, scale=1.0):
         """Keep gaps and places of the hats of `rows` (phase, column, gear whose tip corner touches), all found at once."""
         teeth = {}
         for i, column, corner in rows:
-            if (i, column, corner) not in self._gaps:
+            if (i, column, corner, scale) not in self._gaps:
                 tip = self._tip(column, corner)
                 teeth.setdefault((corner, id(tip)), (tip, []))[1].append((i, column))
         for (corner, _), (tip, found) in teeth.items():
-            roll = roll_at_arc((self.pair.gear_1, self.pair.gear_2)[corner - 1], tip.arc)
+            gear = (self.pair.gear_1, self.pair.gear_2)[corner - 1]
+            roll = roll_at_arc(gear, _towards(tip.arc, gear, scale))
             at = tuple(np.array(found).T)
             nominal, start = (values[at][:, None] for values in (self.found.nominal, self.found.gap))
             own = {"flanks": self.flanks, "order": self.found.order[at[1]][:, None]}
             gap, met = self.pair.approach(roll, nominal, driver=corner == 1, start=start, **own)
-            self._gaps |= {(*row, corner): (gap[j], met[j]) for j, row in enumerate(found)}
+            self._gaps |= {(*row, corner, scale): (gap[j], met[j]) for j, row in enumerate(found)}
 
     def _tip(self, column, corner):
         """`TipHats` of the gear whose corner a pair touches."""
         order = self.found.order[column]
         return self.flexibility[corner - 1].tip_of(order if corner == 1 else -order)
 
-    def contacts_at(self, wanted, kinks=None):
+    def contacts_at(self, wanted, kinks=None, scale=1.0):
         """Unknowns of the contact problems at some phases.
 
         Parameters
@@ -203,27 +227,30 @@ class PairContact:
             touches, or `KINK`: then it is a row of hats.
         kinks : dict, optional
             The rows at kinks, from `gearfe.contact.kinks.kink_rows`: they are those of one load.
+        scale : float
+            By what hats at corners are shrunk towards them. Near its corner a tooth is a wedge, which looks the same at every
+            scale: what hats do to each other then only grows by the half-planes' ``-ln(scale)``.
 
         Returns
         -------
         list of dict
             ``flexibility``, ``gap``, ``coefficient`` of the logarithm, ``radius``, pair ``column`` and crack ``opening``.
         """
-        keys = [(i, tuple(near.tolist()), tuple(corner.tolist())) for i, near, corner in wanted]
+        keys = [(i, tuple(near.tolist()), tuple(corner.tolist()), scale) for i, near, corner in wanted]
         alike = {}  # phases at which the same pairs touch in the same way
-        for i, near, corner in keys:
-            if KINK in corner or (i, near, corner) not in self._known:
+        for i, near, corner, _ in keys:
+            if KINK in corner or (i, near, corner, scale) not in self._known:
                 alike.setdefault((near, corner), []).append(i)
         rows = [(i, *one) for pairs, own in alike.items() for one in zip(*pairs, strict=True) for i in own]
-        self.find_gaps([row for row in rows if row[2] in (1, 2)])
+        self.find_gaps([row for row in rows if row[2] in (1, 2)], scale)
         for (near, corner), own in alike.items():
-            built = self._built(np.array(own), near, corner, kinks)
-            self._known |= {(i, near, corner): contacts for i, contacts in zip(own, built, strict=True)}
+            built = self._built(np.array(own), near, corner, kinks, scale)
+            self._known |= {(i, near, corner, scale): contacts for i, contacts in zip(own, built, strict=True)}
         return [self._known[key] for key in keys]
 
-    def _built(self, phases, near, corner, kinks):
+    def _built(self, phases, near, corner, kinks, scale):
         parts = [
-            _aligned([kinks[i, column] for i in phases.tolist()]) if number == KINK else self._row(phases, column, number)
+            _aligned([kinks[i, column] for i in phases.tolist()]) if number == KINK else self._row(phases, column, number, scale)
             for column, number in zip(near, corner, strict=True)
         ]
         column = np.repeat(near, [part[0].shape[1] for part in parts])
@@ -244,7 +271,7 @@ class PairContact:
             out.append(own | {"opening": None if opening is None else opening[k, on]})
         return out
 
-    def _row(self, phases, column, corner):
+    def _row(self, phases, column, corner, scale):
         """Unknowns ``(phases, n)`` of one pair: roll_1, roll_2, gap, coefficient, radius, and their influence for a corner.
 
         The gap is nan where a hat has no flank before it.
@@ -256,13 +283,15 @@ class PairContact:
         tip, flank = (0, 1) if corner == 1 else (1, 0)
         gears, tooth = (self.pair.gear_1, self.pair.gear_2), (found.order[column], -found.order[column])
         hats = self._tip(column, corner)
-        gap, met = (np.array(values) for values in zip(*(self._gaps[i, column, corner] for i in phases.tolist()), strict=True))
+        gap, met = (
+            np.array(values) for values in zip(*(self._gaps[i, column, corner, scale] for i in phases.tolist()), strict=True)
+        )
         met[np.isnan(met)] = gears[flank].roll_a  # no flank before it
         arc, top = arc_at(gears[flank], met), arc_at(gears[flank], gears[flank].roll_a)
         gap[~(arc < top)] = np.nan
         middle = np.clip((arc[:, :, None] + arc[:, None, :]) / 2, *self.flexibility[flank].limits)
         mate = self.flexibility[flank].near_of(tooth[flank])(middle)
-        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots, hats.knots)
-        roll = np.broadcast_to(roll_at_arc(gears[tip], hats.arc), met.shape)
+        mate = mate + self.coefficients[flank] * hat_logarithm(hats.knots, hats.knots) - sum(self.coefficients) * math.log(scale)
+        roll = np.broadcast_to(roll_at_arc(gears[tip], _towards(hats.arc, gears[tip], scale)), met.shape)
         rolls = (roll, met) if corner == 1 else (met, roll)
         return *rolls, gap, np.zeros(gap.shape), np.ones(gap.shape), hats.influence + mate

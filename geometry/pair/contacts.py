@@ -41,8 +41,9 @@ if TYPE_CHECKING:
     from ..tooth.flank_form import FlankForm
     from .gear_pair import GearPair
 
-STEPS = 4  # of Newton's method at most: each doubles the correct digits, and D bends little over a gap
+STEPS = 8  # of Newton's method at most: each doubles the correct digits, or adds three where a modified flank slopes
 SETTLED = 1e-7  # last step, in base pitches
+EXACT = 1e-13  # the same, where no further step is needed: light loads close by less than any larger
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +161,7 @@ def approach(
             distance = distance + back + mate.removed(met) + behind
         step = (distance - gap) / ((1 + arm) / 2)
         gap = gap + np.where((np.abs(distance) < pair.p_bt) & (arm > 0), step, np.nan)  # else the flanks face away: no contact
-        if not (np.abs(step) >= SETTLED * pair.p_bt).any():
+        if not (np.abs(step) >= EXACT * pair.p_bt).any():
             break
     there = np.abs(step) < SETTLED * pair.p_bt
     return np.where(there, gap, np.nan), np.where(there, met, np.nan)
