@@ -101,16 +101,15 @@ def curve(pair, phase, force, solve, meta, damage=None):
     solved = solve(force / width)
     used = solved.line_load.max(axis=0) > 0
     unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
-    closing = solved.approach if unloaded is None else solved.approach - solved.unloaded
     meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
     if damage is not None:
         _warn_if_unseen(pair, damage, solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     return StiffnessCurve(
         phase=phase,
-        k=force / (closing * 1e-3),
+        k=force / (solved.closing * 1e-3),
         k_tangent=solved.tangent * width * 1e3,
-        lte=closing * 1e-3,
+        lte=solved.closing * 1e-3,
         order=solved.order[used],
         force=solved.line_load[:, used] * width,
         pressure=solved.pressure[:, used] * 1e6,

@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from ..supports.shaft import Shaft
 from ..supports.support import Support
 
@@ -86,7 +88,7 @@ def yielding(solve, yields):
 
     def with_supports(line_load):
         found = solve(line_load)
-        way = 0 * found.approach + yields * line_load
-        return replace(found, approach=found.approach + way, tangent=1 / (1 / found.tangent + yields), supports=way)
+        way = np.full(found.closing.shape, yields * line_load)
+        return replace(found, closing=found.closing + way, tangent=1 / (1 / found.tangent + yields), supports=way)
 
     return with_supports
