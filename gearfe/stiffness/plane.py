@@ -11,7 +11,7 @@ from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from ..steps import steps
 from .curve import StiffnessCurve
-from .estimate import coarser, estimate, fixed_phases
+from .estimate import coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of
 from .supported import yielding
 
@@ -45,7 +45,7 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
     yields : float, optional
         Approach by the supports of the hubs per line load [mm per N/mm].
     **numeric
-        ``refine``, ``order``, ``teeth``: each method gets those that it has.
+        ``refine``, ``order``, ``teeth``: each method gets those that it has; ``hats``: of ``ritz``.
     """
     started = time.perf_counter()
     extended = extended and (own or row).extended
@@ -76,6 +76,7 @@ def _flexibility(row, gear, material, cracks, neighbours, state, cache, numeric)
     """`Flexibility` of one gear by a method."""
     own = (cracks,) if row.cracks else ()
     kept = {"cache": cache} if row.kept else {}
+    kept |= {name: numeric[name] for name in ("hats",) if name in numeric}  # of the estimate of `ritz` only
     return row.load()(gear, material, *own, neighbours=neighbours, state=state, **kept, **_numeric(row, numeric))
 
 
@@ -120,17 +121,18 @@ def curve(pair, phase, force, solve, meta, damage=None):
 
 
 def with_error(row, curves, case, options):
-    """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
+    """The curves with their estimated error, by other solves of the same `case` of `section_solver`."""
     pair, materials, phase = case
-    less = coarser(options["refine"], _numeric(row, options).get("order"))
+    order = _numeric(row, options).get("order")
+    less, hats = coarser(options["refine"], order), finer_hats(order)
     turns = any(form.differs for form in options.get("flanks") or ())
     periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less))]
+    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less, *hats))]
     out = []
     for one in curves:
-        k, *coarse = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)
-        out.append(replace(one, error=estimate(phase, periodic, k, coarse)))
+        k, *others = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)
+        out.append(replace(one, error=estimate(phase, periodic, k, others[: len(less)], others[len(less) :])))
     return out
 
 

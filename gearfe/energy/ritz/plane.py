@@ -30,7 +30,7 @@ HATS = 2  # times finer hats at the tip corner than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
 
-def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
+def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, hats=1.0, cache=True):
     """Flexibility of a gear by the energy model.
 
     Parameters
@@ -45,7 +45,9 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     order : int
         Polynomial order, 2 to 8.
     refine : float
-        Divides the edge lengths of the triangles.
+        Divides the edge lengths of the triangles and the hats at the tip corner.
+    hats : float
+        Divides the hats once more.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
@@ -60,26 +62,26 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     """
     if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
         raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
-    options = (state, int(order), float(refine))
+    options = (state, int(order), float(refine), float(hats))
     check_through(cracks, "the energy model of the section")
     case = (gear, material, tuple(cracks), neighbours, *options)
     kept = solved_gears(cache)
     return kept.get(("ritz", *case), partial(_cracked if cracks else _healthy, *case, kept))
 
 
-def _healthy(gear, material, _, neighbours, state, order, refine, cache):
+def _healthy(gear, material, _, neighbours, state, order, refine, hats, cache):
     one = loaded_sector(gear, material, (), state=state, order=order, refine=refine, cache=cache)
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
-    near, tip = _own_tooth(gear, influence[0, 0], half_plane(material, state), refine)
+    near, tip = _own_tooth(gear, influence[0, 0], half_plane(material, state), refine * hats)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
     return Flexibility(gear, {0: near}, far, {0: tip}, _limits(gear), one.unknowns)
 
 
-def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
+def _cracked(gear, material, cracks, neighbours, state, order, refine, hats, cache):
     """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
     options = {"state": state, "order": order, "refine": refine, "cache": cache}
-    healthy = flexibility(gear, material, neighbours=neighbours, **options)
+    healthy = flexibility(gear, material, neighbours=neighbours, hats=hats, **options)
     reach = max(1, neighbours - 1)
     teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
     one = loaded_sector(gear, material, (), **options)
@@ -93,7 +95,7 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], tip[i] = _own_tooth(gear, glued, half_plane(material, state), refine)
+                near[i], tip[i] = _own_tooth(gear, glued, half_plane(material, state), refine * hats)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
