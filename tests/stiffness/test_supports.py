@@ -214,3 +214,13 @@ def test_the_shaft_in_the_bore_is_the_one_at_the_gear():
     solved(shaft([(40, 30), (40, 60)], 40, 80))
     with pytest.raises(ValueError, match="60 mm thick at the gear"):
         solved(shaft([(40, 30), (40, 60)], 41, 80))
+
+
+def test_the_error_of_the_teeth_alone():
+    """A k off by its error, on the same springs: 1 / k_teeth = 1 / k - way / F is off by as much as the error told."""
+    found = solved(SPRINGS, method="ritz", error=True)
+    teeth = found.without_supports()
+    off = 1e-6 * found.error
+    moved = 1 / (1 / (found.k + off) - SERIES) - 1 / (1 / found.k - SERIES)
+    assert_allclose(teeth.error, 1e6 * moved, rtol=1e-4)
+    assert (teeth.error > 1.5 * found.error).all()
