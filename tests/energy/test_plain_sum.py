@@ -40,7 +40,7 @@ def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **op
     cracks = tuple(d for d in damage if isinstance(d, gf.Crack))
     pits = tuple(d for d in damage if isinstance(d, gf.Pit))
     solve, _ = plain_sum(on or pair(), BOTH, phase, formulas, cracks=(cracks, ()), pits=(pits, ()), **options)
-    return load / solve(load).approach
+    return load / solve(load).closing
 
 
 # --- teeth
@@ -96,7 +96,7 @@ def test_load_dependent_contact(contact):
     assert_allclose(middle.line_load.sum(axis=1), 100.0, rtol=1e-12)
     assert_allclose(middle.tangent, 0.2 / (high.approach - low.approach), rtol=1e-6)
     assert (middle.tangent > 100.0 / middle.approach).all()
-    assert (solve(200.0).approach < 2 * middle.approach).all()
+    assert (solve(200.0).closing < 2 * middle.closing).all()
 
 
 def test_weber_reproduces_the_reference_local_part():
