@@ -25,14 +25,13 @@ from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
 from .plane import CORNER, PairContact
-from .rows import Wanted, finest_hat
+from .rows import RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 PLACES = 17  # abscissae of the table at each end of the path
 BETWEEN = 200  # abscissae at which is looked for what touches
 AT_END = (2, 3), (1, 4)  # numbers of the corners that touch before the start and after the end of the path
-RESOLVED = 4.0  # hats at the corner that a half width must span: a narrower contact falls between them
 
 
 class CornerLaw:

@@ -5,6 +5,8 @@ such formula: that pair becomes a row of hat pressures, with the exact gap at ea
 modified flank has a kink within the contact (`gearfe.contact.kinks`).
 """
 
+import math
+
 import numpy as np
 from scipy.linalg import block_diag
 
@@ -14,7 +16,7 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
-from .rows import Row, Wanted, corner_rows
+from .rows import RESOLVED, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
 
 CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
@@ -85,10 +87,12 @@ class PairContact:
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
         found, c = self.found, sum(self.coefficients)
-        reach = self._reach(line_load)
-        possible = found.gap < reach[:, None]
+        # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
+        least = found.gap.min(axis=1)
+        reach, beyond = self._reach(line_load), found.gap - least[:, None]
+        possible = beyond < reach[:, None]
         corner, zone, width = self._corners(line_load, possible)
-        line, approach, tangent, done = line_contacts(self.matrix, found.gap, line_load, c, self.radius, self.modulus, possible)
+        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -97,17 +101,18 @@ class PairContact:
         open_ = np.flatnonzero(~done)
         closed, fillet = [], []
         if open_.size:
+            finest = self._finest(line_load)
             at = np.argwhere((corner > 0) & ~done[:, None]).tolist()
-            rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), float(width[i, k])) for i, k in at])
+            rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
             rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink), line_load)
             corner = np.where(kink, KINK, corner)
             sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows)
+            sets = [one | {"gap": one["gap"] - least[i]} for i, one in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
-            line[open_], pressure[open_], approach[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
-        least = found.gap.min(axis=1)
-        unloaded = None if self.flanks is None and not least.any() else least
+            line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
+        unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        return Solved(found.order, approach, tangent, line, pressure, *marked, unloaded)
+        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded)
 
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
@@ -165,11 +170,19 @@ class PairContact:
         return np.concatenate(rows, axis=-1) if rows else None
 
     def _reach(self, line_load):
-        """Gap [mm] no contact can close, by phase: the best pair's, and twice what it gives alone."""
+        """Gap beyond the first touch [mm] that no contact can close, by phase: twice what the best pair gives alone."""
         best = np.argmin(self.found.gap, axis=1)
         at = np.arange(best.size), best
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
-        return self.found.gap[at] + 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
+        return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
+
+    def _finest(self, line_load):
+        """Length of the hats next to corners [mm] where the default ones are too long for contacts under this load; else 0."""
+        fine = min((flexible.fine for flexible in self.flexibility), default=1.0) if self.extended else 1.0
+        gear, ends = self.pair.gear_1, np.array(self.pair.path)
+        radius = np.abs(self.pair.relative_radius(ends, self.pair.mate_roll(ends))).min()
+        width = float(half_width(line_load, max(radius, 1e-3 * gear.m_n), self.modulus)) / RESOLVED
+        return 0.0 if width > finest_hat(gear.m_n, fine) else gear.m_n * 2.0 ** math.floor(math.log2(width / gear.m_n))
 
     def _corners(self, line_load, possible):
         """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.

@@ -20,6 +20,7 @@ from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 
 GROWTH = 0.25  # of the hats' edges per length, away from corners
+RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
 
@@ -42,23 +43,24 @@ class Row(NamedTuple):
 class Wanted(NamedTuple):
     """A row to be made: number of the phase, column of the pair, its corners (bit n - 1 for corner n of `Contacts`).
 
-    `zone` is how far it goes on from its corners [mm]; `width` the half width [mm] of a Hertz contact that belongs to the row,
-    away from its corners, 0 without.
+    `zone` is how far it goes on from its corners, `finest` the length of the hats next to these, 0 by default [mm]; `width` the
+    half width [mm] of a Hertz contact that belongs to the row, away from its corners, 0 without.
     """
 
     phase: int
     column: int
     corners: int
     zone: float
+    finest: float = 0.0
     width: float = 0.0
 
 
 @lru_cache(maxsize=256)
-def _offsets(m_n, fine, zone):
+def _offsets(m_n, fine, zone, finest=0.0):
     """Distances ``(n,)`` [mm] of the hats' tops from a corner, rising from 0, to the end of its zone."""
     scale = SPAN * m_n / fine
     least, most, growth = FLANK_EDGES["tip"] * scale, FLANK_EDGES["flank"] * scale, GROWTH / fine * SPAN
-    out = [0.0]
+    least, out = min(least, finest or least), [0.0]
     while out[-1] < zone:
         out.append(out[-1] + min(least + growth * (out[-1] + least / 2), most))
     return np.array(out)
@@ -164,7 +166,7 @@ def _placed(contact, one, host):
     found, at = contact.found, (one.phase, one.column)
     gear = (contact.pair.gear_1, contact.pair.gear_2)[host]
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
-    offsets = _offsets(gear.m_n, min(flexible.fine for flexible in contact.flexibility), one.zone)
+    offsets = _offsets(gear.m_n, min(flexible.fine for flexible in contact.flexibility), one.zone, one.finest)
     # its own tip ends a side above; the mate's tip faces the lowest place that is in contact
     ends = 2 - host in marks, 1 + host in marks
     places = np.unique(list(marks.values()))

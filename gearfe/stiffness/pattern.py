@@ -76,6 +76,6 @@ def contact_pattern(
     forms = flank_forms(pair, flanks, misalignment)
     phase = np.asarray(phase_array(phases, "cycle", pair, overlap(pair, face, groove)))
     options = {"pits": pits, "cracks": cracks, "flanks": forms, "face": face, "groove": groove}
-    options["supports"] = supports_of(pair, supports)
+    options["supports"] = supports_of(pair, supports, forces, face)
     check_integral(pair, options["supports"], "ritz3d", face)
     return pair_stiffness3d(pair, forces[0], two_materials(material), phase, **options)

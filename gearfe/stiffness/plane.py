@@ -7,11 +7,13 @@ from dataclasses import asdict, replace
 
 import numpy as np
 
+from geometry.pair.contacts import near_pitches
+
 from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from ..steps import steps
 from .curve import StiffnessCurve
-from .estimate import coarser, estimate, fixed_phases
+from .estimate import coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of
 from .supported import yielding
 
@@ -23,7 +25,9 @@ def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, gro
     return yielding(solve, yields), options | {"outside": [asdict(one) for one in details["outside"]]}
 
 
-def section_solver(row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, yields=None, **numeric):
+def section_solver(
+    row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, yields=None, hats=1.0, **numeric
+):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
     Parameters
@@ -44,20 +48,25 @@ def section_solver(row, own, pair, materials, phase, *, cracks, extended, state,
         Modifications, `geometry.tooth.modified.flank_forms`.
     yields : float, optional
         Approach by the supports of the hubs per line load [mm per N/mm].
+    hats : float
+        How many times shorter than those of the method the hats at corners are.
     **numeric
         ``refine``, ``order``, ``teeth``: each method gets those that it has.
     """
     started = time.perf_counter()
     extended = extended and (own or row).extended
+    neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
 
     def named(row, gear, material, cracks=()):
-        return _flexibility(row, gear, material, cracks, math.ceil(pair.eps_alpha), state, cache, numeric)
+        return _flexibility(row, gear, material, cracks, neighbours, state, cache, numeric)
 
     gears = list(zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True))
     if own is None:
         flexible = [named(row, gear, material, found) for gear, material, found in steps(gears)]
     else:
         flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
+    if hats != 1:
+        flexible = [replace(one, fine=hats * one.fine) for one in flexible]
     contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state, flanks=flanks)
     details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
     if row.converged:
@@ -101,7 +110,6 @@ def curve(pair, phase, force, solve, meta, damage=None):
     solved = solve(force / width)
     used = solved.line_load.max(axis=0) > 0
     unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
-    closing = solved.approach if unloaded is None else solved.approach - solved.unloaded
     meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
     if damage is not None:
         _warn_if_unseen(pair, damage, solved.order[used])
@@ -110,9 +118,9 @@ def curve(pair, phase, force, solve, meta, damage=None):
         meta["tip_in_fillet_phases"] = phase[list(solved.fillet)].tolist()
     return StiffnessCurve(
         phase=phase,
-        k=force / (closing * 1e-3),
+        k=force / (solved.closing * 1e-3),
         k_tangent=solved.tangent * width * 1e3,
-        lte=closing * 1e-3,
+        lte=solved.closing * 1e-3,
         order=solved.order[used],
         force=solved.line_load[:, used] * width,
         pressure=solved.pressure[:, used] * 1e6,
@@ -123,17 +131,18 @@ def curve(pair, phase, force, solve, meta, damage=None):
 
 
 def with_error(row, curves, case, options):
-    """The curves with their estimated error, by coarser solves of the same `case` of `section_solver`."""
+    """The curves with their estimated error, by other solves of the same `case` of `section_solver`."""
     pair, materials, phase = case
-    less = coarser(options["refine"], _numeric(row, options).get("order"))
+    order = _numeric(row, options).get("order")
+    less, hats = coarser(options["refine"], order), finer_hats(order)
     turns = any(form.differs for form in options.get("flanks") or ())
     periodic = not (any(options["cracks"]) or turns)
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less))]
+    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less, *hats))]
     out = []
     for one in curves:
-        k, *coarse = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)
-        out.append(replace(one, error=estimate(phase, periodic, k, coarse)))
+        k, *others = (curve(pair, where, one.meta["force_N"], solve, {}).k for solve in solvers)
+        out.append(replace(one, error=estimate(phase, periodic, k, others[: len(less)], others[len(less) :])))
     return out
 
 

@@ -7,7 +7,8 @@ import numpy as np
 from ..flexibility.section_contact import MARKS
 
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
-SETTLED = 1e-7  # of a base pitch
+SETTLED, PART = 1e-7, 1e-3  # last change of a phase, and the same in the shift by what a light load closes
+LEAST = 1e-13  # the same at the least, above the rounding of a phase
 MOST = 20
 
 
@@ -44,23 +45,30 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
         If the shift does not settle.
     """
     shift = SHIFT[pose] / pair.p_bt
-    at, curve = _settled(curve_at, phase, lambda curve: shift * 1e3 * curve.te, pose)
+    at, curve = _settled(
+        curve_at,
+        phase,
+        pose,
+        lambda curve: shift * 1e3 * curve.te,
+        lambda curve: np.clip(PART * abs(shift) * 1e3 * curve.lte, LEAST, SETTLED),
+    )
     if flanks is not None:
-        _, unloaded = _settled(lambda p: pair.contacts(p, flanks=flanks).gap.min(axis=1), phase, lambda gap: shift * gap, pose)
-        lte = curve.te - unloaded * 1e-3
+        least = _settled(lambda p: pair.contacts(p, flanks=flanks).gap.min(axis=1), phase, pose, lambda gap: shift * gap)
+        unloaded = least[1]
+        lte = curve.lte + (curve.unloaded - unloaded * 1e-3)
         curve = replace(curve, lte=lte, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / lte)
     meta = curve.meta | {"pose": pose}
     meta |= {name: phase[np.isin(at, meta[name])].tolist() for name in MARKS if name in meta}
     return replace(curve, phase=phase, meta=meta)
 
 
-def _settled(solve, phase, moved, pose):
-    """Phases at which what is solved is as far from `phase` as `moved` says, and what is solved there."""
+def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
+    """Phases at which what is solved is as far from `phase` as `moved` says, to `enough`, and what is solved there."""
     at = phase
     for _ in range(MOST):
         found = solve(at)
         wanted = phase + moved(found)
-        if np.abs(wanted - at).max() < SETTLED:
+        if (np.abs(wanted - at) < enough(found)).all():
             return at, found
         at = wanted
     raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")

@@ -241,7 +241,7 @@ def mesh_stiffness(
     check_pose(pose)
     cracks, pits = by_gear(pair, damage)
     forms = flank_forms(pair, flanks, misalignment)
-    held = supports_of(pair, supports)
+    held = supports_of(pair, supports, forces, face)
     method, why = choose(method, pair, cracks, pits, face, teeth, forms, held)
     row, own = row_of(method)
     refuse(row, pair, cracks, pits, teeth, variants, face, groove, forms)

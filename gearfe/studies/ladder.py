@@ -90,7 +90,7 @@ def ladder(pair, force, material, phases=64):
     curves = {"textbook": sum_of_pairs.k}
     for name, flexible in models.items():
         solved = PairContact(pair, materials, flexible, phase, extended=False, state="plane strain").solve(force / width)
-        curves[name] = force / (solved.approach * 1e-3)
+        curves[name] = force / (solved.closing * 1e-3)
     curves["fe"] = reference.k
     alone_there = np.isfinite(pair.contacts(phase, extended=False).gap).sum(axis=1) == 1
     return [Rung(name, k, _mean(k[alone_there]), _mean(k[~alone_there])) for name, k in curves.items()]

@@ -103,6 +103,14 @@ class Shaft:
         return sum(one.length for one in self.segments)
 
     @property
+    def diameter(self) -> float:
+        """Thickness of the shaft in the middle of its gear [mm], of the thinner part where a step is there."""
+        ends = np.cumsum([0.0, *(one.length for one in self.segments)])
+        near = 1e-9 * ends[-1]
+        touch = [k for k in range(len(self.segments)) if ends[k] - near <= self.gear <= ends[k + 1] + near]
+        return min(self.segments[k].diameter for k in touch)
+
+    @property
     def tilts(self) -> bool:
         """Whether a force in the middle of the gear tilts it, or bends it along its width."""
         return self.integral or self.support().tilts

@@ -29,6 +29,7 @@ EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
 SCAN = 25  # places along the flank from which the search starts
 OFF = 1e6  # a distance that no flanks have [mm]
+VERTEX = 1e-4  # half width of the parabola that ends the search [m_n]
 GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
 
@@ -188,8 +189,32 @@ def _inside(pair, forms, nominal, order, start):
         found = np.where(np.isfinite(found), found, pose)
         width = (bounds[1] - bounds[0]) / 8
         bounds = np.maximum(arc - width, bounds[0]), np.minimum(arc + width, bounds[1])
+    roll, met, found = _exact(pair, forms, nominal, order, (arc, roll, met, found))
     on = np.isfinite(met)
     return roll, np.where(on, met, pair.mate_roll(roll)), np.where(on, found, np.inf)
+
+
+def _exact(pair, forms, nominal, order, near):
+    """Rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
+
+    The search leaves 1e-6 mm of the place: nothing for the gap of smooth flanks but its last digits, which a parabola through
+    three places gives, and 1e-9 mm at a ridge, which is looked at itself.
+    """
+    arc, roll, met, found = near
+    step = VERTEX * pair.gear_1.m_n
+    sides = [roll_at_arc(pair.gear_1, arc + k * step) for k in (-1, 1)]
+    before, after = (approach(pair, at, nominal, start=found, flanks=forms, order=order)[0] for at in sides)
+    bend = before - 2 * found + after
+    off = np.where(bend > 0, (before - after) / np.where(bend > 0, 2 * bend, 1.0), 0.0)
+    tried = [(True, roll_at_arc(pair.gear_1, arc + step * np.clip(np.nan_to_num(off), -1, 1)))]
+    for driver, form in ((True, forms[0]), (False, forms[1])):  # a kink, as the end of the flank inside of it
+        tried += [(driver, np.nextafter(kink, (form.low + form.high) / 2)) for kink, _ in form.kinks]
+    for driver, at in tried:
+        gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=found, flanks=forms, order=order)
+        one, two = (at, faced) if driver else (faced, at)
+        better = gap < found
+        roll, met, found = (np.where(better, *both) for both in ((one, roll), (two, met), (gap, found)))
+    return roll, met, found
 
 
 def _residual(pair, forms, arc, turns, order, pose):

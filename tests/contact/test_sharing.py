@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from gearfe.contact import sharing
 from gearfe.contact.sharing import approaches, line_contact, line_contacts, share, stacked
 
 
@@ -34,6 +35,40 @@ def test_share_equals_brute_force(seed):
     want, want_approach = brute_force(flexibility, gap, load)
     assert_allclose(force, want, atol=1e-9 * load)
     assert_allclose(approach, want_approach, rtol=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1e-22, 1.0, 1e22])
+@pytest.mark.parametrize("seed", range(12))
+def test_where_the_active_set_does_not_settle(monkeypatch, seed, scale):
+    """Crack faces between loads: the least energy of all pushes, with the loads' sum given, whatever the unit of length.
+
+    Every set of pushes is tried: those in touch close by the approach, the faces by none, and no other face overlaps.
+    """
+    monkeypatch.setattr(sharing, "STEPS", 0)
+    rng = np.random.default_rng(seed)
+    n, load = 5, 10 ** rng.uniform(-2, 2)
+    weight = np.array([1.0, 1.0, 1.0, 0.0, 0.0])
+    root = rng.normal(size=(n, n))
+    flexibility, gap = scale * (root @ root.T + 0.05 * np.eye(n)), scale * rng.exponential(size=n) * weight
+    force, approach = share(flexibility, gap, load, weight)
+    assert_allclose(weight @ force, load, rtol=1e-10)
+    rests = flexibility @ force + gap - approach * weight
+    assert (force >= 0).all()
+    assert (rests > -1e-9 * scale * load).all()
+    assert_allclose(force * rests, 0, atol=1e-9 * scale * load**2)
+    assert (force > 0).sum() > 1
+
+
+def test_a_start_in_any_unit_saves_the_steps(monkeypatch):
+    """The line loads themselves in another unit: they are those of the load given, and one step finds nothing to change."""
+    smooth, gap = 4e-5 * (np.eye(3) + 0.2), np.array([0.0, 0.001, 0.003])
+    case = smooth, gap, 400.0, 5.6e-6, np.array([2.0, 4.0, 5.0]), 1.13e5
+    force, *told = line_contact(*case)
+    asked = []
+    monkeypatch.setattr(sharing, "share", lambda *given: asked.append(given) or share(*given))
+    again, *same = line_contact(*case, start=1e-6 * force)
+    assert_allclose([*again, *same], [*force, *told], rtol=1e-9)
+    assert len(asked) == 1
 
 
 @pytest.mark.parametrize("load", [0.0, -1.0, float("nan")])

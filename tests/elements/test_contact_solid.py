@@ -171,6 +171,14 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
         deck.deflection(tmp_path / "none.dat")
 
 
+@pytest.mark.parametrize("name", list(outsider.lines()))
+def test_line_loads_on_file_are_of_the_meshes_written_today(name, tmp_path):
+    """A rule of the mesh that changes makes rows of another mesh of them, which do not repeat."""
+    mesh = outsider.LINE_MESHES[0]  # the coarser, in which rules of least numbers of edges decide
+    row = outsider.stored()[name, outsider.told(mesh)]
+    assert outsider.line_deck(tmp_path, name, mesh).part.points.shape[1] == int(row["nodes"])
+
+
 def test_page_is_made_from_its_table():
     assert outsider_three.PAGE.read_text(encoding="utf-8") == outsider_three.page()
 

@@ -82,6 +82,23 @@ def test_stress_of_the_ring():
     assert_allclose(radial[outer], -1.0, rtol=0.02)
 
 
+@pytest.mark.parametrize("inset", [0.0, 0.3, 1.0])
+def test_stress_inside_of_triangles(inset):
+    """Of a quadratic displacement u = (x**2, 0), which two triangles carry exactly: sigma_xx = 2 (lam + 2 mu) x.
+
+    At a corner of one triangle alone it is that of a point `inset` of the way to its middle.
+    """
+    mesh = MeshTri2.from_mesh(MeshTri(np.array([[0.0, 1.0, 1.0, 0.0], [0.0, 0.0, 1.0, 1.0]]), np.array([[0, 0], [1, 2], [2, 3]])))
+    body = Body(mesh.with_boundaries({"left": lambda x: x[0] < 1e-9}), gf.Material(E=1000.0, nu=0.3), held="left")
+    x, y = body.mesh.doflocs
+    stress = body.stress(np.column_stack([x**2, 0 * x]).ravel(), inset)
+    lam, mu = body.material.lame(body.state)
+    place = {(1.0, 0.0): 1.0 + inset * (2 / 3 - 1.0), (0.0, 1.0): inset / 3}  # middles at 2/3 and 1/3
+    for corner, at in place.items():
+        node = int(np.flatnonzero((x == corner[0]) & (y == corner[1]))[0])
+        assert_allclose(stress[:, node], [2 * (lam + 2 * mu) * at, 2 * lam * at, 0.0], atol=1e-9)
+
+
 def test_unknown_boundary_is_named():
     with pytest.raises(ValueError, match="no boundary 'flnak'; this mesh has inner, outer"):
         Body(ring(1.0, 2.0, 1), gf.Material(), held="flnak")

@@ -8,12 +8,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.elements import section_error
+from gearfe.elements.fe3d import mesh_patches
 from gearfe.elements.fe_gear3d import PER_HAT, SIZES
 from gearfe.elements.section_error import finer_section, plane_hats
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.end_faces import edge_factor
 from gearfe.flexibility.halfspace import half_space
-from gearfe.flexibility.solid import PLACES, Flexibility3D, own_distance, own_mirrors
+from gearfe.flexibility.solid import PLACES, Flexibility3D, hats, own_distance, own_mirrors
 
 GEAR = gf.Gear(z=12, x=0.2, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=6.0, tip_radius=0.2)
 
@@ -43,6 +45,28 @@ def test_a_section_changes_steadily_with_the_helix_angle(hats_at):
     """Of a gear that is hardly helical it is that of the spur gear, to within the meshes."""
     almost = plane_hats(replace(GEAR, beta=1e-3), gf.Material(), (), 1.0, PER_HAT, SIZES)
     assert_allclose(almost, hats_at[1.0], rtol=1e-3)
+
+
+def test_forces_that_lean_by_a_helix_are_taken_in_the_section(monkeypatch):
+    """A force at right angles to a helical flank has cos(beta_b) of it in the section, and is read along it: both are undone.
+
+    On the mesh of the spur gear of the same transverse section, which does not lean, nothing else is left of the helix.
+    """
+    beta = math.radians(30)
+    spur = {name: getattr(GEAR, name) * math.cos(beta) for name in ("x", "addendum", "dedendum", "tip_radius")}
+    spur |= {"m_n": GEAR.m_n / math.cos(beta), "alpha_n": math.atan(math.tan(GEAR.alpha_n) / math.cos(beta))}
+    spur, helical = (replace(GEAR, r_bore=9.0, **own) for own in (spur, {"beta": beta}))
+    assert_allclose([spur.r_b, spur.r_a, spur.r_f], [helical.r_b, helical.r_a, helical.r_f], rtol=1e-9)
+    places = hats(spur)
+    monkeypatch.setattr(section_error, "hats", lambda gear: places)
+    want = plane_hats(spur, gf.Material(), (), 0.5, PER_HAT, SIZES)
+    thin = replace(spur, b=section_error.THIN * helical.m_n)
+    monkeypatch.setattr(
+        section_error,
+        "mesh_patches",
+        lambda gear, *given, **more: replace(mesh_patches(thin, *given, **more), gear=gear),
+    )
+    assert_allclose(plane_hats(helical, gf.Material(), (), 0.5, PER_HAT, SIZES), want, rtol=2e-3)
 
 
 def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at):

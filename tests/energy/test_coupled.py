@@ -250,3 +250,15 @@ def test_error_does_not_depend_on_the_load(line_load):
     moved = abs(coupled_.error(reference)[2] - middle[-2].error(middle[-1])[2])
     assert moved < 2e-3
     assert abs(textbook.error(reference)[2] - middle[0].error(middle[-1])[2]) > 10 * moved
+
+
+def test_plane_stress_is_plane_strain_of_another_material():
+    """Of E / (1 - nu**2) and nu / (1 - nu), in every plane problem: Timoshenko and Goodier, section 17."""
+    nu = 0.3
+    other = gf.Material(E=STEEL.E / (1 - nu**2), nu=nu / (1 - nu))
+    gear, roll = make(25, 10.0), np.linspace(5.0, 12.0, 7)
+    assert_allclose(
+        coupled.local_remainder(gear, other, roll, state="plane stress"),
+        coupled.local_remainder(gear, STEEL, roll, state="plane strain"),
+        rtol=1e-12,
+    )

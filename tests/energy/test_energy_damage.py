@@ -42,7 +42,7 @@ def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **op
     cracks = tuple(d for d in damage if isinstance(d, gf.Crack))
     pits = tuple(d for d in damage if isinstance(d, gf.Pit))
     solve, _ = plain_sum(on or pair(), BOTH, phase, formulas, cracks=(cracks, ()), pits=(pits, ()), **options)
-    return load / solve(load).approach
+    return load / solve(load).closing
 
 
 # --- the integrals

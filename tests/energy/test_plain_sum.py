@@ -40,7 +40,7 @@ def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **op
     cracks = tuple(d for d in damage if isinstance(d, gf.Crack))
     pits = tuple(d for d in damage if isinstance(d, gf.Pit))
     solve, _ = plain_sum(on or pair(), BOTH, phase, formulas, cracks=(cracks, ()), pits=(pits, ()), **options)
-    return load / solve(load).approach
+    return load / solve(load).closing
 
 
 # --- teeth
@@ -57,7 +57,7 @@ def test_damage_belongs_to_its_tooth():
     other = {"cracks": ((crack,), ()), "pits": (tuple(seven(radius=31.2)), ())}
     one = plain_sum(pair(), BOTH, PHASE - 2, textbook, **wheel)[0](100.0)
     two = plain_sum(swapped, BOTH, pair().eps_alpha - PHASE, textbook, **other)[0](100.0)
-    assert_allclose(one.approach, two.approach, rtol=1e-12)
+    assert_allclose(one.closing, two.closing, rtol=1e-12)
     assert_allclose(one.line_load.sum(axis=1), 100.0, rtol=1e-12)
 
 
@@ -94,9 +94,9 @@ def test_load_dependent_contact(contact):
     solve, _ = plain_sum(pair(), BOTH, PHASE, textbook, contact=contact, pits=(tuple(seven()), ()))
     low, middle, high = (solve(load) for load in (99.9, 100.0, 100.1))
     assert_allclose(middle.line_load.sum(axis=1), 100.0, rtol=1e-12)
-    assert_allclose(middle.tangent, 0.2 / (high.approach - low.approach), rtol=1e-6)
-    assert (middle.tangent > 100.0 / middle.approach).all()
-    assert (solve(200.0).approach < 2 * middle.approach).all()
+    assert_allclose(middle.tangent, 0.2 / (high.closing - low.closing), rtol=1e-6)
+    assert (middle.tangent > 100.0 / middle.closing).all()
+    assert (solve(200.0).closing < 2 * middle.closing).all()
 
 
 def test_weber_reproduces_the_reference_local_part():

@@ -100,6 +100,15 @@ def test_frequencies_of_the_articles(spur_stage, herringbone_stage):
     assert len(compound.dofs) == 39
 
 
+def test_the_carrier_turns_with_its_planets_as_points(spur_stage):
+    """All planets' mass, at the distance of their axes from the sun's."""
+    machine = pitted_planetary(spur_stage, {"sun_planet": 3e8 * SHAPE, "planet_ring": 4e8 * SHAPE})
+    mass = dict(zip(machine.dofs, machine.mass.tolist(), strict=True))
+    together = sum(value for name, value in mass.items() if name.startswith("planet") and name.endswith(".x"))
+    away = 1e-3 * spur_stage.sun_planet.a
+    assert_allclose([mass["carrier.x"], mass["carrier.theta"]], [together, together * away**2], rtol=1e-12)
+
+
 def test_phase_table_of_the_compound_stage():
     """Three planets divide all tooth numbers, so that branches are in phase; within a branch each mesh has its own phase."""
     table = compound_planetary(dict.fromkeys(KINDS, 1.6e9), pairs=PAIRS).notes["relative phases"]

@@ -8,7 +8,9 @@ from machines import two_masses
 from numpy.testing import assert_allclose
 from scipy.io import loadmat
 
+from gearfe.machine.gear_mesh import GearMesh
 from gearfe.machine.mesh_errors import with_errors
+from gearfe.machine.tables import Load, Machine, Spring
 from gearfe.motion.simulate import simulate
 
 
@@ -21,6 +23,19 @@ def test_errors_of_a_machine_shift_its_bodies():
     assert_allclose(moved.meshes[0].e(t)[0], want, atol=1e-18)
     with pytest.raises(ValueError, match="no body 'c'"):
         with_errors(machine, place={"c": (0.0, 0.0)})
+
+
+def test_the_runout_of_a_body_that_moves_in_a_plane():
+    """Its teeth's centre goes round at (cos, sin)(2 pi f t + start) from the axis; the mesh closes by its row with that."""
+    row = np.array([0.6, 0.8, -1.0])
+    mesh = GearMesh("m", row, np.full(8, 1e8), frequency=500.0)
+    springs = [Spring(f"to ground {i}", np.eye(3)[i], 1e7) for i in range(3)]
+    machine = Machine(("a.x", "a.y", "b.x"), np.ones(3), tuple(springs), (mesh,), (Load("F", np.eye(3)[2], 10.0),))
+    moved = with_errors(machine, runout={"a": (2e-6, 30.0, 0.4)})
+    t = np.linspace(0, 0.05, 13)
+    turn = 2 * math.pi * 30.0 * t + 0.4
+    away = 2e-6 * np.array([np.cos(turn), np.sin(turn), 0 * t])
+    assert_allclose(moved.meshes[0].e(t)[0], -row @ away, atol=1e-18)
 
 
 def test_channels_units_and_files(tmp_path):

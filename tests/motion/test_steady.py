@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from machines import two_masses
+from machines import tooth, two_masses
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import mathieu_a, mathieu_b
 
+from gearfe.machine.gear_mesh import ToothDamage
 from gearfe.machine.single_mesh import single_mesh
 from gearfe.motion.simulate import simulate
 from gearfe.motion.steady import common_period, floquet, steady_state
@@ -77,6 +78,18 @@ def test_steady_state_with_contact_loss():
     assert found.response["force mesh"].min() < 0.9 * 1500
     assert found.stable
     assert_allclose(found.response["pair.x"].max(), late["pair.x"][-n:].max(), rtol=1e-4)
+
+
+def test_the_period_of_a_damaged_tooth_is_its_bodys_turn():
+    """500 Hz and a tooth of 24: stiffness comes back to itself after 24 cycles, and after none of their parts."""
+    hurt = tooth(np.full(64, 1e8), 0.3, 1.5)
+    machine = two_masses(stiffness=np.full(64, 1e8), damage=(ToothDamage(0, 0, hurt),), teeth=(24, 36))
+    period = common_period(machine)
+    assert_allclose(period, 24 / 500.0, rtol=1e-12)
+    t, k = np.linspace(0, period, 997), machine.meshes[0].k
+    assert_allclose(k(t + period), k(t), rtol=1e-9)
+    for part in (2, 3):
+        assert np.abs(k(t + period / part) - k(t)).max() > 0.1 * k(t).max()
 
 
 def test_period_and_what_has_none():

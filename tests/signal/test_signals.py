@@ -50,6 +50,8 @@ def test_scalloping_is_as_the_docstring_says():
 def test_noise_bandwidth(window, bins):
     found = gf.spectrum(gf.Signal(noise(2000), 1000.0, "N"), window=window)
     assert_allclose(found.bandwidth, bins * 0.5)
+    density = gf.power_spectral_density(gf.Signal(noise(2000), 1000.0, "N"), resolution=20.0, window=window)
+    assert_allclose(density.bandwidth, bins * 20.0)
 
 
 def test_density_integrates_to_the_variance_and_is_flat_for_noise():

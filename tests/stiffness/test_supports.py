@@ -168,3 +168,59 @@ def test_wrong_supports_are_refused(given, message):
 def test_impossible_springs_are_refused(given, message):
     with pytest.raises(ValueError, match=message):
         gf.Support(**given)
+
+
+def shaft(parts, middle, length, **more):
+    return {"pinion": gf.Shaft(segments=parts, bearings=(0, length), gear=middle, material=STEEL, torque=0, **more)}
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"pinion": gf.Support(radial=150)}, r"radial = 150 N/mm: under 2000 N .* 13.3 mm.*150 N/um are 150000 N/mm"),
+        ({"wheel": gf.Support(tilt=1e4)}, r"the wheel's support has tilt = 10000 N mm/rad.*10000 N m/rad are 1e\+07 N mm/rad"),
+        ({"wheel": gf.Support(torsion=4e5)}, r"torsion = 400000 N mm/rad: under 2000 N it twists by 0.21"),
+        (shaft([(0.08, 0.03)], 0.04, 0.08), r"shaft is 0.08 mm long, but its gear is 15 mm wide: .*0.08 m are 80 mm"),
+        (shaft([(300, 300)], 150, 300), r"shaft is 300 mm thick at the gear, but the bore is 30 mm wide"),
+        (shaft([(300, 3)], 150, 300), r"shaft is 300 mm long and 3 to 3 mm thick.*give lengths and diameters in mm"),
+        (shaft([(80, 30)], 40, 80, bearing_stiffness=150), r"bearings \(150.0, 150.0\) N/mm: .*1 N/um is 1000 N/mm"),
+    ],
+)
+@pytest.mark.parametrize("ask", [solved, lambda given: gf.contact_pattern(PAIR, 2000.0, STEEL, phases=[0.3], supports=given)])
+def test_supports_in_other_units_are_refused(ask, given, message):
+    with pytest.raises(ValueError, match=message):
+        ask(given)
+
+
+def test_how_far_a_hub_may_give_way():
+    """2000 N on a spring whose way is the module's quarter, just inside and outside; without load nothing is asked."""
+    quarter = 0.25 * RACK["m_n"]
+    solved({"pinion": gf.Support(radial=2000.0 / (0.99 * quarter))}, method="ritz")
+    with pytest.raises(ValueError, match="25 % of the module"):
+        solved({"pinion": gf.Support(radial=2000.0 / (1.01 * quarter))}, method="ritz")
+    solved({"pinion": gf.Support(radial=150)}, force=2.0, method="ritz")
+    with pytest.raises(ValueError, match=r"axial = 150 N/mm: under 2000 N its teeth give way by 3\.11 mm"):
+        solved({"pinion": gf.Support(axial=150)}, pair=helical(1))
+    twist = 0.1 / (2000.0 * PAIR.gear_1.r_b)  # rad per N mm
+    solved({"pinion": gf.Support(torsion=1.01 / twist)}, method="ritz")
+    with pytest.raises(ValueError, match=r"shafts twist by less than 0\.1 rad"):
+        solved({"pinion": gf.Support(torsion=0.99 / twist)}, method="ritz")
+
+
+def test_the_shaft_in_the_bore_is_the_one_at_the_gear():
+    """Thicker beside the gear is a shoulder; a gear at a step has the thinner part in its bore; rings have no bore."""
+    stepped = shaft([(30, 60), (20, 30), (30, 60)], 40, 80)
+    solved(stepped, method="ritz")
+    solved(shaft([(40, 30), (40, 60)], 40, 80))
+    with pytest.raises(ValueError, match="60 mm thick at the gear"):
+        solved(shaft([(40, 30), (40, 60)], 41, 80))
+
+
+def test_the_error_of_the_teeth_alone():
+    """A k off by its error, on the same springs: 1 / k_teeth = 1 / k - way / F is off by as much as the error told."""
+    found = solved(SPRINGS, method="ritz", error=True)
+    teeth = found.without_supports()
+    off = 1e-6 * found.error
+    moved = 1 / (1 / (found.k + off) - SERIES) - 1 / (1 / found.k - SERIES)
+    assert_allclose(teeth.error, 1e6 * moved, rtol=1e-4)
+    assert (teeth.error > 1.5 * found.error).all()

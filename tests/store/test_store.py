@@ -42,6 +42,16 @@ def test_what_was_written_is_read(folder):
     np.testing.assert_allclose(some["k"][0].as_py(), np.full(300, 1.1))
 
 
+def test_a_range_holds_both_its_ends(folder):
+    for where, cases in (
+        ({"case": (1, 3)}, [1, 2, 3]),
+        ({"case": (2, 2)}, [2]),
+        ({"case": (0, 5), "mean": (1.5, 1.5)}, [2, 3, 4, 5]),
+    ):
+        found = shards.read(folder, ["case"], shards.where_of(where, list(FIELDS)))
+        assert sorted(found["case"].to_pylist()) == cases
+
+
 def test_a_write_that_fails_leaves_the_old_shard(folder, monkeypatch):
     before = (folder / "s1.parquet").read_bytes()
 

@@ -78,6 +78,32 @@ def test_shear_factors_of_cowper():
     assert Section(1.0, 2.0, 2.0 - 1e-9).shear_factor(0.3) == pytest.approx(2 * 1.3 / (4 + 3 * 0.3), rel=1e-6)  # thin tube
 
 
+@pytest.mark.parametrize("bore", [0.2, 0.5, 0.8])
+def test_shear_of_tubes_without_contraction(bore):
+    """With nu = 0 the stress is a gradient, of V / I cos(t) f(r), f = A r + B / r - r**3 / 8 with f' = 0 at both edges.
+
+    Its energy is that of the mean stress over the shear factor.
+    """
+    a, b = 1.0, bore
+    big, small = 3 / 8 * (a**2 + b**2), 3 / 8 * a**2 * b**2
+    energy = math.pi * (big * (a**4 - b**4) / 4 + small * (a**2 - b**2) / 2 - (a**6 - b**6) / 48)  # of (V / I)**2
+    tube = Section(1.0, 2 * a, 2 * b)
+    assert tube.shear_factor(0.0) == pytest.approx(tube.second_moment**2 / (tube.area * energy), rel=1e-12)
+
+
+def test_a_shaft_seen_from_its_other_end():
+    """The same springs, tilted the other way; each part of it where it was, counted from the other end; twice is once."""
+    one = shaft(30.0, (10.0, 90.0), ((40.0, 10.0), (60.0, 14.0, 4.0)), torque=95.0, bearing_stiffness=2e5)
+    other = one.turned()
+    springs, mirrored = one.support(), other.support()
+    for name in ("radial", "tilt", "torsion"):
+        assert_allclose(getattr(mirrored, name), getattr(springs, name), rtol=1e-9)
+    assert_allclose(mirrored.coupling, -springs.coupling, rtol=1e-9)
+    assert abs(springs.coupling) * math.sqrt(springs.radial * springs.tilt) > 0.05
+    assert (other.gear, other.torque, sorted(other.bearings)) == (70.0, 5.0, [10.0, 90.0])
+    assert other.turned() == one
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [

@@ -87,3 +87,13 @@ def test_told_apart_of_normal_values():
     assert abs(found - 0.76025) < 0.01
     assert gf.told_apart([1, 2], [3, 4]) == 1
     assert gf.told_apart([1, 2], [1, 2]) == 0.5
+
+
+def test_bands_have_only_places_that_all_cases_have(tmp_path):
+    """A curve without a value at a place: the percentiles of the rest would be those of other cases."""
+    sample = {"method": "latin", "count": 4, "of": {name: {"uniform": [0, 1]} for name in "abc"}}
+    hole = [{"number": 4, "draw": 4, "a": 0.5, "b": 0.5, "c": 0.5, "status": "done", "phase": [0.0, 0.5], "k": [math.nan, 10.0]}]
+    runs = stored(tmp_path / "runs", cube("latin", 4, 3, 2), np.array([1.0, 2.0, 3.0, 4.0]), sample, hole)
+    bands = gf.curve_bands(runs, "k", percentiles=(0, 50, 100))
+    assert bands["k"].shape == (3, 1)
+    np.testing.assert_allclose(bands["k"][:, 0], [2.0, 6.0, 10.0])  # of 2, 4, 6, 8, 10

@@ -129,32 +129,39 @@ def calculix(folder, name):
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
-def line_place(name):
-    """Gear and cracks of a case, the roll length [mm] of its line and the deflection [nm/N] there by `ritz3d`."""
+def line_hat(gear):
+    """Number of the hat under which a line load stands, and its roll length [mm]."""
+    knots = flexibility3d.hats(gear)
+    whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
+    top = int(whole[len(whole) // 2])
+    return top, math.sqrt(2 * gear.r_b * gear.outward * knots[1, top])
+
+
+def line_deflection(name):
+    """Deflection [nm/N] under a line load by `ritz3d`."""
     gear, cracks = lines()[name]
     axial = ritz3d.axial_degree(gear.b, gear.m_n)
     panels = [ritz3d.solid_sector(gear, STEEL, own, width=gear.b, order=3, axial=axial, refine=1.0) for own in (cracks, ())]
     found, _ = join(gear, {0: panels[0], 1: panels[1]}, panels[1])
-    knots = flexibility3d.hats(gear)
-    whole = np.flatnonzero(np.isclose(np.diff(knots, axis=0), flexibility3d.HAT * gear.m_n, rtol=1e-9).all(axis=0))
-    top = int(whole[len(whole) // 2])
-    at = top * (axial + 1)
-    ours = found[0, 0][at, at] / gear.b
-    return gear, cracks, math.sqrt(2 * gear.r_b * gear.outward * knots[1, top]), 1e6 * ours
+    at = line_hat(gear)[0] * (axial + 1)
+    return 1e6 * found[0, 0][at, at] / gear.b
+
+
+def line_deck(folder, name, mesh):
+    """Deck of a line load, in a folder."""
+    gear, cracks = lines()[name]
+    radius, half = math.hypot(line_hat(gear)[1], gear.r_b), flexibility3d.HAT * gear.m_n
+    return gf.write_line_inp(folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=half, **mesh)
 
 
 def line_row(name, mesh):
     """Deflection [nm/N] of a hat of pressure along the tooth's middle, by `ritz3d` and by CalculiX."""
-    gear, cracks, roll, ours = line_place(name)
-    radius = math.hypot(roll, gear.r_b)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        deck = gf.write_line_inp(
-            folder / "gear.inp", gear, radius, 100.0, STEEL, cracks=cracks, half_width=flexibility3d.HAT * gear.m_n, **mesh
-        )
+        deck = line_deck(folder, name, mesh)
         seconds = calculix(folder, "gear")
         theirs = deck.deflection(folder / "gear.dat") / deck.force
-    return _row(name, mesh, deck.part.points.shape[1], seconds, ours, 1e6 * theirs, 0.0)
+    return _row(name, mesh, deck.part.points.shape[1], seconds, line_deflection(name), 1e6 * theirs, 0.0)
 
 
 def contact_row(name, mesh):
@@ -264,7 +271,7 @@ def refresh():
     for row in known.values():
         name = row["case"]
         if name not in today:
-            today[name] = line_place(name)[-1] if name in lines() else stiffness(cases()[name])[0]
+            today[name] = line_deflection(name) if name in lines() else stiffness(cases()[name])[0]
         row["ours"] = f"{today[name]:.6g}"
     _write(known.values())
 

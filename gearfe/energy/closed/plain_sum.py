@@ -178,20 +178,26 @@ def _depth(gear, roll):
 
 
 def _solver(at, count, teeth, law):
-    """`solve` of `plain_sum`: a fixed point of the approach; the contact depends on the load only by a logarithm or F**0.1."""
+    """`solve` of `plain_sum`: a fixed point of the closing; the contact depends on the load only by a logarithm or F**0.1."""
 
     def total(values):
         return np.bincount(at.phase, at.weight * values, minlength=count)
 
+    unloaded, gap = None, np.zeros(teeth.shape)
+    if at.gap is not None:
+        unloaded = np.full(count, np.inf)
+        np.minimum.at(unloaded, at.phase, at.gap)
+        gap = at.gap - unloaded[at.phase]  # beyond the first touch, so that light loads keep their digits
+
     def solve(line_load):
         line = line_load / total(np.ones(teeth.shape))[at.phase]
-        touch, gap = np.ones(teeth.shape), np.zeros(teeth.shape) if at.gap is None else at.gap
+        touch = np.ones(teeth.shape)
         for _ in range(200):
             secant, tangent = law(np.maximum(line, 1e-9 * line_load) / at.touching)
             flexibility = teeth + secant / at.touching
             stiffness = total(touch / flexibility)
-            approach = (line_load + total(touch * gap / flexibility)) / stiffness
-            new = (approach[at.phase] - gap) / flexibility
+            closing = (line_load + total(touch * gap / flexibility)) / stiffness
+            new = (closing[at.phase] - gap) / flexibility
             closed = (new > 0).astype(float)
             settled = np.abs(touch * new - line).max() <= 1e-13 * line_load or np.ndim(secant) == 0
             settled &= bool((closed == touch).all())
@@ -203,9 +209,6 @@ def _solver(at, count, teeth, law):
         tangent = total(touch / (teeth + tangent / at.touching))
         pairs = np.zeros((count, at.order.size))
         np.add.at(pairs, (at.phase, at.column), at.weight * line)
-        unloaded = None if at.gap is None else np.full(count, np.inf)
-        if unloaded is not None:
-            np.minimum.at(unloaded, at.phase, gap)
-        return Solved(at.order, approach, tangent, pairs, np.full(pairs.shape, np.nan), unloaded=unloaded)
+        return Solved(at.order, closing, tangent, pairs, np.full(pairs.shape, np.nan), unloaded=unloaded)
 
     return solve

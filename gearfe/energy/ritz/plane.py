@@ -42,7 +42,7 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     order : int
         Polynomial order, 2 to 8.
     refine : float
-        Divides the edge lengths of the triangles.
+        Divides the edge lengths of the triangles and the hats at corners.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 

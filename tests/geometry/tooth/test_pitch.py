@@ -24,6 +24,13 @@ def test_one_tolerance_is_used_up_and_the_other_kept(seed):
     assert_allclose(gf.random_pitch(GEAR, 9, seed), 2 * places)  # two classes are a factor of two
 
 
+def test_tolerances_by_hand():
+    """Class 5, d = 100 mm, m_n = 2 mm: 0.1 + 0.8 + 5 = 5.9 um and 0.2 + 5.5 + 1.4 + 12 = 19.1 um; class 7 is twice that."""
+    gear = gf.Gear(z=50, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=20.0)
+    assert_allclose(pitch_tolerances(gear, 5), [5.9e-3, 19.1e-3], rtol=1e-12)
+    assert_allclose(pitch_tolerances(gear, 7), [11.8e-3, 38.2e-3], rtol=1e-12)
+
+
 def test_what_is_no_class_is_refused():
     for given in (0, 12, 6.5, "6", True):
         with pytest.raises(ValueError, match="classes 1 to 11"):

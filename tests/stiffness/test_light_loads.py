@@ -1,0 +1,82 @@
+"""Modified flanks under any load: a millionth of a newton closes a millionth of what the flanks lie apart."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
+STEEL = gf.Material(E=207e3, nu=0.3)
+PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
+LOADS = 10.0 ** np.arange(-6, 3.1, 0.5)  # N
+PITCH = tuple(0.004 * math.sin(2 * math.pi * 5 * k / 24) for k in range(24))
+
+
+def both(**given):
+    """The same flank on both gears, reliefs over 4.7 mm of roll length."""
+    own = {name: gear.roll_a - 4.7 for name, gear in (("pinion", PAIR.gear_1), ("wheel", PAIR.gear_2))}
+    return {name: gf.Flank(**given, **({"tip_start_roll": roll} if "tip_relief" in given else {})) for name, roll in own.items()}
+
+
+FLANKS = {
+    "linear relief": both(tip_relief=0.01),
+    "parabolic relief": both(tip_relief=0.01, tip_exponent=2),
+    "crowning and slope": both(crowning=0.005, slope=-0.004),
+    "rounded tips": both(tip_rounding=0.3),
+    "chamfered tips": both(tip_chamfer=0.3),
+    "pitch": {"pinion": gf.Flank(pitch=PITCH)},
+    "pitch and relief": both(tip_relief=0.01) | {"pinion": gf.Flank(pitch=PITCH, tip_relief=0.02, tip_start_roll=15.0)},
+}
+
+
+def solved(name, phase, **options):
+    return gf.mesh_stiffness(PAIR, LOADS, STEEL, flanks=FLANKS[name], phases=phase, **options)
+
+
+@pytest.mark.parametrize("pose", ["mean", "pinion"])
+@pytest.mark.parametrize("name", FLANKS)
+def test_what_a_load_more_closes_is_between_its_tangents(name, pose):
+    """Contacts only join, so that lte is concave: between two loads it grows by dF / k_tangent, of the one to the other."""
+    curves = solved(name, 3 * np.arange(24) / 24 + 1e-3, pose=pose)
+    k, tangent, lte = (np.array([getattr(one, what) for one in curves]) for what in ("k", "k_tangent", "lte"))
+    assert (np.diff(k, axis=0) > 0).all()
+    step, grown = np.diff(LOADS)[:, None], np.diff(lte, axis=0)
+    slack = np.where(LOADS[1:] <= 0.1, 0.01, 0.03)[:, None]  # another law takes over where a contact reaches a corner or kink
+    assert (grown < (1 + slack) * step / tangent[:-1]).all()
+    assert (grown > (1 - slack) * step / tangent[1:]).all()
+    assert_allclose([one.te - one.unloaded for one in curves], lte, rtol=1e-4, atol=1e-17)
+
+
+@pytest.mark.parametrize(("method", "first", "rtol"), [("ritz", 0, 1e-6), ("fe", 0, 1e-6), ("ritz3d", 4, 2e-3)])
+@pytest.mark.parametrize("name", ["parabolic relief", "crowning and slope"])
+def test_light_loads_follow_the_half_planes_logarithm(name, method, first, rtol):
+    """One contact: lte / F = S + c (ln(2 / a) + 1/2) / b, with a as the root of F; 0.03 N does not close the next pair's gap.
+
+    In three dimensions the gaps of cells keep 1e-14 mm, which from 1e-4 N on is little.
+    """
+    curves = solved(name, np.array([0.4, 0.5, 0.6, 0.8]), method=method)[first:10]
+    way = np.array([1e3 * one.lte / one.meta["force_N"] for one in curves])  # mm/N
+    own = -2 * 2 * (1 - 0.3**2) / (math.pi * 207e3) / 20.0 / 2  # two gears, the width, the root
+    assert_allclose(np.diff(way, axis=0) / np.diff(np.log(LOADS[first:10]))[:, None], own, rtol=rtol)
+
+
+@pytest.mark.parametrize(("name", "factor"), [("pitch", 0.5), ("linear relief", 1.0)])
+def test_corners_and_kinks_too(name, factor):
+    """At the very corner, whose pair alone is in its place, and on a relief's ridge, which a contact touches in proportion.
+
+    Rows of a few hats, placed anew for each load: a step of k by 1e-3 is 3 % of this slope.
+    """
+    phase = {"pitch": 0.0, "linear relief": 0.125}[name]
+    curves = solved(name, np.array([phase]))[:6]
+    way = np.array([1e3 * one.lte[0] / one.meta["force_N"] for one in curves])
+    own = -2 * 2 * (1 - 0.3**2) / (math.pi * 207e3) / 20.0 * factor
+    assert_allclose(np.diff(way) / np.diff(np.log(LOADS[:6])), own, rtol=0.05)
+
+
+def test_sums_of_pairs_keep_their_digits():
+    """Constant springs in series: k does not change with the load until another pair joins."""
+    light, heavier = (solved("linear relief", 16, method="textbook")[k] for k in (0, 4))
+    assert_allclose(light.k, heavier.k, rtol=1e-12)
