@@ -14,9 +14,8 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from geometry.pair.contacts import TIP, touching
+from geometry.pair.contacts import TIP, end_corners, touching
 from geometry.tooth.profile import arc_at
-from geometry.tooth.side import form_corner
 
 from ..energy.ritz.plane import flexibility
 from ..energy.ritz.plane_strain import plane_hats
@@ -24,11 +23,12 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
-from .plane import CORNER, PairContact
+from .plane import BEYOND, CORNER, PairContact
 from .rows import RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
+MARGIN = 2.25  # of the load whose contacts the table reaches: contacts 1.5 times as wide
 PLACES = 17  # abscissae of the table at each end of the path
 BETWEEN = 200  # abscissae at which is looked for what touches
 AT_END = (2, 3), (1, 4)  # numbers of the corners that touch before the start and after the end of the path
@@ -51,13 +51,12 @@ class CornerLaw:
 
     def __init__(self, pair, materials, line_load, further, *, cache=True):
         modulus = contact_modulus(materials)
-        radius = [abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal)))) for nominal in pair.path]
-        # the same rule as in the plane: contacts of the whole load less than so many half widths from the corner
-        self.inside = [CORNER * float(half_width(line_load, r, modulus)) for r in radius]
-        self.path, self.corners = pair.path, end_corners(pair)
-        load = 2.0 ** round(math.log2(line_load))  # so that loads alike share a table
-        near = [1.5 * float(half_width(load, r, modulus)) for r in radius]
-        away = [2.0 ** math.ceil(math.log2(max(a, n))) for a, n in zip(further, near, strict=True)]
+        self.path = pair.path
+        self.inside = [_reached(pair, end, line_load, modulus) for end in (0, 1)]
+        unit = modulus * pair.gear_1.m_n
+        load = unit * 2.0 ** round(math.log2(line_load / unit))  # so that loads alike share a table
+        near = [_reached(pair, end, MARGIN * load, modulus) for end in (0, 1)]
+        away = [pair.p_bt * 2.0 ** math.ceil(math.log2(max(a, n) / pair.p_bt)) for a, n in zip(further, near, strict=True)]
         kept, case = solved_gears(cache), (pair, materials, load)
         self._tables = [
             kept.get(("corner", *case, end, -n, a), partial(_table, *case, end, (-n, a), kept))
@@ -67,10 +66,8 @@ class CornerLaw:
     def ends(self, pair, cells):
         """End of the path (0 start, 1 end) whose corner each cell touches or nearly touches, -1 away from both."""
         out = np.full(cells.z.size, -1)
-        for k, number in enumerate(self.corners):
-            first = number % 2 == 1
-            gear, roll = (pair.gear_1, cells.roll_1) if first else (pair.gear_2, cells.roll_2)
-            near = np.abs(arc_at(gear, gear.roll_a if number in TIP else gear.roll_f) - arc_at(gear, roll)) < self.inside[k]
+        for k, sign in ((0, -1), (1, 1)):
+            near = sign * (self.path[k] - cells.nominal) < self.inside[k]
             out[np.isin(cells.corner, AT_END[k]) | ((cells.corner == 0) & near)] = k
         return out
 
@@ -88,17 +85,20 @@ class CornerLaw:
         return out
 
 
-def end_corners(pair):
-    """Numbers of the corners (as in `geometry.pair.contacts.Contacts`) that end the path: at its start, at its end.
-
-    They are the tip corners of wheel and pinion, unless the mate's flank ends before, at the edge that undercut leaves.
-    """
-    one, two = pair.gear_1, pair.gear_2
-    first = pair.outward * (pair.length - two.roll_a)
-    return (
-        3 if form_corner(one) and one.roll_f > first else 2,
-        4 if form_corner(two) and pair.outward * (pair.length - two.roll_f) < one.roll_a else 1,
-    )
+def _reached(pair, end, line_load, modulus):
+    """How far before an end of the path [mm] contacts reach the corner there, by the rule of the plane (`CORNER`)."""
+    number, sign, limit = end_corners(pair)[end], (-1, 1)[end], pair.path[end]
+    nominal = limit - sign * np.linspace(0, 1, BETWEEN) * (pair.path[1] - pair.path[0])
+    rolls = nominal, pair.mate_roll(nominal)
+    first = number % 2 == 1
+    gear, roll = (pair.gear_1, rolls[0]) if first else (pair.gear_2, rolls[1])
+    apart = np.abs(arc_at(gear, gear.roll_a if number in TIP else gear.roll_f) - arc_at(gear, roll))
+    away = apart / (CORNER * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus))
+    out = int(np.argmax(away > 1)) if (away > 1).any() else away.size - 1
+    if not 0 < out < away.size:
+        return 0.0
+    part = (1 - away[out - 1]) / max(away[out] - away[out - 1], 1e-12)
+    return float(np.abs(limit - nominal[out - 1]) + min(part, 1.0) * np.abs(nominal[1] - nominal[0]))
 
 
 def _table(pair, materials, line_load, end, span, cache):
@@ -112,8 +112,8 @@ def _table(pair, materials, line_load, end, span, cache):
     c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     unit = float(half_width(1.0, abs(float(pair.relative_radius(limit, pair.mate_roll(limit)))), modulus))
     least = (RESOLVED * finest_hat(pair.gear_1.m_n, bodies[0].fine) / unit) ** 2
-    line_load = max(line_load, 2.0 ** math.ceil(math.log2(least)))
-    near = 1.5 * unit * math.sqrt(line_load)
+    line_load *= 2.0 ** max(math.ceil(math.log2(least / line_load)), 0)
+    near = _reached(pair, end, MARGIN * line_load, modulus)
     low, high = min(span[0], -near), max(span[1], near)
     away = np.append(low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5, 0.0)
     between = low + (high - low) * np.linspace(0, 1, BETWEEN)
@@ -126,8 +126,9 @@ def _table(pair, materials, line_load, end, span, cache):
     loads = loads[loads >= least]
     touches = np.where(mesh.found.corner[:, column] > 0, mesh.found.corner[:, column], corner)
     there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
-    zone = TIP_ZONE * pair.gear_1.m_n
-    made = mesh.rows([Wanted(i, column, 1 << int(touches[i] - 1), zone) for i in np.flatnonzero(there).tolist()])
+    width = half_width(MARGIN * line_load, mesh.radius[:, column], modulus)
+    zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
+    made = mesh.rows([Wanted(i, column, 1 << int(touches[i] - 1), zone[i]) for i in np.flatnonzero(there).tolist()])
     there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
     away = away[there]

@@ -39,7 +39,9 @@ class KinkLaw:
 
     def __init__(self, pair, materials, line_load, flanks, *, cache=True):
         forms = tuple(form.at(None) for form in flanks)
-        load, modulus = 2.0 ** round(math.log2(line_load)), contact_modulus(materials)
+        modulus = contact_modulus(materials)
+        step = modulus * pair.gear_1.m_n
+        load = step * 2.0 ** round(math.log2(line_load / step))  # so that loads alike share a table
         kept, own = solved_gears(cache), tuple(form.flank for form in forms)
         self.zones = []
         start, end = pair.path

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.pair.contacts import near_pitches, touching
+from geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from geometry.pair.lines import covered
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
@@ -90,12 +90,17 @@ def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0)
     last = math.floor((end + further[1] - start + slope * width) / pair.p_bt - phase + 1e-9)
     before, after = (away[0] if away.size else 0.0 for away, _ in gaps(pair))  # where corners meet a flank first
     limits = (end + further[1], end + min(after, further[1]), end, start, start - min(before, further[0]), start - further[0])
+    at_start, at_end = (number in FORM for number in end_corners(pair))
+    rising = (  # numbers of pieces whose first or last end is at an edge that undercut leaves
+        [number for number, edge in ((2, at_start), (0, at_end)) if edge],
+        [number for number, edge in ((1, at_end), (0, at_start)) if edge],
+    )
     pieces = []
     for half in range(len(bands)):
         for order in range(first, last + 1):
             roll = start + (phase + order) * pair.p_bt
             for corner, low, high in _parts(roll, slope, width, limits, 1e-9 * pair.p_bt):
-                ends = (low == 0, high == width) if any(further) else (True, True)
+                ends = (low == 0 or corner in rising[0], high == width or corner in rising[1]) if any(further) else (True, True)
                 pieces.append(Piece(half, order, roll, corner, low, high, ends))
     deep, *shallow = _by_depth(pits, closing)
     taken = _taken(pair, deep, bands, pieces, slope)

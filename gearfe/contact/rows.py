@@ -150,10 +150,11 @@ def _on_side(contact, wanted, host):
     for one, hats, first, last in zip(wanted, knots, ends[:-1], ends[1:], strict=True):
         there = np.isfinite(gap[first:last])
         *places, gaps, turn_1, turn_2, slow = values[:, first:last][:, there]
-        influence = sum(contact.coefficients) * hat_logarithm(hats[:, there], hats[:, there]) / np.outer(slow, slow)
-        order = int(found.order[one.column])
-        for flexible, own, turn, tooth in zip(contact.flexibility, places, (turn_1, turn_2), (order, -order), strict=True):
-            influence = influence + np.outer(turn, turn) * flexible.within(own, tooth)
+        order, log = int(found.order[one.column]), np.log(gear.m_n)  # local is what happens within about a module
+        influence = sum(contact.coefficients) * (hat_logarithm(hats[:, there], hats[:, there]) + log) / np.outer(slow, slow)
+        bodies = zip(contact.flexibility, contact.coefficients, places, (turn_1, turn_2), (order, -order), strict=True)
+        for flexible, coefficient, own, turn, tooth in bodies:
+            influence = influence + np.outer(turn, turn) * (flexible.within(own, tooth) - coefficient * log)
         tips = [n for n in _numbers(one) if n in TIP]
         fillet = on_fillet(pair.gear_1, places[0]) if 2 in tips else np.zeros(gaps.size, dtype=bool)
         fillet = fillet | on_fillet(pair.gear_2, places[1]) if 1 in tips else fillet

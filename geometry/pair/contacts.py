@@ -181,6 +181,19 @@ def corners_of(pair: "GearPair") -> list[tuple[int, float, bool]]:
     return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]
 
 
+def end_corners(pair: "GearPair") -> tuple[int, int]:
+    """Numbers of the corners (as in `Contacts`) that end the path: at its start, at its end.
+
+    They are the tip corners of wheel and pinion, unless the mate's flank ends before, at the edge that undercut leaves.
+    """
+    one, two = pair.gear_1, pair.gear_2
+    first = pair.outward * (pair.length - two.roll_a)
+    return (
+        3 if form_corner(one) and one.roll_f > first else 2,
+        4 if form_corner(two) and pair.outward * (pair.length - two.roll_f) < one.roll_a else 1,
+    )
+
+
 def _corners(pair, nominal):
     """Roll lengths of both gears and gaps ``(4, ...)`` where each of the four corners touches; inf where it does not."""
     rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))

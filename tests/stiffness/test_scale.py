@@ -14,7 +14,7 @@ STEEL = gf.Material(206e3, 0.3)
 PHASES = np.array([0.05, 0.3, 0.62, 0.9, 0.98])
 SCALES = 0.25, 7.0, 25.0  # as a power of two, and such that the last digits of all lengths change
 # tables of the plane's contact at corners and kinks are for line loads that are powers of two in N/mm (`contact.corner`)
-SOLID_SCALES = 0.25, 32.0
+SOLID_SCALES = 0.25, 7.0, 25.0, 32.0
 
 
 def gear(s, z, *, b=8.0, bore=0.4, beta=0.0, **options):
