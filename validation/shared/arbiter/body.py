@@ -14,8 +14,8 @@ from geometry.damage.seam import open_seam
 from geometry.mesh.mesher import triangulate
 
 GROWTH = 0.3  # of edge lengths by distance along the outline
-FAR, FILLET, FLANK = 0.5, 0.12, 0.25  # edge lengths of far teeth, and of fillets and flanks near loaded ones [m_n]
-NEAR = 2  # teeth beside loaded ones that are meshed like them
+FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths of far teeth, and of fillets and flanks near loaded ones [m_n]
+NEAR = 1  # teeth beside loaded ones that are meshed like them
 BATCH = 128  # right-hand sides at a time
 # seven-point rule of degree 5 on the reference triangle: places and weights
 _A, _B = (6 - math.sqrt(15)) / 21, (6 + math.sqrt(15)) / 21
@@ -166,7 +166,7 @@ class Body:
     def _rim(self):
         """Loop of vertices and edge middles around all teeth, ``(2, 2 n)``; chains of the cracks."""
         gear, side, sign = self.outline.gear, self.side, self.outline.outward
-        z, m = gear.z, gear.m_n / max(self.refine, 1.0)
+        z, m = gear.z, gear.m_n / max(self.refine, 0.7)
         loaded = {tooth % z for tooth in self.marks}
         near = {(tooth + k) % z for tooth in loaded for k in range(-NEAR, NEAR + 1)}
         self.marks = {tooth % z: mark for tooth, mark in self.marks.items()}
@@ -200,7 +200,8 @@ class Body:
                     self._vertices[tooth] = s[::2][::-1], numbers[::-1]
                     if crack is not None:
                         starts[crack] = at // 2 + (s.size - 1 - starts[crack]) // 2
-                    keep = s.size
+                    shut = self._root_arc(behind) < 1e-4 * gear.m_n  # no root circle is left: this point is the next tooth's first
+                    keep = s.size - 1 if shut else s.size
                 else:
                     keep = s.size - 1
                     if crack is not None:
@@ -209,15 +210,24 @@ class Body:
                 angle.append(centre + a[:keep])
                 at += keep
             # the root circle to the next tooth: from the loaded side's last point, its middle points and middles
+            if shut:
+                continue
             here, there = angle[-1][-1], centre + 2 * math.pi / z + float(self._other(np.array([0.0]))[1][0])
             count = max(1, math.ceil((there - here) * self.outline.r_f / (fillet * 2)))
             arc = np.linspace(here, there, 2 * count + 1)[1:-1]
             radius.append(np.full(arc.size, self.outline.r_f))
             angle.append(arc)
             at += arc.size
+        for _, numbers in self._vertices.values():
+            numbers %= at // 2
         radius, angle = np.concatenate(radius), np.concatenate(angle)
         rim = np.array([radius * np.sin(angle), radius * np.cos(angle)])
         return rim, [(starts[crack], self._crack_path(crack, m)) for crack in self.cracks]
+
+    def _root_arc(self, behind):
+        """Length of the root circle between two teeth [mm], the loaded side of one of them `behind` its place [rad]."""
+        loaded, other = (float(place(np.array([0.0]))[1][0]) for place in (self.side.place, self._other))
+        return (2 * math.pi / self.outline.gear.z + other - loaded + behind) * self.outline.r_f
 
     def _other(self, s):
         """The side that is not loaded, as cut, by the arc lengths of the loaded side (whose modifications it lacks)."""
@@ -232,7 +242,7 @@ class Body:
     def _held(self, rim):
         gear = self.outline.gear
         radius = gear.r_rim if gear.internal else gear.r_bore
-        size = min(0.25 * abs(radius - self.outline.r_f) + 0.1 * gear.m_n, 1.5 * gear.m_n) / self.refine
+        size = (0.3 * abs(radius - self.outline.r_f) + 0.1 * gear.m_n) / max(self.refine, 0.7)
         count = max(24, math.ceil(2 * math.pi * radius / size))
         angle = 2 * math.pi * np.arange(2 * count) / (2 * count)
         return radius * np.array([np.sin(angle), np.cos(angle)])

@@ -21,7 +21,7 @@ from .touching import Press, Touch, orders, stand, touching
 from .zones import WIDER, Contact, found, hats, placed
 
 SPRING = 0.065  # stiffness of a tooth pair by width over Young's modulus, to find which pairs may touch
-FIRST = 0.6  # refine of the first pass, which only says where pressures are
+FIRST = 0.5  # refine of the first pass, which only says where pressures are
 OPEN = 1.3  # pairs count as possible up to so many times the approach
 STEPS = 300  # of the search for the pressed hats
 
@@ -41,7 +41,7 @@ class Result:
     zones: list = field(default_factory=list)
 
 
-def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(1.0, 1.5)):
+def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0.8, 1.2)):
     """Mesh stiffness of a pair by whole outlines, with the difference of two meshes as its error.
 
     Parameters
@@ -129,26 +129,38 @@ class _Phase:
         return zones
 
     def again(self, answer, refine):
-        """Zones as wide as the pressures of an answer ask for."""
-        zones = []
+        """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
+        windows = []
         for zone, p, _ in answer.pressed:
-            stands, _ = self._pair(zone.order)
             density = p / np.gradient(zone.s)
             on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
             if len(on):
                 low, high = zone.s[max(on[0] - 1, 0)], zone.s[min(on[-1] + 1, p.size - 1)]
                 low = low if on[0] > 0 else low - (high - low)
                 high = high if on[-1] < p.size - 1 else high + (high - low)
-                half = (high - low) / 2
-                ends = low - (WIDER - 1.2) * half, high + (WIDER - 1.2) * half
-                middle = zone.s[np.argmax(density)]
-                width = min(half, max(min(middle - low, high - middle), 0.05 * half))
+                margin = (WIDER - 1.2) * (high - low) / 2
+                window = [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum())]
             else:
-                ends, middle = (zone.s[0], zone.s[-1]), zone.middle
-                width = (ends[1] - ends[0]) / 4
-                middle = min(max(middle, ends[0]), ends[1])
+                window = [zone, zone.s[0], zone.s[-1], zone.middle, 0.0]
+            for other in windows:
+                same = (other[0].order, other[0].own) == (zone.order, zone.own)
+                if same and other[1] < window[2] and window[1] < other[2]:
+                    other[1:3] = min(other[1], window[1]), max(other[2], window[2])
+                    if window[4] > other[4]:
+                        other[0], other[3] = zone, window[3]
+                    other[4] += window[4]
+                    break
+            else:
+                windows.append(window)
+        zones = []
+        for zone, low, high, middle, force in windows:
+            half = (high - low) / 2
+            stands, _ = self._pair(zone.order)
+            middle = min(max(middle, low), high)
+            width = min(half, max(min(middle - low, high - middle), 0.05 * half)) / (1 if force else 2)
             s = (middle, zone.near) if zone.own == 0 else (zone.near, middle)
-            zones.append(placed(self.contact, stands, zone.phase, zone.order, zone.own, s, self.approach, ends, width, float(p.sum()), refine))
+            ends = (low, high)
+            zones.append(placed(self.contact, stands, zone.phase, zone.order, zone.own, s, self.approach, ends, width, force, refine))
         return zones
 
     def solved(self, zones, bodies):

@@ -72,6 +72,8 @@ def found(contact, stand, touch, order, phase, approach, shares, modulus, refine
         if not touch.approach[i, 0] < approach:
             break
         own = int(touch.gear[i])
+        if _slides(contact.press.outlines[own].pieces, touch, i):
+            continue
         s_own = float(contact.sides[own].arc(touch.piece[i], touch.at[i, 0]))
         s_met = float(contact.sides[1 - own].at_radius(touch.met[i, 0]))
         s = (s_own, s_met) if own == 0 else (s_met, s_own)
@@ -95,6 +97,17 @@ def found(contact, stand, touch, order, phase, approach, shares, modulus, refine
         ends = s[own] - WIDER * widths[0], s[own] + WIDER * widths[1]
         zones.append(placed(contact, stand, phase, order, own, s, gap, ends, min(widths), force, refine))
     return zones
+
+
+def _slides(pieces, touch, i):
+    """Whether a touch at the end of its piece is no least one because the next piece of that outline touches earlier."""
+    number, at = int(touch.piece[i]), touch.at[i, 0]
+    low, high, _ = pieces[number]
+    for end, other in ((low, number - 1), (high, number + 1)):
+        beside = np.flatnonzero((touch.gear == touch.gear[i]) & (touch.piece == other))
+        if abs(at - end) < 2e-3 * abs(high - low) and beside.size and touch.approach[beside[0], 0] < touch.approach[i, 0]:
+            return True
+    return False
 
 
 def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine):
