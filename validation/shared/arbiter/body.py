@@ -134,6 +134,27 @@ class Body:
                 np.add.at(out, 2 * node + axis, (shape * directions[axis])[:, None] * weights)
         return out
 
+    def seam_loads(self):
+        """Columns ``(dofs, n)`` of unit forces that press the faces of cracks apart, a pair of nodes each."""
+        out = [np.zeros((2 * self.nodes.shape[1], 0))]
+        for left, right, normal in self._seams:
+            columns, number = np.zeros((2 * self.nodes.shape[1], left.size)), np.arange(left.size)
+            for nodes, sense in ((left, -1.0), (right, 1.0)):
+                for axis in (0, 1):
+                    columns[2 * nodes + axis, number] = sense * normal[axis]
+            out.append(columns)
+        return np.hstack(out)
+
+    def _faces(self, points, chain, double):
+        """Nodes left and right of a crack, tip left out, and the normal from left to right."""
+        along = points[:, chain[-1]] - points[:, chain[0]]
+        normal = np.array([along[1], -along[0]]) / math.hypot(*along)
+        sides = [
+            np.concatenate([nodes[:-1], [self._edges[min(a, b), max(a, b)] for a, b in zip(nodes[:-1], nodes[1:], strict=True)]])
+            for nodes in (chain.tolist(), double.tolist())
+        ]
+        return (*(np.array(side, dtype=int) for side in sides), normal)
+
     def _middle(self, a, b):
         return self._edges[min(a, b), max(a, b)]
 
@@ -263,13 +284,14 @@ class Body:
     def _mesh(self, rim, held, chains):
         loops = [rim[:, ::2], held[:, ::2]]
         points, triangles = triangulate(loops, chains, self.outline.gear.internal)
-        first, doubles, tips = sum(loop.shape[1] for loop in loops), {}, []
+        first, doubles, tips, seams = sum(loop.shape[1] for loop in loops), {}, [], []
         for start, inner in chains:
             chain = np.append(start, first + np.arange(inner.shape[1]))
             first += inner.shape[1]
             points, triangles, double = open_seam(points, triangles, chain)
             doubles[start] = int(double[0])
             tips.append(int(chain[-1]))
+            seams.append((chain, double))
         corners = points[:, triangles]
         (ax, ay), (bx, by) = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = ax * by - ay * bx
@@ -279,6 +301,7 @@ class Body:
         number = number.reshape(3, -1) + points.shape[1]
         middles = points[:, edges].mean(axis=1)
         self._edges = {(a, b): points.shape[1] + i for i, (a, b) in enumerate(edges.T.tolist())}
+        self._seams = [self._faces(points, chain, double) for chain, double in seams]
         at = 0
         for loop in (rim, held):
             count = loop.shape[1] // 2

@@ -2,6 +2,8 @@
 
 import csv
 
+import numpy as np
+
 from gearfe.files import written
 
 from ..places import TABLES
@@ -11,7 +13,7 @@ from .pressing import pressed
 TABLE = TABLES / "outlines.csv"
 STEEL = (206e3, 0.3)  # Young's modulus [MPa], Poisson's ratio of all loaded cases
 FIELDS = ("seed", "kind", "pair", "flanks", "crack", "load_N_mm", "phase_48", "k_N_um_mm", "mesh_error_percent", "approach_um")
-FIELDS += ("least_gap_um", "shares", "edge", "unknowns", "cpu_s")
+FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
 
 
 def rows_on_file():
@@ -20,6 +22,30 @@ def rows_on_file():
         return []
     with TABLE.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def places_of(sides, answer, margin=0.3):
+    """Which corners, joints and fillets lie in the pressed zones, or within `margin` of their widths: "-1: pinion form"."""
+    out = []
+    for zone, p, _ in answer.pressed:
+        on = np.flatnonzero(p > 1e-3 * p.max()) if p.max() > 1e-6 else []
+        if not len(on):
+            continue
+        names = []
+        for gear, s in ((zone.own, zone.s), (1 - zone.own, zone.met)):
+            low, high = np.nanmin(s[on]), np.nanmax(s[on])
+            more = margin * (high - low)
+            side, name = sides[gear], ("pinion", "wheel")[gear]
+            last = side.joints.size - 2
+            kinds = ["form", *["joint"] * (last - 2), "tip"]
+            names += [
+                f"{name} {kind}" for kind, joint in zip(kinds, side.joints[1:-1], strict=True) if low - more < joint < high + more
+            ]
+            if low < side.joints[1] - 1e-6:
+                names.append(f"{name} fillet")
+        if names:
+            out.append(f"{zone.order}: {' '.join(names)}")
+    return "; ".join(out)
 
 
 def case_rows(row):
@@ -35,7 +61,7 @@ def case_rows(row):
         shares = "; ".join(f"{order}: {part:.4f}" for order, part in sorted(result.force[i].items()))
         numbers = [result.k[i] / 1e3, 100 * result.error[i] / result.k[i], 1e3 * result.approach[i], 1e3 * result.least[i]]
         tail = [f"{value:.6g}" for value in numbers]
-        tail += [shares, "yes" if result.edge[i] else "", str(result.dofs), f"{result.cpu / len(phases):.2f}"]
+        tail += [shares, places_of(*result.zones[i]), "yes" if result.edge[i] else "", str(result.dofs), f"{result.cpu / len(phases):.2f}"]
         out.append(dict(zip(FIELDS, [*head, str(phase), *tail], strict=True)))
     return out
 

@@ -6,6 +6,7 @@ Unknown are the forces p of hat pressures in all zones and the approach delta, s
 
 C: deformation of both gears along the normals, by finite elements of whole gears; gap: that of the rigid outlines in the unloaded
 pose, along the same normals (taken at a pose near the loaded one and moved back by c); c: how fast a shared approach closes it.
+Faces of cracks are such places too, with gap and c of zero: they may open, not overlap.
 By virtual work ``c . p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action. ``k = F / (delta - least gap)``.
 """
 
@@ -56,7 +57,8 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0
     cracks : (sequence, sequence) of gearfe.Crack
         Of pinion and wheel: straight, through the whole width.
     refines : sequence of float
-        Meshes after the first pass; the last is the result, its difference to the one before the error.
+        Meshes after the first pass; the last is the result. Its error is the larger of the two that its differences to the one
+        before and to the first pass say, if errors fall with the square of edge lengths.
 
     Returns
     -------
@@ -74,17 +76,17 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0
         bodies = _bodies(contact, zones, material, refine, cracks)
         answers.append([state.solved(some, bodies) for state, some in zip(states, zones, strict=True)])
     k = np.array([[load / (one.approach - state.least) for one, state in zip(row, states, strict=True)] for row in answers])
-    last = answers[-1]
+    last, (middle, fine) = answers[-1], refines[-2:]
     return Result(
         k[-1],
-        np.abs(k[-1] - k[-2]),
+        np.maximum(np.abs(k[-1] - k[-2]) / ((fine / middle) ** 2 - 1), np.abs(k[-1] - k[0]) / ((fine / FIRST) ** 2 - 1)),
         np.array([one.approach for one in last]),
         np.array([state.least for state in states]),
         [one.forces for one in last],
         np.array([one.edge for one in last]),
         sum(2 * body.nodes.shape[1] for body in bodies),
         time.process_time() - started,
-        [(zones, answer) for zones, answer in zip(zones, last, strict=True)],
+        [(contact.sides, answer) for answer in last],
     )
 
 
@@ -186,11 +188,16 @@ class _Phase:
                 turned = bodies[gear].angle(zone.order) + posed.mirror * (heading - posed.turn)
                 direction = sense * np.array([np.sin(turned), np.cos(turned)])
                 columns[gear].append(bodies[gear].loads(zone.order, s, weight * there[:, None], direction))
-        total = 0.0
+        count = sum(zone.s.size for zone in zones)
+        faces = [body.seam_loads() for body in bodies]
+        total, at = np.zeros((count + sum(face.shape[1] for face in faces),) * 2), count
         for gear in (0, 1):
-            loads = np.hstack(columns[gear])
-            total = total + loads.T @ bodies[gear].solve(loads)
-        p, approach = complementary(total, np.concatenate(gaps), np.concatenate(rates), self.load)
+            loads = np.hstack([*columns[gear], faces[gear]])
+            place = np.concatenate([np.arange(count), at + np.arange(faces[gear].shape[1])])
+            total[np.ix_(place, place)] += loads.T @ bodies[gear].solve(loads)
+            at += faces[gear].shape[1]
+        closed = np.zeros(at - count)
+        p, approach = complementary(total, np.concatenate([*gaps, closed]), np.concatenate([*rates, closed]), self.load)
         self.approach = approach
         ends = np.cumsum([zone.s.size for zone in zones])
         parts = [(zone, p[end - zone.s.size : end], rate) for zone, end, rate in zip(zones, ends, rates, strict=True)]
@@ -225,8 +232,9 @@ def complementary(matrix, gap, rate, load):
     RuntimeError
         If the set of pressed hats does not settle.
     """
-    scale = np.diag(matrix).mean()
-    pressed = gap < np.sort(gap)[min(3, gap.size - 1)] + 1e-12
+    scale = np.diag(matrix)
+    meets = rate > 0
+    pressed = meets & (gap <= np.sort(gap[meets])[min(3, meets.sum() - 1)])
     for _ in range(STEPS):
         on = np.flatnonzero(pressed)
         size = on.size
