@@ -10,7 +10,7 @@ from .kept import STEEL, rows_on_file
 
 
 def beside(method, seeds=None):
-    """For every row on file (of `seeds`, if given): the row, k of `method` [N/(mm um)], its estimate, and both against the arbiter [%].
+    """For every row on file (of `seeds`, if given): the row, and k of `method` [N/(mm um)] beside it.
 
     Yields
     ------

@@ -7,70 +7,16 @@ those of `geometry`.
 import math
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import splu
 
 from geometry.damage.seam import open_seam
 from geometry.mesh.mesher import triangulate
 
+from .cracks import crack_length, crack_line, crack_start
+from .elements import gradients, solver, stiffness
+
 GROWTH = 0.3  # of edge lengths by distance along the outline
 FAR, FILLET, FLANK = 0.8, 0.16, 0.3  # edge lengths of far teeth, and of fillets and flanks near loaded ones [m_n]
 NEAR = 1  # teeth beside loaded ones that are meshed like them
-BATCH = 128  # right-hand sides at a time
-# seven-point rule of degree 5 on the reference triangle: places and weights
-_A, _B = (6 - math.sqrt(15)) / 21, (6 + math.sqrt(15)) / 21
-PLACES = np.array([[1 / 3, 1 / 3], [_A, _A], [1 - 2 * _A, _A], [_A, 1 - 2 * _A], [_B, _B], [1 - 2 * _B, _B], [_B, 1 - 2 * _B]])
-WEIGHTS = np.array([0.1125] + [(155 - math.sqrt(15)) / 2400] * 3 + [(155 + math.sqrt(15)) / 2400] * 3)
-
-
-def gradients(u, v):
-    """Gradients ``(n, 6, 2)`` of the quadratic shape functions: corners, then the middles of edges 01, 12, 02."""
-    w = 1 - u - v
-    du = [1 - 4 * w, 4 * u - 1, 0 * u, 4 * (w - u), 4 * v, -4 * v]
-    dv = [1 - 4 * w, 0 * u, 4 * v - 1, -4 * u, 4 * u, 4 * (w - v)]
-    return np.stack([np.stack(du, -1), np.stack(dv, -1)], -1)
-
-
-def stiffness(nodes, triangles, young, nu):
-    """Plane-strain stiffness matrix (CSC) of 6-node triangles; degrees of freedom are x and y of node after node."""
-    lame, shear = young * nu / ((1 + nu) * (1 - 2 * nu)), young / (2 * (1 + nu))
-    local = gradients(PLACES[:, 0], PLACES[:, 1])
-    jacobian = np.einsum("qia,bie->eqab", local, nodes[:, triangles], optimize=True)
-    area = jacobian[..., 0, 0] * jacobian[..., 1, 1] - jacobian[..., 0, 1] * jacobian[..., 1, 0]
-    if area.min() <= 0:
-        raise RuntimeError("a triangle of the arbiter's mesh is folded: refine it")
-    inverse = np.empty_like(jacobian)
-    inverse[..., 0, 0], inverse[..., 1, 1] = jacobian[..., 1, 1] / area, jacobian[..., 0, 0] / area
-    inverse[..., 0, 1], inverse[..., 1, 0] = -jacobian[..., 0, 1] / area, -jacobian[..., 1, 0] / area
-    slope = np.einsum("eqba,qia->eqib", inverse, local, optimize=True).reshape(*area.shape, 12)
-    weighted = slope * (area * WEIGHTS)[..., None]
-    products = np.matmul(slope.transpose(0, 2, 1), weighted).reshape(-1, 6, 2, 6, 2)
-    trace = np.einsum("eiaja->eij", products)
-    cells = lame * products + shear * products.transpose(0, 1, 4, 3, 2)
-    for axis in (0, 1):
-        cells[:, :, axis, :, axis] += shear * trace
-    dofs = (2 * triangles.T[:, :, None] + np.arange(2)).reshape(-1, 12)
-    rows, columns = np.repeat(dofs, 12, axis=1), np.tile(dofs, (1, 12))
-    size = 2 * nodes.shape[1]
-    return coo_matrix((cells.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size)).tocsc()
-
-
-def solver(matrix, held):
-    """Function that solves ``matrix u = load`` with nodes `held` fixed, for many loads ``(dofs, n)`` at a time."""
-    free = np.ones(matrix.shape[0], dtype=bool)
-    free[2 * held], free[2 * held + 1] = False, False
-    free = np.flatnonzero(free)
-    factor = splu(
-        matrix[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
-
-    def solve(loads):
-        out = np.zeros(loads.shape)
-        for first in range(0, loads.shape[1], BATCH):
-            out[free, first : first + BATCH] = factor.solve(np.ascontiguousarray(loads[free, first : first + BATCH]))
-        return out
-
-    return solve
 
 
 class Body:
@@ -98,7 +44,7 @@ class Body:
         self._vertices = {}  # tooth: places s of the vertices of its loaded side, number of the first of them, +1 or -1
         rim, chains = self._rim()
         held = self._held(rim)
-        self.nodes, self.triangles, doubles = self._mesh(rim, held, chains)
+        self.nodes, self.triangles = self._mesh(rim, held, chains)
         on = np.arange(rim.shape[1] // 2, (rim.shape[1] + held.shape[1]) // 2)
         fixed = np.unique(np.concatenate([on, [self._middle(a, b) for a, b in zip(on, np.roll(on, -1), strict=True)]]))
         self._unfold()
@@ -121,7 +67,7 @@ class Body:
         return self.sense * 2 * math.pi * tooth / self.outline.gear.z
 
     def loads(self, tooth, s, weights, directions):
-        """Load columns ``(dofs, m)``: forces ``weights (n, m)`` at places `s` (n,) of a tooth along directions (2, n), own frame."""
+        """Columns ``(dofs, m)`` of forces `weights` (n, m) at places `s` of a tooth along `directions` (2, n), own frame."""
         places, numbers = self._vertices[tooth % self.outline.gear.z]
         edge = np.clip(np.searchsorted(places, s, side="right") - 1, 0, places.size - 2)
         x = (s - places[edge]) / (places[edge + 1] - places[edge])
@@ -171,7 +117,9 @@ class Body:
         """Places of vertices and edge middles between two ends of a smooth curve ``place(s)``, by the edge lengths wanted."""
         s = np.linspace(first, last, 41)
         if len(known):
-            spread = np.concatenate([np.array(known) + d for d in (0.0, *(x * g for g in 1e-4 * 2.0 ** np.arange(14) for x in (1, -1)))])
+            spread = np.concatenate(
+                [np.array(known) + d for d in (0.0, *(x * g for g in 1e-4 * 2.0 ** np.arange(14) for x in (1, -1)))]
+            )
             s = np.unique(np.concatenate([s, spread[(spread > first) & (spread < last)]]))
         radius, angle = place(s)
         size = self._size(tooth, (radius * np.sin(angle), radius * np.cos(angle)), np.full(s.size, base))
@@ -186,7 +134,7 @@ class Body:
 
     def _rim(self):
         """Loop of vertices and edge middles around all teeth, ``(2, 2 n)``; chains of the cracks."""
-        gear, side, sign = self.outline.gear, self.side, self.outline.outward
+        gear, side = self.outline.gear, self.side
         z, m = gear.z, gear.m_n / max(self.refine, 0.7)
         loaded = {tooth % z for tooth in self.marks}
         near = {(tooth + k) % z for tooth in loaded for k in range(-NEAR, NEAR + 1)}
@@ -211,7 +159,9 @@ class Body:
                         lists += [self._divided(tooth, place, first, begin, base, known)[:-1]]
                         starts[crack] = sum(map(len, lists))
                         first = begin
-                    lists.append(self._divided(tooth, place, first, last, base, known)[: None if number == len(joints) - 2 else -1])
+                    lists.append(
+                        self._divided(tooth, place, first, last, base, known)[: None if number == len(joints) - 2 else -1]
+                    )
                 s = np.concatenate(lists)
                 r, a = place(s)
                 if loaded_side:
@@ -221,7 +171,7 @@ class Body:
                     self._vertices[tooth] = s[::2][::-1], numbers[::-1]
                     if crack is not None:
                         starts[crack] = at // 2 + (s.size - 1 - starts[crack]) // 2
-                    shut = self._root_arc(behind) < 1e-4 * gear.m_n  # no root circle is left: this point is the next tooth's first
+                    shut = self._root_arc(behind) < 1e-4 * gear.m_n  # no root circle left: the next tooth's first point
                     keep = s.size - 1 if shut else s.size
                 else:
                     keep = s.size - 1
@@ -252,13 +202,15 @@ class Body:
 
     def _other(self, s):
         """The side that is not loaded, as cut, by the arc lengths of the loaded side (whose modifications it lacks)."""
-        radius, angle = self.side.place(np.asarray(s, dtype=float))
+        radius = self.side.place(np.asarray(s, dtype=float))[0]
         last = self.side.joints[-2]
         tip = np.asarray(s) >= last
         full = float(self.outline.cut(self.outline.r_a))
         middle = float(self.side.place(np.array([self.side.joints[-1]]))[1][0])
         part = (np.asarray(s) - last) / (self.side.joints[-1] - last)
-        return radius, np.where(tip, -full + part * (full + middle), -self.outline.cut(np.clip(radius, *sorted((self.outline.r_f, self.outline.r_a)))))
+        return radius, np.where(
+            tip, -full + part * (full + middle), -self.outline.cut(np.clip(radius, *sorted((self.outline.r_f, self.outline.r_a))))
+        )
 
     def _held(self, rim):
         gear = self.outline.gear
@@ -307,7 +259,12 @@ class Body:
             count = loop.shape[1] // 2
             ring = (at + np.arange(count)).tolist()
             for i, (a, b) in enumerate(zip(ring, ring[1:] + ring[:1], strict=True)):
-                key = next((min(p, q), max(p, q)) for p in (a, doubles.get(a, a)) for q in (b, doubles.get(b, b)) if (min(p, q), max(p, q)) in self._edges)
+                key = next(
+                    (min(p, q), max(p, q))
+                    for p in (a, doubles.get(a, a))
+                    for q in (b, doubles.get(b, b))
+                    if (min(p, q), max(p, q)) in self._edges
+                )
                 self._edges[min(a, b), max(a, b)] = self._edges[key]
                 middles[:, self._edges[key] - points.shape[1]] = loop[:, 2 * i + 1]
             at += count
@@ -315,33 +272,4 @@ class Body:
             for (a, b), node in list(self._edges.items()):
                 if tip in (a, b):
                     middles[:, node - points.shape[1]] = 0.75 * points[:, tip] + 0.25 * points[:, a + b - tip]
-        return np.hstack([points, middles]), np.vstack([triangles, number]), doubles
-
-
-def crack_start(side, crack):
-    """Place on the fillet at which a crack begins: where its tangent makes 30 degrees with the centre-line, root or middle."""
-    last = side.joints[1]
-    if crack.start == "root":
-        return 1e-6 * last
-    if crack.start == "middle":
-        return last / 2
-    s = np.linspace(0, last, 4001)[1:-1]
-    steep = np.abs(side.normal(s) - math.pi / 2)  # of the tangent against the centre-line
-    under = np.flatnonzero(steep <= math.pi / 6)
-    return float(s[under[0]]) if under.size else float(s[np.argmin(steep)])
-
-
-def crack_line(side, crack):
-    """Start (x, y) and direction of a straight crack, tooth along +y."""
-    radius, angle = (float(v[0]) for v in side.place(np.array([crack_start(side, crack)])))
-    x = 1.0 if crack.side == "loaded" else -1.0
-    start = np.array([x * radius * math.sin(angle), radius * math.cos(angle)])
-    return start, np.array([-x * math.sin(crack.angle), -side.sign * math.cos(crack.angle)])
-
-
-def crack_length(side, crack):
-    """Length [mm]: at level 0.5 the crack reaches the centre-line."""
-    if crack.length is not None:
-        return crack.length
-    start, direction = crack_line(side, crack)
-    return crack.level / 0.5 * abs(start[0] / direction[0])
+        return np.hstack([points, middles]), np.vstack([triangles, number])

@@ -21,7 +21,7 @@ SAME = 1e-14  # angles [rad] that differ by less are the same
 
 
 class Space:
-    """The tooth space of `gear` (a `gearfe.Gear`, read for its numbers): half angles [rad] by radius [mm], ``(n,)`` to ``(n,)``."""
+    """The tooth space of `gear` (a `gearfe.Gear`, read for its numbers): half angles [rad] by radius [mm], arrays of n."""
 
     def __init__(self, gear):
         self.gear = gear
@@ -151,7 +151,9 @@ class Cutter:
 
         self.straight = lambda radius: (place(radius, self.base), place(radius, self.joint)), straight
         least = (1 - ratio) * space.r_b
-        set_at(brentq(excess, least * (1 + 1e-9), min(least / math.cos(math.radians(50)), space.r_f - self.base - rho), xtol=1e-13))
+        set_at(
+            brentq(excess, least * (1 + 1e-9), min(least / math.cos(math.radians(50)), space.r_f - self.base - rho), xtol=1e-13)
+        )
         turned = float(involute(self.joint)) - math.atan2(self.roll, self.base) + math.atan2(self.roll - rho, self.base)
         tip, centre = self.tip, self.centre
 

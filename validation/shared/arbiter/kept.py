@@ -27,7 +27,7 @@ def rows_on_file():
 def places_of(sides, answer, margin=0.3):
     """Which corners, joints and fillets lie in the pressed zones, or within `margin` of their widths: "-1: pinion form"."""
     out = []
-    for zone, p, _ in answer.pressed:
+    for zone, p, *_ in answer.pressed:
         on = np.flatnonzero(p > 1e-3 * p.max()) if p.max() > 1e-6 else []
         if not len(on):
             continue
@@ -61,7 +61,13 @@ def case_rows(row):
         shares = "; ".join(f"{order}: {part:.4f}" for order, part in sorted(result.force[i].items()))
         numbers = [result.k[i] / 1e3, 100 * result.error[i] / result.k[i], 1e3 * result.approach[i], 1e3 * result.least[i]]
         tail = [f"{value:.6g}" for value in numbers]
-        tail += [shares, places_of(*result.zones[i]), "yes" if result.edge[i] else "", str(result.dofs), f"{result.cpu / len(phases):.2f}"]
+        tail += [
+            shares,
+            places_of(*result.zones[i]),
+            "yes" if result.edge[i] else "",
+            str(result.dofs),
+            f"{result.cpu / len(phases):.2f}",
+        ]
         out.append(dict(zip(FIELDS, [*head, str(phase), *tail], strict=True)))
     return out
 

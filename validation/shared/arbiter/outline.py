@@ -1,7 +1,7 @@
 """One side of a gear's teeth as pieces of curves between corners: fillet, flank, edge of the tip, tip circle.
 
 Angles [rad] are counted clockwise from the tooth's centre-line towards the loaded flank, radii [mm] from the gear's centre. What
-a `gearfe.Flank` removes is, by its definition, a turn of the flank's points: C(L) / r_b at the same radius, L = sqrt(R^2 - r_b^2);
+a `gearfe.Flank` removes is, by definition, a turn of the flank's points, C(L) / r_b at the same radius, L^2 = R^2 - r_b^2;
 a pitch deviation turns a tooth. The fillet is moved by what the form point lacks, so that the outline has no step.
 """
 
@@ -66,7 +66,7 @@ class Outline:
         return self._pitch[np.asarray(tooth) % self.gear.z]
 
     def removed(self, radius):
-        """What the flank lacks at radii [mm] along the line of action, without tip edge and pitch [mm]; that of the form point below."""
+        """What the flank lacks at radii [mm], along the line of action [mm], without tip edge and pitch."""
         radius = np.asarray(radius, dtype=float)
         out = np.zeros(radius.shape)
         if self.flank is None:
@@ -100,7 +100,10 @@ class Outline:
 
     def _pieces(self, starts):
         fillet = 0.0, math.sqrt(self.outward * (self.r_form - self.r_f)), lambda t: self.r_f + self.outward * t**2
-        bounds = [self.r_form, *sorted((r for r in starts if self.outward * (self.r_edge - r) > 0), key=lambda r: self.outward * r)]
+        bounds = [
+            self.r_form,
+            *sorted((r for r in starts if self.outward * (self.r_edge - r) > 0), key=lambda r: self.outward * r),
+        ]
         bounds = [self.roll(r) for r in (*bounds, self.r_edge)]
         flanks = [(low, high, lambda t: np.hypot(t, self.r_b)) for low, high in zip(bounds[:-1], bounds[1:], strict=True)]
 
@@ -215,7 +218,9 @@ def _cut(gear):
     fillet = CubicSpline(depth, math.pi / gear.z - space.fillet(space.r_f + sign * depth**2))
     rolls = [math.sqrt(max(r**2 - space.r_b**2, 0.0)) for r in sorted((form, space.r_a))]
     margin = 0.02 * (rolls[1] - rolls[0])
-    ends = (rolls[0], rolls[1] + margin) if sign > 0 else (max(rolls[0] - margin, 0.0), rolls[1])  # beyond the tip, never the form point
+    ends = (
+        (rolls[0], rolls[1] + margin) if sign > 0 else (max(rolls[0] - margin, 0.0), rolls[1])
+    )  # beyond the tip, never the form point
     roll = np.linspace(*ends, FLANK)
     flank = CubicSpline(roll, math.pi / gear.z - space.flank(np.hypot(roll, space.r_b)))
     return space, form, fillet, flank

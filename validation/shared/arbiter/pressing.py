@@ -7,7 +7,8 @@ Unknown are the forces p of hat pressures in all zones and the approach delta, s
 C: deformation of both gears along the normals, by finite elements of whole gears; gap: that of the rigid outlines in the unloaded
 pose, along the same normals (taken at a pose near the loaded one and moved back by c); c: how fast a shared approach closes it.
 Faces of cracks are such places too, with gap and c of zero: they may open, not overlap.
-By virtual work ``c . p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action. ``k = F / (delta - least gap)``.
+By virtual work ``c . p = (T1 / r_b1 + T2 / r_b2) / 2``: this is the force F along the line of action, and
+``k = F / (delta - least gap)``.
 """
 
 import time
@@ -93,7 +94,7 @@ def pressed(pair, flanks, load, phases, material, *, cracks=((), ()), refines=(0
 @dataclass
 class _Answer:
     approach: float
-    pressed: list  # (zone, p, c) of all zones
+    pressed: list  # (zone, p, c, elastic shift) of all zones
     forces: dict  # order: part of the load
     edge: bool  # whether pressure reaches the end of a zone
 
@@ -115,7 +116,8 @@ class _Phase:
     def _pair(self, order):
         i = int(np.flatnonzero(self.order == order)[0])
         touch, at = self.touch, slice(i, i + 1)
-        return self.stands[at], Touch(touch.approach[:, at], touch.own[:, at], touch.met[:, at], touch.gear, touch.piece, touch.at[:, at])
+        parts = (touch.approach, touch.own, touch.met)
+        return self.stands[at], Touch(*(part[:, at] for part in parts), touch.gear, touch.piece, touch.at[:, at])
 
     def first(self, refine):
         """Zones from nothing but rigid gaps and a spring for each tooth pair."""
@@ -133,7 +135,7 @@ class _Phase:
     def again(self, answer, refine):
         """Zones as wide as the pressures of an answer ask for; those of one tooth pair that meet become one."""
         windows = []
-        for zone, p, _ in answer.pressed:
+        for zone, p, _, shift in answer.pressed:
             density = p / np.gradient(zone.s)
             on = np.flatnonzero(density > 1e-3 * density.max()) if p.max() > 0 else []
             if len(on):
@@ -141,38 +143,38 @@ class _Phase:
                 low = low if on[0] > 0 else low - (high - low)
                 high = high if on[-1] < p.size - 1 else high + (high - low)
                 margin = (WIDER - 1.2) * (high - low) / 2
-                window = [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum())]
+                window = [zone, low - margin, high + margin, float(zone.s[np.argmax(density)]), float(p.sum()), shift]
             else:
-                window = [zone, zone.s[0], zone.s[-1], zone.middle, 0.0]
+                window = [zone, zone.s[0], zone.s[-1], zone.middle, 0.0, shift]
             for other in windows:
                 same = (other[0].order, other[0].own) == (zone.order, zone.own)
                 if same and other[1] < window[2] and window[1] < other[2]:
                     other[1:3] = min(other[1], window[1]), max(other[2], window[2])
                     if window[4] > other[4]:
-                        other[0], other[3] = zone, window[3]
+                        other[0], other[3], other[5] = zone, window[3], shift
                     other[4] += window[4]
                     break
             else:
                 windows.append(window)
         zones = []
-        for zone, low, high, middle, force in windows:
+        for zone, low, high, middle, force, shift in windows:
             half = (high - low) / 2
             stands, _ = self._pair(zone.order)
             middle = min(max(middle, low), high)
             width = min(half, max(min(middle - low, high - middle), 0.05 * half)) / (1 if force else 2)
             s = (middle, zone.near) if zone.own == 0 else (zone.near, middle)
-            ends = (low, high)
-            zones.append(placed(self.contact, stands, zone.phase, zone.order, zone.own, s, self.approach, ends, width, force, refine))
+            same = (self.contact, stands, zone.phase, zone.order, zone.own, s, self.approach)
+            zones.append(placed(*same, (low, high), width, force, refine, shift))
         return zones
 
     def solved(self, zones, bodies):
         """Contact of all zones of this phase."""
-        columns, gaps, rates, weights = ([], []), [], [], []
+        columns, gaps, rates = ([], []), [], []
         m = self.contact.press.outlines[0].gear.m_n
         for zone in zones:
             stands, _ = self._pair(zone.order)
             places, weight = hats(zone.s)
-            gap, met, points, normals = self.contact.gaps(zone.own, stands, self.approach, places, zone.near, 1.5 * m)
+            gap, met, points, normals = self.contact.gaps(zone.own, stands, self.approach, places, zone.near, 1.5 * m, zone.shift)
             there = np.isfinite(gap)
             gap = np.where(there, gap, 1.0)
             rate = np.zeros(places.size)
@@ -180,7 +182,8 @@ class _Phase:
                 x, y = points[0] + (gap * normals[0] if sense < 0 else 0), points[1] + (gap * normals[1] if sense < 0 else 0)
                 y = y - self.contact.press.centres[gear]
                 rate += sense * self.contact.press.rates[gear] * (y * normals[0] - x * normals[1])
-            gaps.append(weight.T @ (gap + rate * self.approach))
+            moved = (zone.shift[1 - zone.own] - zone.shift[zone.own]) @ normals  # is counted by the deformation already
+            gaps.append(weight.T @ (gap + rate * self.approach - moved))
             rates.append(weight.T @ rate)
             heading = np.arctan2(*normals)
             for gear, s, sense in ((zone.own, places, -1.0), (1 - zone.own, np.where(there, met, 0.0), 1.0)):
@@ -190,22 +193,44 @@ class _Phase:
                 columns[gear].append(bodies[gear].loads(zone.order, s, weight * there[:, None], direction))
         count = sum(zone.s.size for zone in zones)
         faces = [body.seam_loads() for body in bodies]
+        bent: list = []
         total, at = np.zeros((count + sum(face.shape[1] for face in faces),) * 2), count
         for gear in (0, 1):
             loads = np.hstack([*columns[gear], faces[gear]])
             place = np.concatenate([np.arange(count), at + np.arange(faces[gear].shape[1])])
-            total[np.ix_(place, place)] += loads.T @ bodies[gear].solve(loads)
+            solved = bodies[gear].solve(loads)
+            total[np.ix_(place, place)] += loads.T @ solved
             at += faces[gear].shape[1]
+            bent.append((solved, place))
         closed = np.zeros(at - count)
         p, approach = complementary(total, np.concatenate([*gaps, closed]), np.concatenate([*rates, closed]), self.load)
-        self.approach = approach
+        moved = [solved @ p[place] for solved, place in bent]
+        posed_at, self.approach = self.approach, approach
         ends = np.cumsum([zone.s.size for zone in zones])
-        parts = [(zone, p[end - zone.s.size : end], rate) for zone, end, rate in zip(zones, ends, rates, strict=True)]
+        parts = []
+        for zone, end, rate in zip(zones, ends, rates, strict=True):
+            part = p[end - zone.s.size : end]
+            parts.append((zone, part, rate, self._shift(zone, part, moved, bodies, posed_at) if part.max() > 0 else zone.shift))
         forces = {}
-        for zone, part, rate in parts:
+        for zone, part, rate, _ in parts:
             forces[zone.order] = forces.get(zone.order, 0.0) + float(part @ rate) / self.load
-        edge = any(max(part[0], part[-1]) > 1e-3 * part.max() for _, part, _ in parts if part.max() > 0)
+        edge = any(max(part[0], part[-1]) > 1e-3 * part.max() for _, part, *_ in parts if part.max() > 0)
         return _Answer(approach, parts, forces, edge)
+
+    def _shift(self, zone, part, moved, bodies, approach):
+        """How far both outlines have moved elastically in a zone, mean over its pressure ``(2, 2)`` [mm]."""
+        stands, _ = self._pair(zone.order)
+        places, weight = hats(zone.s)
+        mean = (weight @ part / part.sum())[:, None]
+        met = np.interp(places, zone.s, np.where(np.isfinite(zone.met), zone.met, zone.near))
+        shift = np.zeros((2, 2))
+        for gear, s in ((zone.own, places), (1 - zone.own, met)):
+            directions = np.eye(2)[:, :, None] * np.ones(places.size)
+            x, y = (float(bodies[gear].loads(zone.order, s, mean, direction)[:, 0] @ moved[gear]) for direction in directions)
+            posed = self.contact.posed(gear, stands, approach)
+            turned = posed.turn + posed.mirror * (np.arctan2(x, y) - bodies[gear].angle(zone.order))
+            shift[gear] = np.hypot(x, y) * np.array([np.sin(turned), np.cos(turned)])
+        return shift
 
 
 def _bodies(contact, zones, material, refine, cracks):
@@ -217,7 +242,8 @@ def _bodies(contact, zones, material, refine, cracks):
             s = zone.s if gear == zone.own else zone.met
             good = np.isfinite(s)
             size = np.gradient(zone.s) if gear == zone.own else np.maximum(np.abs(np.gradient(s)), np.gradient(zone.s))
-            marks.setdefault(zone.order % side.outline.gear.z, []).append((s[good], np.where(np.isfinite(size[good]), size[good], np.inf)))
+            size = np.where(np.isfinite(size), size, np.inf)
+            marks.setdefault(zone.order % side.outline.gear.z, []).append((s[good], size[good]))
         marks = {tooth: tuple(np.concatenate(part) for part in zip(*some, strict=True)) for tooth, some in marks.items()}
         sense = 1 if gear == 0 else -1
         bodies.append(Body(side, sense, marks, *material, refine=refine, cracks=cracks[gear]))

@@ -80,16 +80,16 @@ class Side:
 
 
 class Posed:
-    """A `Side` of one tooth in the plane: ``turn`` of its centre-line, centre's height, sense of its angles."""
+    """A `Side` of one tooth in the plane: turn of its centre-line, centre's height, sense of its angles, elastic shift (x, y)."""
 
-    def __init__(self, side, turn, centre, mirror, behind=0.0):
-        self.side, self.turn, self.centre, self.mirror, self.behind = side, turn, centre, mirror, behind
+    def __init__(self, side, turn, centre, mirror, behind=0.0, shift=(0.0, 0.0)):
+        self.side, self.turn, self.centre, self.mirror, self.behind, self.shift = side, turn, centre, mirror, behind, shift
 
     def points(self, s):
         """Points ``(2, n)`` [mm]."""
         radius, angle = self.side.place(s)
         turned = self.turn + self.mirror * (angle - self.behind)
-        return np.array([radius * np.sin(turned), radius * np.cos(turned) + self.centre])
+        return np.array([radius * np.sin(turned) + self.shift[0], radius * np.cos(turned) + self.centre + self.shift[1]])
 
     def normals(self, s):
         """Outward unit normals ``(2, n)``."""
@@ -97,7 +97,7 @@ class Posed:
         return np.array([np.sin(turned), np.cos(turned)])
 
     def opposite(self, points, normals, near, reach):
-        """Where lines through `points` along `normals` cross this curve within `reach` of the place `near`: gaps, places s; nan: nowhere."""
+        """Where lines through `points` along `normals` cross this curve near the place `near`: gaps, places s; nan: nowhere."""
         low, high = max(near - reach, 0.0), min(near + reach, self.side.joints[-1])
         # nodes crowd at `near`, and joints of pieces are nodes
         part = np.linspace(-1, 1, TRIES)
@@ -118,7 +118,7 @@ class Posed:
         return gap, at
 
     def _crossing(self, points, tangents, normals, grid):
-        """Ends of the interval of each row of `grid` in which the line through the row's point crosses the curve nearest to it."""
+        """Ends of the interval of each row of `grid` in which the line through its point crosses the curve nearest to it."""
         flat = np.where(np.isfinite(grid), grid, 0.0)
         x, y = self.points(flat.ravel()).reshape(2, *grid.shape) - points[:, :, None]
         across = np.where(np.isfinite(grid), x * tangents[0][:, None] + y * tangents[1][:, None], np.nan)

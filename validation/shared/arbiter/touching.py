@@ -32,8 +32,8 @@ class Stand:
 class Touch:
     """Where points of one piece of an outline first touch the other outline, arrays ``(pieces, n)``.
 
-    `approach` [mm], inf where they never do; `own`, `met`: radii about the point's own and the other centre [mm]; `gear` (pieces,)
-    0 or 1: whose points, `piece` their piece, `at` its parameter.
+    `approach` [mm], inf where they never do; `own`, `met`: radii about the point's own and the other centre [mm];
+    `gear` (pieces,) 0 or 1: whose points, `piece` their piece, `at` its parameter.
     """
 
     approach: np.ndarray
@@ -113,7 +113,7 @@ def touching(press, stand):
     found = []
     for own in (0, 1):
         for number, (low, high, place) in enumerate(press.outlines[own].pieces):
-            found.append(_first(press, own, stand, low, high, place) + (own, number))
+            found.append((*_first(press, own, stand, low, high, place), own, number))
     values, radii, met, at, own, number = zip(*found, strict=True)
     return Touch(np.array(values), np.array(radii), np.array(met), np.array(own), np.array(number), np.array(at))
 

@@ -26,7 +26,9 @@ def gaps(pair, flanks=None, phases=PHASES):
 def compared(pair, flanks=None, phases=PHASES, near=NEAR):
     """Rows (phase, order, gap of gearfe, gap of the arbiter [um], whose piece touches) where either is below `near` [mm]."""
     truth, order, touch = gaps(pair, flanks, phases)
-    forms = None if flanks is None else tuple(flank.on(gear) for flank, gear in zip(flanks, (pair.gear_1, pair.gear_2), strict=True))
+    forms = (
+        None if flanks is None else tuple(flank.on(gear) for flank, gear in zip(flanks, (pair.gear_1, pair.gear_2), strict=True))
+    )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         known = pair.contacts(phases, flanks=forms)
@@ -37,7 +39,7 @@ def compared(pair, flanks=None, phases=PHASES, near=NEAR):
     best = np.argmin(touch.approach, axis=0).reshape(truth.shape)
     rows = []
     for i, j in zip(*np.nonzero((truth < near) | (mine < near)), strict=True):
-        whose = f"{'pinion wheel'.split()[touch.gear[best[i, j]]]} {touch.piece[best[i, j]]}"
+        whose = f"{('pinion', 'wheel')[touch.gear[best[i, j]]]} {touch.piece[best[i, j]]}"
         rows.append((float(phases[i]), int(order[j]), 1e3 * float(mine[i, j]), 1e3 * float(truth[i, j]), whose))
     return rows
 

@@ -15,6 +15,7 @@ HATS = 5.0  # in the smaller half width of a zone, at refine 1
 WIDER = 1.5  # zones than estimated half widths
 CORNER, JOINT, SMALLEST = 12.0, 3.0, 300.0  # so many times finer at corners and joints; at most so much finer than a half width
 GRADE = 0.35  # growth of hats with the distance from fine places
+STILL = np.zeros((2, 2))
 GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
 
 
@@ -23,7 +24,8 @@ class Zone:
     """A place where tooth pair `order` may touch at phase number `phase`.
 
     `own`: gear with the hats; `s` (n,): their places on its side; `met` (n,): those opposite on the other, nan where there is
-    nothing; `middle`, `force`: the place of first touch and the estimated force [N/mm].
+    nothing; `middle`, `near`: the place of first touch on both; `force`: estimated [N/mm]; `shift` (2, 2): by how much both
+    outlines have moved there elastically (gear; x, y) [mm], so that curved outlines are met where they really are.
     """
 
     phase: int
@@ -34,6 +36,7 @@ class Zone:
     middle: float
     near: float
     force: float
+    shift: np.ndarray
 
 
 class Contact:
@@ -42,23 +45,24 @@ class Contact:
     def __init__(self, press, sides):
         self.press, self.sides = press, sides
 
-    def posed(self, gear, stand, approach):
-        """The side of `gear` of the one tooth pair of `stand` after an approach."""
+    def posed(self, gear, stand, approach, shift=STILL):
+        """The side of `gear` of the one tooth pair of `stand` after an approach and elastic shifts of both gears."""
         press = self.press
         turn = float((stand.turn_1, stand.turn_2)[gear][0]) + press.rates[gear] * approach
         behind = float(press.outlines[gear].pitch(stand.tooth)[0])
-        return Posed(self.sides[gear], turn, press.centres[gear], press.mirror[gear], behind)
+        return Posed(self.sides[gear], turn, press.centres[gear], press.mirror[gear], behind, shift[gear])
 
-    def gaps(self, zone_own, stand, approach, s, near, reach):
+    def gaps(self, zone_own, stand, approach, s, near, reach, shift=STILL):
         """Gaps ``(n,)`` along the normals of gear `zone_own` at `s`, places opposite, points and normals, after an approach."""
-        own, other = self.posed(zone_own, stand, approach), self.posed(1 - zone_own, stand, approach)
+        own, other = (self.posed(gear, stand, approach, shift) for gear in (zone_own, 1 - zone_own))
         points, normals = own.points(s), own.normals(s)
         gap, met = other.opposite(points, normals, near, reach)
         return gap, met, points, normals
 
     def corners(self, gear):
         """Places of convex corners of a side."""
-        return self.sides[gear].at_radius(np.array(self.press.outlines[gear].corners)) if self.press.outlines[gear].corners else np.array([])
+        radii = self.press.outlines[gear].corners
+        return self.sides[gear].at_radius(np.array(radii)) if radii else np.array([])
 
 
 def found(contact, stand, touch, order, phase, approach, shares, modulus, refine):
@@ -110,15 +114,15 @@ def _slides(pieces, touch, i):
     return False
 
 
-def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine):
+def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
     """A `Zone` between two ends, hats of ``width / HATS`` and finer ones at corners and joints."""
-    side, other = contact.sides[own], contact.sides[1 - own]
+    side = contact.sides[own]
     low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
     coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine
     fine = max(width / HATS / refine, coarse / SMALLEST)
     foci = [(min(max(s[own], low), high), fine)]
     sample = np.linspace(low, high, 801)
-    _, met, *_ = contact.gaps(own, stand, approach, sample, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n)
+    _, met, *_ = contact.gaps(own, stand, approach, sample, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
     for gear in (own, 1 - own):
         corners = contact.corners(gear)
         for joint in contact.sides[gear].joints[1:-1]:
@@ -133,8 +137,8 @@ def placed(contact, stand, phase, order, own, s, approach, ends, width, force, r
                 sharp = bool(corners.size) and np.abs(corners - joint).min() < 1e-6
                 foci.append((at, max(coarse / (CORNER if sharp else JOINT), coarse / SMALLEST)))
     s_j = graded(low, high, foci, coarse)
-    _, opposite, *_ = contact.gaps(own, stand, approach, s_j, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n)
-    return Zone(phase, order, own, s_j, opposite, s[own], s[1 - own], force)
+    _, opposite, *_ = contact.gaps(own, stand, approach, s_j, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
+    return Zone(phase, order, own, s_j, opposite, s[own], s[1 - own], force, shift)
 
 
 def graded(low, high, foci, coarse):
