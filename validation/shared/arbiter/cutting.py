@@ -32,8 +32,18 @@ class Space:
         self._tool = Cutter(self) if gear.internal else Rack(self)
 
     def flank(self, radius):
-        """Half angle cut by the straight part of the rack, or the involute of the cutter."""
-        return self._largest(np.atleast_1d(radius), *self._tool.straight)
+        """Half angle cut by the straight part of the rack; of a ring, the tooth that an endless straight rack cuts of its z and x.
+
+        The two are one where the cutter's involute reaches. Near a ring's tip it may not: what the end of the cutter's involute
+        would take away there, a fraction of a micrometre, is left out, because a ring's flank is by definition an involute.
+        """
+        radius = np.atleast_1d(radius)
+        if not self.gear.internal:
+            return self._largest(radius, *self._tool.straight)
+        alpha_t = math.acos(self.r_b / self.r)
+        return math.pi / self.gear.z - self._largest(
+            radius, lambda one: (0.0 * one, np.full(one.shape, alpha_t)), Rack(self).straight[1]
+        )
 
     def fillet(self, radius):
         """Half angle cut by the tool's rounded tip."""
@@ -44,7 +54,8 @@ class Space:
         low, high = self.r_f, self.r_a
         for _ in range(60):
             middle = (low + high) / 2
-            flank = self.flank(middle) > self.fillet(middle) + SAME
+            at = np.array([middle])
+            flank = self._largest(at, *self._tool.straight) > self.fillet(at) + SAME
             low, high = (low, middle) if flank else (middle, high)
         if high == self.r_a:
             raise ValueError(f"z = {self.gear.z}: nothing is left of the flank")
