@@ -258,7 +258,7 @@ def complementary(matrix, gap, rate, load):
     RuntimeError
         If the set of pressed hats does not settle.
     """
-    scale = np.diag(matrix)
+    scale = np.where(np.diag(matrix) > 0, np.diag(matrix), 1.0)  # a hat that faces nothing has none
     meets = rate > 0
     pressed = meets & (gap <= np.sort(gap[meets])[min(3, meets.sum() - 1)])
     for _ in range(STEPS):
