@@ -35,6 +35,7 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "store": ("store/test_store.py",),
     "sweeps": ("sweeps/test_study.py",),
     "cli": ("cli/test_cli.py::test_stiffness_writes_curve_and_plot",),
+    "validation": ("validation/test_arbiter.py::test_flank_is_the_involute",),
     "literature": (
         "test_literature.py::test_verdict_on_a_printed_number[planetary_pitting-hertz_coefficient",
         "test_literature.py::test_verdict_on_a_printed_number[compound_planetary-mean_stiffness",

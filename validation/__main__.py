@@ -19,6 +19,7 @@ PAGES = {
     "sample_three": "the same in three dimensions: narrow and wide gears, rings, cracks (resumable)",
     "cracks": "crack reductions and their conventions",
     "assumptions": "what the assumptions of the scenes do to the stiffness",
+    "outlines": "gaps and stiffness of random pairs against whole outlines pressed together (--reference: resumable)",
     "truth": "independent values of others, and CalculiX, beside ours",
     "measured": "measured gearboxes of others, as far as their numbers are public",
     "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
@@ -51,7 +52,7 @@ PAGES = {
     "tutorials": "what the scripts of the documentation print, for their test",
 }
 
-LONG_RUNS = ("pairs_three", "herringbone", "outsider_three")  # pages whose finite elements --reference computes
+LONG_RUNS = ("pairs_three", "herringbone", "outsider_three", "outlines")  # pages whose finite elements --reference computes
 LONG = {
     "sample": "a new sample of random pairs",
     "sample_three": "brute-force finite elements of whole gears",

@@ -1,0 +1,58 @@
+"""Whole outlines of gears pressed together, beside gearfe's two section methods: distributions and the ten worst phases."""
+
+import numpy as np
+
+from gearfe.files import written
+
+from ..shared.arbiter.beside import beside
+from ..shared.arbiter.kept import reference
+from ..shared.places import PAGES
+
+__all__ = ["reference", "run"]
+
+PAGE = PAGES / "outlines.md"
+METHODS = ("ritz", "fe")
+INTRODUCTION = """# Whole outlines pressed together
+
+An arbiter that shares nothing of gearfe's contact geometry (`validation/shared/arbiter`): teeth cut by brute force, whole
+outlines, finite elements of whole gears in plane strain of its own, contact between outline points with true gaps and normals.
+Pairs are random, undercut ones, close and trimmed rings, rounded tips over-represented; phases are those where off-path pairs
+come near. They were chosen before any was pressed. Its mesh error is the larger of two that three meshes tell.
+
+`python -m validation outlines` makes this page; `--reference` presses the cases that are not on file.
+
+"""
+
+
+def run():
+    """Write the page."""
+    parts = [INTRODUCTION]
+    for method in METHODS:
+        rows = [(row, found) for row, found in beside(method)]
+        refused = sorted({f"{row['pair']}: {found['refused']}" for row, found in rows if "refused" in found})
+        rows = [(row, found) for row, found in rows if "refused" not in found]
+        off = np.array([abs(found["difference"]) for _, found in rows])
+        corner = np.array([bool(row["places"]) for row, _ in rows])
+        covered = np.array([abs(found["difference"]) <= found["estimate"] for _, found in rows])
+        mesh = np.array([float(row["mesh_error_percent"]) for row, _ in rows])
+        parts.append(
+            f"## `{method}`\n\n{off.size} phases; estimate covers the difference in {100 * covered.mean():.1f} %. Mesh error of "
+            f"the arbiter: median {np.median(mesh):.3f} %, largest {mesh.max():.3f} %.\n\n"
+            "| difference [%] | phases | median | 90 % | 99 % | largest |\n|---|---|---|---|---|---|\n"
+        )
+        for name, some in (("no corner, joint or fillet pressed", off[~corner]), ("one of them pressed", off[corner])):
+            spread = " | ".join(f"{value:.3f}" for value in np.quantile(some, [0.5, 0.9, 0.99, 1.0])) if some.size else "| | |"
+            parts.append(f"| {name} | {some.size} | {spread} |\n")
+        parts.append("\n| seed | pair | load [N/mm] | phase | k arbiter | mesh error % | difference % | estimate % | pressed |\n")
+        parts.append("|---|---|---|---|---|---|---|---|---|\n")
+        for i in np.argsort(-off)[:10]:
+            row, found = rows[i]
+            parts.append(
+                f"| {row['seed']} | {row['pair']} {row['crack']} | {row['load_N_mm']} | {row['phase_48']}/48 | "
+                f"{float(row['k_N_um_mm']):.3f} | {float(row['mesh_error_percent']):.3f} | {found['difference']:.3f} | "
+                f"{found['estimate']:.3f} | {row['places']} |\n"
+            )
+        parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
+    with written(PAGE) as target, open(target, "w", encoding="utf-8") as file:
+        file.write("".join(parts))
+    print(f"wrote {PAGE.name}")

@@ -1,0 +1,41 @@
+"""The kept rows of the arbiter beside gearfe's own stiffness."""
+
+import warnings
+from itertools import groupby
+
+import gearfe as gf
+
+from .cases import LOADED, loaded_case
+from .kept import STEEL, rows_on_file
+
+
+def beside(method, seeds=None):
+    """For every row on file (of `seeds`, if given): the row, and k of `method` [N/(mm um)] beside it.
+
+    Yields
+    ------
+    (dict, dict)
+        The row on file, and ``k``, ``estimate``, ``difference`` [%]; or ``refused``, why gearfe gives no curve.
+    """
+    cases = {str(row[0]): row for row in LOADED}
+    for seed, rows in groupby(rows_on_file(), key=lambda row: row["seed"]):
+        if seed not in cases or (seeds is not None and int(seed) not in seeds):
+            continue
+        rows = list(rows)
+        pair, flanks, load, cracks, phases = loaded_case(cases[seed])
+        damage = {name: some for name, some in zip(("pinion", "wheel"), cracks, strict=True) if some}
+        given = None if flanks is None else dict(zip(("pinion", "wheel"), flanks, strict=True))
+        width = min(pair.gear_1.b, pair.gear_2.b)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                curve = gf.mesh_stiffness(
+                    pair, load * width, gf.Material(*STEEL), phases=phases, method=method, damage=damage or None, flanks=given,
+                    error=True, cache=False,
+                )  # fmt: skip
+            except (ValueError, RuntimeError) as error:
+                yield from ((row, {"refused": str(error)}) for row in rows)
+                continue
+        for row, k, error in zip(rows, curve.k / 1e6 / width, curve.error / curve.k, strict=True):
+            truth = float(row["k_N_um_mm"])
+            yield row, {"k": float(k), "estimate": 100 * float(error), "difference": 100 * (float(k) / truth - 1)}

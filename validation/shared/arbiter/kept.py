@@ -1,0 +1,91 @@
+"""Rows of the arbiter: computed once, a case at a time, and kept in a table."""
+
+import csv
+
+import numpy as np
+
+from gearfe.files import written
+
+from ..places import TABLES
+from .cases import LOADED, loaded_case
+from .pressing import pressed
+
+TABLE = TABLES / "outlines.csv"
+STEEL = (206e3, 0.3)  # Young's modulus [MPa], Poisson's ratio of all loaded cases
+FIELDS = ("seed", "kind", "pair", "flanks", "crack", "load_N_mm", "phase_48", "k_N_um_mm", "mesh_error_percent", "approach_um")
+FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
+
+
+def rows_on_file():
+    """Rows of the table, dicts of texts."""
+    if not TABLE.is_file():
+        return []
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def places_of(sides, answer, margin=0.3):
+    """Which corners, joints and fillets lie in the pressed zones, or within `margin` of their widths: "-1: pinion form"."""
+    out = []
+    for zone, p, *_ in answer.pressed:
+        on = np.flatnonzero(p > 1e-3 * p.max()) if p.max() > 1e-6 else []
+        if not len(on):
+            continue
+        names = []
+        for gear, s in ((zone.own, zone.s), (1 - zone.own, zone.met)):
+            low, high = np.nanmin(s[on]), np.nanmax(s[on])
+            more = margin * (high - low)
+            side, name = sides[gear], ("pinion", "wheel")[gear]
+            last = side.joints.size - 2
+            kinds = ["form", *["joint"] * (last - 2), "tip"]
+            names += [
+                f"{name} {kind}" for kind, joint in zip(kinds, side.joints[1:-1], strict=True) if low - more < joint < high + more
+            ]
+            if low < side.joints[1] - 1e-6:
+                names.append(f"{name} fillet")
+        if names:
+            out.append(f"{zone.order}: {' '.join(names)}")
+    return "; ".join(out)
+
+
+def case_rows(row):
+    """Rows of one of `LOADED`, one for each phase."""
+    seed, kind, load, crack, phases = row
+    pair, flanks, load, cracks, places = loaded_case(row)
+    result = pressed(pair, flanks, load, places, STEEL, cracks=cracks)
+    name = f"{pair.gear_1.z}/{pair.gear_2.z}{' ring' if pair.gear_2.internal else ''} m {pair.gear_1.m_n:g}"
+    hurt = "" if crack is None else f"{crack[0]} {100 * crack[1]:.0f} % tooth {crack[2]}"
+    head = [str(seed), kind, name, "modified" if flanks else "", hurt, f"{load:g}"]
+    out = []
+    for i, phase in enumerate(phases):
+        shares = "; ".join(f"{order}: {part:.4f}" for order, part in sorted(result.force[i].items()))
+        numbers = [result.k[i] / 1e3, 100 * result.error[i] / result.k[i], 1e3 * result.approach[i], 1e3 * result.least[i]]
+        tail = [f"{value:.6g}" for value in numbers]
+        tail += [
+            shares,
+            places_of(*result.zones[i]),
+            "yes" if result.edge[i] else "",
+            str(result.dofs),
+            f"{result.cpu / len(phases):.2f}",
+        ]
+        out.append(dict(zip(FIELDS, [*head, str(phase), *tail], strict=True)))
+    return out
+
+
+def reference():
+    """Press all of `LOADED` that are not on file (resumable: a stop loses one case at most)."""
+    for row in LOADED:
+        known = rows_on_file()
+        if any(old["seed"] == str(row[0]) for old in known):
+            continue
+        try:
+            new = case_rows(row)
+        except RuntimeError as error:
+            print(f"{row[0]}: {error}", flush=True)
+            continue
+        TABLE.parent.mkdir(exist_ok=True)
+        with written(TABLE) as target, open(target, "w", encoding="utf-8", newline="") as file:
+            table = csv.DictWriter(file, FIELDS, lineterminator="\n")
+            table.writeheader()
+            table.writerows(known + new)
+        print(f"outlines: {row[0]} {new[0]['pair']}, {sum(float(one['cpu_s']) for one in new):.1f} s of CPU", flush=True)

@@ -1,0 +1,168 @@
+"""Zones in which outlines may press on each other: where, how wide, and hat pressures on them.
+
+The gear whose corners are further away carries the hats (its outline is smooth there, so it gives the normals); the other one is
+met along these normals. A zone is as wide as the true gap, from its least, takes to rise by ``2 f / (pi E*)``: at that distance a
+Hertz pressure of f [N/mm] ends, and so, roughly, does any other. Around corners and joints hats get finer.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .side import Posed
+
+HATS = 5.0  # in the smaller half width of a zone, at refine 1
+WIDER = 1.5  # zones than estimated half widths
+CORNER, JOINT, SMALLEST = 12.0, 3.0, 300.0  # so many times finer at corners and joints; at most so much finer than a half width
+GRADE = 0.35  # growth of hats with the distance from fine places
+STILL = np.zeros((2, 2))
+GAUSS, WEIGHT = np.polynomial.legendre.leggauss(4)
+
+
+@dataclass
+class Zone:
+    """A place where tooth pair `order` may touch at phase number `phase`.
+
+    `own`: gear with the hats; `s` (n,): their places on its side; `met` (n,): those opposite on the other, nan where there is
+    nothing; `middle`, `near`: the place of first touch on both; `force`: estimated [N/mm]; `shift` (2, 2): by how much both
+    outlines have moved there elastically (gear; x, y) [mm], so that curved outlines are met where they really are.
+    """
+
+    phase: int
+    order: int
+    own: int
+    s: np.ndarray
+    met: np.ndarray
+    middle: float
+    near: float
+    force: float
+    shift: np.ndarray
+
+
+class Contact:
+    """Both sides of a pair, posed: what zones need to know of the geometry."""
+
+    def __init__(self, press, sides):
+        self.press, self.sides = press, sides
+
+    def posed(self, gear, stand, approach, shift=STILL):
+        """The side of `gear` of the one tooth pair of `stand` after an approach and elastic shifts of both gears."""
+        press = self.press
+        turn = float((stand.turn_1, stand.turn_2)[gear][0]) + press.rates[gear] * approach
+        behind = float(press.outlines[gear].pitch(stand.tooth)[0])
+        return Posed(self.sides[gear], turn, press.centres[gear], press.mirror[gear], behind, shift[gear])
+
+    def gaps(self, zone_own, stand, approach, s, near, reach, shift=STILL):
+        """Gaps ``(n,)`` along the normals of gear `zone_own` at `s`, places opposite, points and normals, after an approach."""
+        own, other = (self.posed(gear, stand, approach, shift) for gear in (zone_own, 1 - zone_own))
+        points, normals = own.points(s), own.normals(s)
+        gap, met = other.opposite(points, normals, near, reach)
+        return gap, met, points, normals
+
+    def corners(self, gear):
+        """Places of convex corners of a side."""
+        radii = self.press.outlines[gear].corners
+        return self.sides[gear].at_radius(np.array(radii)) if radii else np.array([])
+
+
+def found(contact, stand, touch, order, phase, approach, shares, modulus, refine):
+    """Zones of one tooth pair (`stand` and `touch` of that pair alone) for an estimated approach.
+
+    `shares(gap)` estimates the force [N/mm] of a place that touches at `gap`; `modulus` is E* of both gears.
+    """
+    places = []
+    m = contact.press.outlines[0].gear.m_n
+    for i in np.argsort(touch.approach[:, 0]):
+        if not touch.approach[i, 0] < approach:
+            break
+        own = int(touch.gear[i])
+        if _slides(contact.press.outlines[own].pieces, touch, i):
+            continue
+        s_own = float(contact.sides[own].arc(touch.piece[i], touch.at[i, 0]))
+        s_met = float(contact.sides[1 - own].at_radius(touch.met[i, 0]))
+        s = (s_own, s_met) if own == 0 else (s_met, s_own)
+        if all(abs(s[0] - other[0][0]) > 0.15 * m or abs(s[1] - other[0][1]) > 0.15 * m for other in places):
+            places.append((s, float(touch.approach[i, 0])))
+    zones = []
+    for s, gap in places:
+        away = [np.abs(contact.corners(gear) - s[gear]).min(initial=np.inf) for gear in (0, 1)]
+        own = int(away[1] > away[0])
+        force = shares(gap)
+        rise = 2 * force / (np.pi * modulus)
+        distance = np.concatenate([[0.0], np.geomspace(1e-5, 0.5, 90)]) * m
+        widths = []
+        for side in (-1, 1):
+            at = s[own] + side * distance
+            at = at[(at >= 0) & (at <= contact.sides[own].joints[-1])]
+            here, *_ = contact.gaps(own, stand, gap, at, s[1 - own], 1.5 * m)
+            over = np.flatnonzero(~(here < rise))
+            over = over[over > 0]
+            widths.append(distance[over[0]] if over.size else distance[at.size - 1])
+        ends = s[own] - WIDER * widths[0], s[own] + WIDER * widths[1]
+        zones.append(placed(contact, stand, phase, order, own, s, gap, ends, min(widths), force, refine))
+    return zones
+
+
+def _slides(pieces, touch, i):
+    """Whether a touch at the end of its piece is no least one because the next piece of that outline touches earlier."""
+    number, at = int(touch.piece[i]), touch.at[i, 0]
+    low, high, _ = pieces[number]
+    for end, other in ((low, number - 1), (high, number + 1)):
+        beside = np.flatnonzero((touch.gear == touch.gear[i]) & (touch.piece == other))
+        if abs(at - end) < 2e-3 * abs(high - low) and beside.size and touch.approach[beside[0], 0] < touch.approach[i, 0]:
+            return True
+    return False
+
+
+def placed(contact, stand, phase, order, own, s, approach, ends, width, force, refine, shift=STILL):
+    """A `Zone` between two ends, hats of ``width / HATS`` and finer ones at corners and joints."""
+    side = contact.sides[own]
+    low, high = max(ends[0], 1e-6), min(ends[1], side.joints[-1] - 1e-6)
+    coarse = max(high - low, 1e-9) / 2 / WIDER / HATS / refine
+    fine = max(width / HATS / refine, coarse / SMALLEST)
+    foci = [(min(max(s[own], low), high), fine)]
+    sample = np.linspace(low, high, 801)
+    _, met, *_ = contact.gaps(own, stand, approach, sample, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
+    for gear in (own, 1 - own):
+        corners = contact.corners(gear)
+        for joint in contact.sides[gear].joints[1:-1]:
+            at = joint
+            if gear != own:
+                good = np.isfinite(met)
+                if good.sum() < 2 or not met[good].min() < joint < met[good].max():
+                    continue
+                rank = np.argsort(met[good])
+                at = float(np.interp(joint, met[good][rank], sample[good][rank]))
+            if low < at < high:
+                sharp = bool(corners.size) and np.abs(corners - joint).min() < 1e-6
+                foci.append((at, max(coarse / (CORNER if sharp else JOINT), coarse / SMALLEST)))
+    s_j = graded(low, high, foci, coarse)
+    _, opposite, *_ = contact.gaps(own, stand, approach, s_j, s[1 - own], 1.5 * contact.press.outlines[0].gear.m_n, shift)
+    return Zone(phase, order, own, s_j, opposite, s[own], s[1 - own], force, shift)
+
+
+def graded(low, high, foci, coarse):
+    """Nodes between two ends, as fine as the `foci` (place, size) ask for, at most `coarse` apart."""
+    spread = np.concatenate([at + x * fine * 1.3 ** np.arange(60) for at, fine in foci for x in (1, -1)])
+    s = np.unique(np.concatenate([np.linspace(low, high, 400), spread[(spread > low) & (spread < high)], [at for at, _ in foci]]))
+    size = np.min([fine + GRADE * np.abs(s - at) for at, fine in foci] + [np.full(s.size, coarse)], axis=0)
+    total = np.concatenate([[0.0], np.cumsum(np.diff(s) * (1 / size[1:] + 1 / size[:-1]) / 2)])
+    nodes = np.interp(np.linspace(0, total[-1], max(6, int(np.ceil(total[-1])) + 1)), total, s)
+    for at, _ in foci[1:]:  # corners and joints are nodes
+        nearest = int(np.argmin(np.abs(nodes - at)))
+        if 0 < nearest < nodes.size - 1:
+            nodes[nearest] = at
+    return nodes
+
+
+def hats(s):
+    """Gauss places ``(q,)`` between nodes `s` and the weights ``(q, n)`` of hats with unit resultant."""
+    step = np.diff(s)
+    places = (s[:-1, None] + step[:, None] * (GAUSS + 1) / 2).ravel()
+    falling = (WEIGHT / 2 * (1 - GAUSS) / 2)[None, :] * step[:, None]
+    rising = (WEIGHT / 2 * (1 + GAUSS) / 2)[None, :] * step[:, None]
+    weights = np.zeros((places.size, s.size))
+    rows = np.arange(places.size).reshape(step.size, -1)
+    for i in range(step.size):
+        weights[rows[i], i], weights[rows[i], i + 1] = falling[i], rising[i]
+    return places, weights / weights.sum(axis=0)
