@@ -194,7 +194,10 @@ class PairContact:
         corner = np.zeros(found.gap.shape, dtype=int)
         if not self.extended:
             return corner, *np.zeros((2, *corner.shape))
-        width = half_width(line_load, self.radius, self.modulus)
+        start, end = self.pair.path
+        mate = self.pair.mate_roll(found.nominal)
+        radius = np.where(found.corner > 0, self.pair.relative_radius(found.nominal, mate), self.radius)
+        width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, found.corner_roll[0]) - arc_at(gear, found.roll_1))
         other = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
@@ -202,11 +205,12 @@ class PairContact:
         more = found.corner_gap - np.where(possible, found.gap, 0.0)
         with np.errstate(invalid="ignore"):
             reached = away < CORNER * width
-            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * self.radius)))
+            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * radius)))
         there = possible & np.isfinite(found.corner_gap)
         corner = ((there & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (found.corner == 0)
-        apart = smooth & ~(there & reached).any(axis=0)
+        also = (corner > 0) & (found.corner > 0) & (found.nominal > start) & (found.nominal < end) & (-found.gap < pressed)
+        apart = also | (smooth & ~(there & reached).any(axis=0))  # the flanks touch on the path, besides
         further = np.where(there & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)

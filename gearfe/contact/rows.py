@@ -176,7 +176,10 @@ def _placed(contact, one, host):
         places = places[places <= marks[1 + host]]
     if not one.width:
         return _knots(_tops(places, ends, offsets), ends)
-    middle = float(arc_at(gear, (found.roll_1, found.roll_2)[host][at]))
+    flanks = (found.roll_1[at], found.roll_2[at])
+    if found.corner[at]:
+        flanks = (found.nominal[at], contact.pair.mate_roll(found.nominal[at]))
+    middle = float(arc_at(gear, flanks[host]))
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
