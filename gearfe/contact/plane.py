@@ -95,7 +95,9 @@ class PairContact:
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
         corner, zone, width = self._corners(line_load, possible)
-        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, self.tilt)
+        line, closing, tangent, done = line_contacts(
+            self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, self.tilt
+        )
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -115,7 +117,25 @@ class PairContact:
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded)
+        left_out = self._left_out(line, closing, beyond)
+        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=left_out)
+
+    def _left_out(self, line, closing, beyond):
+        """Part of the approach by which gaps off the path are unsure ``(phases,)``: teeth also move along each other as they bend.
+
+        A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
+        path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
+        flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+        """
+        found, (start, end) = self.found, self.pair.path
+        off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
+        if not off.any():
+            return np.zeros(closing.size)
+        stiff = np.where(line > 0, line / np.maximum(closing[:, None] - beyond, 1e-3 * closing[:, None]), 0.0)
+        u, gap = math.tan(self.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
+        changed = np.where(off, (np.sqrt(2 * self.radius * gap) * u + u**2 / 2) / self.radius, 0.0)
+        changed = np.minimum(changed, np.where(off, closing[:, None] - beyond, 0.0))  # no gap is unsure by more than it is closed
+        return (stiff * changed).sum(axis=1) / stiff.sum(axis=1) / closing
 
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
