@@ -7,7 +7,8 @@ libraries into the path that `written` gives. Readers give lines of text or arra
 import contextlib
 import json
 import os
-import tempfile
+import secrets
+import threading
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,6 +16,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+
+_drawing = threading.Lock()
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +57,6 @@ def written(path):
     name = _beside(path)
     try:
         yield name
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
         os.replace(name, path)
     except OSError as error:
         raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
@@ -69,12 +69,23 @@ def _beside(path):
     """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
     path = Path(path)
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix.lower())
+        handle, name = new_file(path.parent, f".{path.stem}-", path.suffix.lower())
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         told = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot write {path}: {told}; give an existing, writable folder") from error
     os.close(handle)
     return name
+
+
+def new_file(folder, prefix, suffix=""):
+    """Open a file that was not there before: its number, and its name; the rights are those of any new file of this process.
+
+    (`tempfile.mkstemp` gives fewer, and what they should be can be asked only by changing them, for all threads.)
+    """
+    while True:
+        name = os.path.join(folder, f"{prefix}{secrets.token_hex(6)}{suffix}")
+        with contextlib.suppress(FileExistsError):
+            return os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
 
 
 def check_output(path, kind):
@@ -141,7 +152,7 @@ def save_figure(figure, path, dpi):
     """Draw a matplotlib figure into a file, unless `path` is None; gives the figure back."""
     if path is not None:
         suffix_of(path, "picture")
-        with written(path) as name:
+        with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
             figure.savefig(name, dpi=dpi)
     return figure
 

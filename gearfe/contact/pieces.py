@@ -5,11 +5,11 @@ corner of one gear on the other flank, with a gap that is exact kinematics of th
 """
 
 import math
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kept import keeping
 from geometry.pair.contacts import touching
 from geometry.pair.lines import covered
 
@@ -34,7 +34,7 @@ class Piece(NamedTuple):
     floor: float = 0.0
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def gaps(pair):
     """Return how far beyond the path (before its start, after its end) [mm], and the gaps there, up to where no flank is met.
 
