@@ -6,17 +6,27 @@ libraries into the path that `written` gives. Readers give lines of text or arra
 
 import contextlib
 import json
+import math
 import os
 import secrets
+import struct
 import threading
+import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from tokenize import TokenError
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib import format as npy
 
+from .matlab_file import MOST_PACKED, variables
+
+# what a file that is no archive of arrays can raise: no archive, of a kind not known, other arrays
+NO_ARCHIVE = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError, NotImplementedError, MemoryError)
+NO_ARCHIVE += (KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
 
 
@@ -220,39 +230,39 @@ def read_text(path):
 
 
 def read_npz(path):
-    """Arrays of a numpy archive, by name; nothing is unpickled."""
-    from zipfile import BadZipFile
-
+    """Arrays of a numpy archive, by name; nothing is unpickled, and no more memory is asked for than the file can fill."""
     with _opened(path) as file:
         try:
+            with zipfile.ZipFile(file) as archive:
+                for member in archive.infolist():
+                    _check_member(archive, member)
+            file.seek(0)
             with np.load(file, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
-        except (BadZipFile, ValueError, TypeError, EOFError, zlib.error) as error:
+        except NO_ARCHIVE as error:
             raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
 
 
-def read_mat(path):
-    """Variables of a MATLAB file of version 7 or older, by name."""
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
+def _check_member(archive, member):
+    """ValueError if a member of a numpy archive is larger, by what it says, than its bytes can make it."""
+    if member.file_size > MOST_PACKED * (member.compress_size + 1):
+        raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
+    if not member.filename.endswith(".npy"):
+        return
+    with archive.open(member) as file:
+        version = npy.read_magic(file)
+        shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
+        if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
+            raise ValueError(f"{member.filename} says it is {dtype} {list(shape)}, more than its {member.file_size} bytes")
 
+
+def read_mat(path):
+    """Variables of a MATLAB file of version 7 or older, by name: arrays, or `gearfe.matlab_file.Unread`."""
     with _opened(path) as file:
         try:
-            return {name: value for name, value in loadmat(file).items() if not name.startswith("__")}
-        except NotImplementedError as error:
-            raise ValueError(f"{path} says it is a MATLAB file of version 7.3, but holds no HDF5: it is damaged") from error
-        except (
-            MatReadError,
-            ValueError,
-            TypeError,
-            EOFError,
-            IndexError,
-            KeyError,
-            MemoryError,
-            ArithmeticError,
-            zlib.error,
-        ) as error:
-            raise ValueError(f"{path} is not a MATLAB file: {error}") from error
+            return variables(file.read())
+        except (ValueError, MemoryError) as error:
+            raise ValueError(f"{path} is not a MATLAB file, or a damaged one: {error}") from error
 
 
 @contextlib.contextmanager

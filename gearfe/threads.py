@@ -18,6 +18,10 @@ R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 LARGE = "fe3d"  # the one method whose matrices are large: more threads make it faster
 
+# Python's own locks are of single modules: of two threads that load parts of a package at the same time one may be told that
+# they wait for each other
+loading = threading.RLock()
+
 
 class Shared:
     """A change to the process that blocks of several threads share: the first to enter makes it, the last to leave undoes it.
@@ -53,8 +57,9 @@ class Shared:
 @functools.cache
 def _libraries() -> Any:
     """The linear algebra of numpy and scipy, looked for once: that takes some milliseconds."""
-    import scipy.linalg  # noqa: F401 - loads what is to be found
-    from threadpoolctl import ThreadpoolController
+    with loading:
+        import scipy.linalg  # noqa: F401 - loads what is to be found
+        from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController().select(user_api="blas")
 

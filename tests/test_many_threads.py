@@ -309,3 +309,23 @@ def test_batches_that_overlap_leave_the_environment_as_it_was(monkeypatch):
         assert os.environ["OMP_NUM_THREADS"] == "1"
     assert "OMP_NUM_THREADS" not in os.environ
     assert getattr(main, "__file__", None) == file
+
+
+def test_public_names_are_loaded_by_one_thread_at_a_time(monkeypatch):
+    """Two threads that load parts of a package at once can be told by Python that they wait for each other."""
+    inside, most, real = [], [], gf.importlib.import_module
+
+    def load(name):
+        inside.append(name)
+        most.append(len(inside))
+        threading.Event().wait(0.005)
+        inside.remove(name)
+        return real(name)
+
+    monkeypatch.setattr(gf.importlib, "import_module", load)
+    names = ["Crack", "Gear", "GearPair", "Material"]
+    for name in names:
+        monkeypatch.delitem(vars(gf), name, raising=False)
+    found = together(4, lambda i: getattr(gf, names[i]))
+    assert [one.__name__ for one in found] == names
+    assert most == [1] * 4
