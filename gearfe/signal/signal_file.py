@@ -55,7 +55,8 @@ def read_signal(
     - ``.wav``: ``channel 1``...; parts of full scale, to be given `unit` and `scale`.
     - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated.
 
-    Nothing is unpickled. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
+    Nothing is unpickled, no other file is opened, and an archive, MATLAB or HDF5 file that announces more numbers than it can
+    hold is refused. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
 
     Parameters
     ----------
