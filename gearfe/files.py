@@ -25,8 +25,8 @@ from numpy.lib import format as npy
 from .matlab_file import MOST_PACKED, variables
 
 # what a file that is no archive of arrays can raise: no archive, of a kind not known, other arrays
-NO_ARCHIVE = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError, NotImplementedError, MemoryError)
-NO_ARCHIVE += (KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
+NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
+NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
 _drawing = threading.Lock()
 
 

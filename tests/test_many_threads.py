@@ -7,11 +7,11 @@ import sys
 import threading
 import warnings
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
+from checks import together
 from numpy.testing import assert_array_equal
 
 import gearfe as gf
@@ -23,7 +23,6 @@ from geometry.mesh import mesher
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 CRACK = {"pinion": [gf.Crack(level=0.3)]}
-ASKED = ["cracked 1", "healthy", "cracked 2", "cracked 1", "healthy", "cracked 2"]
 SMALL = {"ritz": {"order": 3}, "fe": {"refine": 0.5}, "ritz3d": {"order": 2, "refine": 0.5}}
 
 
@@ -41,21 +40,6 @@ def _nothing_kept(monkeypatch):
 def pair(i):
     rack = {"m_n": 2.0 + 0.03 * i, "alpha_n": math.radians(20), "b": 4.0}
     return gf.GearPair(gf.Gear(z=18 + i, r_bore=9.0, **rack), gf.Gear(z=27, r_bore=12.0, **rack))
-
-
-def together(count, work):
-    """What `work` gives of the numbers of `count` threads that begin at once, errors as they are."""
-    start = threading.Barrier(count)
-
-    def one(i):
-        start.wait()
-        try:
-            return work(i)
-        except Exception as error:
-            return error
-
-    with ThreadPoolExecutor(count) as pool:
-        return list(pool.map(one, range(count)))
 
 
 @pytest.mark.parametrize("method", SMALL)
@@ -77,76 +61,6 @@ def test_new_pairs_have_the_bits_of_one_thread_and_no_gear_is_solved_twice(metho
     cache.clear()
     for i, both in enumerate(found):
         assert_array_equal(both, (k(i), k(i, damage)))
-
-
-def test_one_solves_and_the_others_wait():
-    gears, solves, waiting = SolvedGears(), [], threading.Event()
-
-    def solve():
-        solves.append(threading.get_ident())
-        waiting.wait(0.2)
-        return np.zeros(1000)
-
-    found = together(8, lambda i: gears.get("one", solve))
-    assert len(solves) == 1
-    assert all(one is found[0] for one in found)
-    assert (len(gears), gears.size) == (1, 8000)
-
-
-def test_an_error_is_everyones_own_and_leaves_nothing():
-    gears, tries = SolvedGears(), []
-
-    def failing():
-        tries.append(len(tries))
-        raise ValueError(f"try {tries[-1]}")
-
-    found = together(4, lambda i: gears.get("one", failing))
-    assert sorted(map(str, found)) == [f"try {i}" for i in range(4)]
-    assert (len(gears), gears.size, gears._solving) == (0, 0, {})
-    assert gears.get("one", lambda: 5) == 5
-
-
-def test_who_is_interrupted_leaves_the_solve_to_those_who_wait():
-    gears, inside = SolvedGears(), threading.Event()
-
-    def interrupted():
-        inside.set()
-        while not waiting.is_alive():
-            pass
-        raise KeyboardInterrupt
-
-    found = []
-    waiting = threading.Thread(target=lambda: (inside.wait(), found.append(gears.get("one", lambda: 5))))
-
-    def ask():
-        waiting.start()
-        gears.get("one", interrupted)
-
-    with pytest.raises(KeyboardInterrupt):
-        ask()
-    waiting.join(10)
-    assert found == [5]
-
-
-def test_solves_that_ask_for_other_gears_do_not_wait_for_ever():
-    """Cracked gears ask for the healthy one, in whatever order and however little is kept."""
-    for most in (0, 10**9):
-        gears, solves = SolvedGears(most), Counter()
-
-        def get(name, gears=gears, solves=solves):
-            def solve():
-                solves[name] += 1
-                return name if name == "healthy" else (name, get("healthy"))
-
-            return gears.get(name, solve)
-
-        found = together(6, lambda i, get=get: get(ASKED[i]))
-        assert found == [name if name == "healthy" else (name, "healthy") for name in ASKED]
-        if most:
-            assert solves == dict.fromkeys(ASKED, 1)
-    with pytest.raises(RuntimeError, match="asks for its own result"):
-        gears.get("a", lambda: gears.get("b", lambda: gears.get("a", int)))
-    assert gears._solving == {}
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
