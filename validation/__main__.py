@@ -28,7 +28,7 @@ PAGES = {
     "shortcomings": "what gearfe falls short of: the expected failures of its tests",
     "speed": "seconds against error of every method",
     "before_after": "seconds, memory and errors beside those of an earlier commit, in one run",
-    "threads": "seconds of a pair with one thread and with several",
+    "threads": "threads of the caller: bits, crashes, gears solved twice; seconds with threads of the linear algebra",
     "formulations": "closed forms on known pairs, and what each ingredient changes",
     "map": "errors of the closed forms over thousands of gear pairs",
     "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",

@@ -121,11 +121,12 @@ class PairContact:
         return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=left_out)
 
     def _left_out(self, line, closing, beyond):
-        """Part of the approach by which gaps off the path are unsure ``(phases,)``: teeth also move along each other as they bend.
+        """Part of the approach ``(phases,)`` by which gaps off the path are unsure: bent teeth also move along each other.
 
-        A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
-        path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
-        flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+        A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On
+        the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from
+        where the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base
+        circles.
         """
         found, (start, end) = self.found, self.pair.path
         off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
@@ -197,8 +198,8 @@ class PairContact:
         """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
 
         Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact
-        moves by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``.
-        That counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load.
+        moves by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P
+        S')**2``. That counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load.
         """
         found, step = self.found, STEP * self.pair.gear_1.m_n
         ahead, behind = (self._alone(found, sense * step) for sense in (1, -1))

@@ -6,12 +6,12 @@ side. So one row also holds a tip in its mate's fillet together with the flank c
 with the first of the corners, so that neither gear is preferred.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kept import keeping
 from geometry.pair.contacts import TIP, approach
 from geometry.tooth.profile import arc_at, roll_at_arc
 from geometry.tooth.side import on_fillet
@@ -55,7 +55,7 @@ class Wanted(NamedTuple):
     width: float = 0.0
 
 
-@lru_cache(maxsize=256)
+@keeping(256)
 def _offsets(m_n, fine, zone, finest=0.0):
     """Distances ``(n,)`` [mm] of the hats' tops from a corner, rising from 0, to the end of its zone."""
     least, out = FINEST * m_n / fine, [0.0]

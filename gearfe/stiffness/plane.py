@@ -17,7 +17,6 @@ from .estimate import coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of
 from .supported import yielding
 
-
 MODEL = (
     1e-3  # of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
 )
