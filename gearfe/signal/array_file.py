@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import missing, read
+from ..extras import missing
+from ..files import read
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
@@ -48,7 +49,7 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
     try:
         import h5py
     except ImportError as error:
-        raise missing("h5py", "signals", error) from error
+        raise missing("h5py", error) from error
     found = Found({})
     try:
         with h5py.File(path, "r") as file:
