@@ -13,7 +13,6 @@ from ..machine.tables import Machine
 from ..threads import single
 from . import excitation, propagator
 from .exponential import Step
-from .numpy_loop import run
 from .response import Response
 from .step_control import chosen_step
 
@@ -163,6 +162,8 @@ class _Flow:
         self.turn = self.coarse.inverse @ self.plan.basis
 
     def __call__(self, z):
+        from .loop import run  # loads numba
+
         return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
 
     def monodromy(self, states):
