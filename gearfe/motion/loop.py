@@ -174,7 +174,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
     held = allowed < np.inf
     lookup(flat, now, nil, one, start, h, 0.0, 0.0)
     _losses(side, x0, now, nil, laws)
-    for i in range(n):  # written out: numba takes 4 s to compile what it says of arrays that do not fit
+    for i in range(n):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
         states[0, i] = z[i]
     steps = (len(states) - 1) * every
     for step in range(steps):

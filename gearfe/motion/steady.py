@@ -163,8 +163,10 @@ class _Flow:
 
     def __call__(self, z):
         from .loop import run  # loads numba
+        from .loop_parts import announced
 
-        return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
+        with announced():
+            return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
 
     def monodromy(self, states):
         """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""
