@@ -20,9 +20,8 @@ _limiting = threading.Lock()
 
 @functools.cache
 def _libraries() -> Any:
-    """The linear algebra of numpy, scipy and cvxopt, looked for once: that takes some milliseconds."""
-    import cvxopt.cholmod  # noqa: F401 - loads what is to be found
-    import scipy.linalg  # noqa: F401
+    """The linear algebra of numpy and scipy, looked for once: that takes some milliseconds."""
+    import scipy.linalg  # noqa: F401 - loads what is to be found
     from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController().select(user_api="blas")

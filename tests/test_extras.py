@@ -53,5 +53,5 @@ def test_names_of_packages_are_compared_as_pip_does(package):
 
 
 def test_info_says_what_is_missing_and_what_brings_it(monkeypatch):
-    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "pandas" else True)
-    assert list(advice()) == ["not installed: pandas, for curve.to_pandas(): pip install pandas, or pip install 'gearfe[data]'"]
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None if name == "xarray" else True)
+    assert list(advice()) == ["not installed: xarray, for curve.to_xarray(): pip install xarray, or pip install 'gearfe[data]'"]
