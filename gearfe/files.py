@@ -185,11 +185,6 @@ def read(path, kind):
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
 
 
-def missing(name, extra, error):
-    """Return what to raise where the optional library `name` cannot be imported: a RuntimeError with the command for it."""
-    return RuntimeError(f"this needs {name} ({error}): pip install {name}, or pip install 'gearfe[{extra}]'")
-
-
 def write_csv(name, content):
     """Write a table of repr-exact numbers under comment lines with title and meta data (JSON)."""
     columns = [np.asarray(values, dtype=float).tolist() for values in content.columns.values()]

@@ -16,7 +16,10 @@ FLOORS = (  # from the ground: a room imports only from floors below its own
     ("geometry/tooth",),
     ("geometry/damage",),
     ("geometry/pair", "geometry/mesh"),
-    ("gearfe/material.py", "gearfe/files.py", "gearfe/markdown.py", "gearfe/units.py", "gearfe/steps.py", "gearfe/threads.py"),
+    (
+        *("gearfe/material.py", "gearfe/files.py", "gearfe/markdown.py", "gearfe/units.py"),
+        *("gearfe/extras.py", "gearfe/steps.py", "gearfe/threads.py"),
+    ),
     ("gearfe/supports",),
     ("gearfe/flexibility", "gearfe/signal", "gearfe/scene", "gearfe/pictures", "gearfe/store"),
     ("gearfe/elements", "gearfe/energy"),

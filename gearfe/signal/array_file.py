@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import missing, read
+from ..extras import missing
+from ..files import read
 from ..matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
 
@@ -49,7 +50,7 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
     try:
         import h5py
     except ImportError as error:
-        raise missing("h5py", "signals", error) from error
+        raise missing("h5py", error) from error
     found = Found({})
     try:
         with h5py.File(path, "r") as file:

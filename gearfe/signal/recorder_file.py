@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import missing
+from ..extras import missing
 from ..threads import Shared, own_warnings
 from .found import TIMES, Found, numeric, plain
 from .text_table import named
@@ -54,7 +54,7 @@ def uff_file(path: str | os.PathLike[str]) -> Found:
     try:
         import pyuff
     except ImportError as error:
-        raise missing("pyuff", "signals", error) from error
+        raise missing("pyuff", error) from error
     try:
         with open(path, "rb") as file:
             end = file.read().split()[-1:]
@@ -101,7 +101,7 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
     try:
         from nptdms import TdmsFile
     except ImportError as error:
-        raise missing("npTDMS", "signals", error) from error
+        raise missing("npTDMS", error) from error
     try:
         with open(path, "rb") as file:
             if file.read(4) != b"TDSm":
@@ -156,7 +156,7 @@ def parquet_file(path: str | os.PathLike[str]) -> Found:
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError as error:
-        raise missing("pyarrow", "signals", error) from error
+        raise missing("pyarrow", error) from error
     try:
         table = pq.ParquetFile(path).read()
     except (OSError, pa.ArrowException, ValueError) as error:

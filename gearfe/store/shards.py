@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..files import missing
+from ..extras import missing
 from .folder import durable
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def arrow() -> Any:
         import pyarrow.dataset
         import pyarrow.parquet
     except ImportError as error:
-        raise missing("pyarrow", "data", error) from error
+        raise missing("pyarrow", error) from error
     return pyarrow
 
 
