@@ -19,6 +19,7 @@ from .kinks import kink_rows, near_kink
 from .rows import RESOLVED, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
 
+SLIDING = 0.05  # of what a pair yields at most that it comes closer by sliding
 STEP = 0.01  # m_n: over which a flexibility changes along the flank
 CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
 BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
@@ -84,20 +85,18 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self.tilt = self._tilt()
+        self._tilting = self._tilt()
         self._rows = {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found, c = self.found, sum(self.coefficients)
+        found, c, tilt = self.found, sum(self.coefficients), self.tilt(line_load)
         # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
         corner, zone, width = self._corners(line_load, possible)
-        line, closing, tangent, done = line_contacts(
-            self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, self.tilt
-        )
+        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, tilt)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -111,7 +110,9 @@ class PairContact:
             rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
             rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink), line_load)
             corner = np.where(kink, KINK, corner)
-            sets = self.contacts_at([(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows)
+            sets = self.contacts_at(
+                [(i, near := np.flatnonzero(possible[i]), corner[i, near]) for i in open_.tolist()], rows, tilt
+            )
             sets = [one | {"gap": one["gap"] - least[i]} for i, one in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
@@ -194,6 +195,12 @@ class PairContact:
                 rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
         return np.concatenate(rows, axis=-1) if rows else None
 
+    def tilt(self, line_load):
+        """`tilt` of `line_contacts`, at most the part `SLIDING` of what a pair yields: more would be no small strains."""
+        width = half_width(line_load, self.radius, self.modulus)
+        yields = np.diagonal(self.matrix, axis1=1, axis2=2) + sum(self.coefficients) * (np.log(2 / width) + 0.5)
+        return np.minimum(self._tilting, SLIDING * np.maximum(yields, 0.0) / line_load)
+
     def _tilt(self):
         """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
 
@@ -203,7 +210,16 @@ class PairContact:
         """
         found, step = self.found, STEP * self.pair.gear_1.m_n
         ahead, behind = (self._alone(found, sense * step) for sense in (1, -1))
-        return np.where(np.isfinite(found.gap), 3 / 8 * self.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
+        on = np.isfinite(found.gap)
+        for flexible, roll in zip(self.flexibility, (found.roll_1, found.roll_2), strict=True):
+            arc, (low, high) = (
+                arc_at(flexible.gear, roll),
+                (arc_at(flexible.gear, r) for r in (flexible.gear.roll_f, flexible.gear.roll_a)),
+            )
+            on &= (arc > low + step) & (
+                arc < high - step
+            )  # at the ends of flanks contact is no line in the middle of two surfaces
+        return np.where(on, 3 / 8 * self.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
 
     def _alone(self, found, moved):
         """Flexibility of each pair alone ``(phases, pairs)``, its contact moved up the pinion's side by so much [mm]."""
@@ -269,7 +285,7 @@ class PairContact:
         self._rows |= {one: row for one, row in made.items() if not one.width}
         return [made[one] if one in made else self._rows[one] for one in wanted]
 
-    def contacts_at(self, wanted, rows):
+    def contacts_at(self, wanted, rows, tilt):
         """Unknowns of the contact problems at some phases.
 
         Parameters
@@ -279,6 +295,8 @@ class PairContact:
             row.
         rows : dict of (int, int) to Row
             Rows of hats by phase and column.
+        tilt : ndarray, shape (phases, pairs)
+            As of `line_contacts`.
 
         Returns
         -------
@@ -289,12 +307,12 @@ class PairContact:
         for i, near, corner in wanted:
             alike.setdefault((tuple(near.tolist()), tuple((corner > 0).tolist())), []).append(i)
         for (near, row), own in alike.items():
-            out |= dict(zip(own, self._built(np.array(own), near, row, rows), strict=True))
+            out |= dict(zip(own, self._built(np.array(own), near, row, rows, tilt), strict=True))
         return [out[i] for i, _, _ in wanted]
 
-    def _built(self, phases, near, row, rows):
+    def _built(self, phases, near, row, rows, tilt):
         parts = [
-            _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column)
+            _aligned([rows[i, column] for i in phases.tolist()]) if resolved else self._single(phases, column, tilt)
             for column, resolved in zip(near, row, strict=True)
         ]
         column = np.repeat(near, [part["gap"].shape[1] for part in parts])
@@ -318,10 +336,10 @@ class PairContact:
             out.append(own | {"opening": None if opening is None else opening[k, on]})
         return out
 
-    def _single(self, phases, column):
+    def _single(self, phases, column, tilt):
         """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, each of `UNKNOWN`."""
         out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
-        out |= {name: getattr(self, name)[phases, column, None] for name in ("radius", "tilt")}
+        out |= {"radius": self.radius[phases, column, None], "tilt": tilt[phases, column, None]}
         out |= {"coefficient": np.full(phases.size, sum(self.coefficients))[:, None]}
         one = np.ones((phases.size, 1))
         return out | {"turn_1": one, "turn_2": one, "fillet": np.zeros(one.shape, dtype=bool)}

@@ -212,7 +212,8 @@ def _exact(pair, forms, nominal, order, near):
     for driver, at in tried:
         gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=found, flanks=forms, order=order)
         one, two = (at, faced) if driver else (faced, at)
-        better = gap < found
+        own, side = (one, pair.gear_1) if driver else (two, pair.gear_2)
+        better = (gap < found) & (side.outward * (side.roll_a - own) >= 0)
         roll, met, found = (np.where(better, *both) for both in ((one, roll), (two, met), (gap, found)))
     return roll, met, found
 
