@@ -85,7 +85,7 @@ class OwnFlexibility:
     ...     for method in (gf.OwnFlexibility(bar), gf.OwnFlexibility(bar, "ritz"), "ritz")
     ... )
     >>> print(f"bars {own:.1f}, a pinion of bars on a real wheel {both:.1f}, two real gears {ritz:.1f}")
-    bars 28.9, a pinion of bars on a real wheel 20.3, two real gears 15.5
+    bars 28.9, a pinion of bars on a real wheel 20.3, two real gears 15.6
     """
 
     pinion: Any
