@@ -150,7 +150,10 @@ def _on_side(contact, wanted, host):
         there = np.isfinite(gap[first:last])
         *places, gaps, turn_1, turn_2, slow = values[:, first:last][:, there]
         order, log = int(found.order[one.column]), np.log(gear.m_n)  # local is what happens within about a module
-        influence = sum(contact.coefficients) * (hat_logarithm(hats[:, there], hats[:, there]) + log) / np.outer(slow, slow)
+        kernel = (
+            _kernel(contact, one, host)[np.ix_(there, there)] if _alone(one) else hat_logarithm(hats[:, there], hats[:, there])
+        )
+        influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
         bodies = zip(contact.flexibility, contact.coefficients, places, (turn_1, turn_2), (order, -order), strict=True)
         for flexible, coefficient, own, turn, tooth in bodies:
             influence = influence + np.outer(turn, turn) * (flexible.within(own, tooth) - coefficient * log)
@@ -161,14 +164,41 @@ def _on_side(contact, wanted, host):
     return out
 
 
+def _alone(one):
+    """Whether a row has one corner and nothing else: its hats stand as those of every other such row."""
+    return len(_numbers(one)) == 1 and not one.width
+
+
+def _kernel(contact, one, host):
+    (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
+    return _alone_kernel(gear.m_n, fine, one.zone, one.finest, ends)
+
+
+@keeping(16)
+def _alone_kernel(m_n, fine, zone, finest, ends):
+    knots = _knots(_tops(np.zeros(1), ends, _offsets(m_n, fine, zone, finest)), ends)
+    return hat_logarithm(knots, knots)
+
+
+def _scale(contact, host):
+    """The gear whose side a row stands on, and how much shorter its hats are."""
+    return (contact.pair.gear_1, contact.pair.gear_2)[host], min(flexible.fine for flexible in contact.flexibility)
+
+
+def _ends(numbers, host):
+    """Whether a row ends at its first and at its last corner.
+
+    Its own tip ends a side above; the mate's tip faces the lowest place that is in contact.
+    """
+    return 2 - host in numbers, 1 + host in numbers
+
+
 def _placed(contact, one, host):
     """Knots ``(3, n)`` of the hats of a row, on the arc of its side [mm]."""
     found, at = contact.found, (one.phase, one.column)
-    gear = (contact.pair.gear_1, contact.pair.gear_2)[host]
+    gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
-    offsets = _offsets(gear.m_n, min(flexible.fine for flexible in contact.flexibility), one.zone, one.finest)
-    # its own tip ends a side above; the mate's tip faces the lowest place that is in contact
-    ends = 2 - host in marks, 1 + host in marks
+    offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
     places = np.unique(list(marks.values()))
     if ends[0]:
         places = places[places >= marks[2 - host]]

@@ -197,12 +197,15 @@ def end_corners(pair: "GearPair") -> tuple[int, int]:
 def _corners(pair, nominal):
     """Roll lengths of both gears and gaps ``(4, ...)`` where each of the four corners touches; inf where it does not."""
     rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))
-    gaps = np.full(rolls_1.shape, np.inf)
+    gaps, middle = np.full(rolls_1.shape, np.inf), sum(pair.path) / 2
     for number, roll, driver in corners_of(pair):
-        distance, met = approach(pair, roll, nominal, driver=driver)[:2]
+        half = (
+            nominal < middle if number in (2, 3) else nominal > middle
+        )  # where corners are inside of their own half of the cycle
+        distance, met = approach(pair, roll, nominal[half], driver=driver)[:2]
         own, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
-        own[number - 1], other[number - 1] = roll, np.where(np.isnan(met), other[number - 1], met)
-        gaps[number - 1] = np.where(np.isnan(distance), np.inf, distance)
+        own[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)
+        gaps[number - 1, half] = np.where(np.isnan(distance), np.inf, distance)
     return rolls_1, rolls_2, gaps
 
 

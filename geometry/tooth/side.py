@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, roll_at_arc, root_curve
 
-POINTS = 400  # of the fillet between root circle and form point
+POINTS = 200  # of the fillet between root circle and form point
 SHARPEST = 1e-3  # a form point where the outline turns by less [rad] is no corner: the limit of undercut
 
 
@@ -83,5 +83,7 @@ def place(gear: Gear, radius: ArrayLike) -> Place:
 @lru_cache(maxsize=256)
 def form_corner(gear: Gear) -> bool:
     """Whether flank and fillet meet in an edge, as undercut leaves it, and not in a common tangent."""
-    slope = place(gear, np.array([gear.r_form - gear.outward * 1e-7 * gear.m_n]))
-    return bool(np.arctan2(gear.roll_f, gear.r_b) - np.arctan2(slope.lean, slope.arm)[0] > SHARPEST)
+    x, y = cartesian(*fillet(gear, form_point(gear)[0] + np.array([0.0, 1e-6])))
+    step = x[0] - x[1], y[0] - y[1]  # up the fillet; its normal passes the centre at `arm`, the flank's at r_b
+    arm = gear.outward * (x[0] * step[0] + y[0] * step[1]) / np.hypot(*step)
+    return bool(abs(np.arccos(min(arm / gear.r_form, 1.0)) - np.arccos(gear.r_b / gear.r_form)) > SHARPEST)
