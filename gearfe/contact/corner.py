@@ -24,10 +24,11 @@ from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
 from .plane import BEYOND, CORNER, PairContact
-from .rows import RESOLVED, Wanted, finest_hat
+from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
+LIGHT = 16.0  # times lighter loads than the even one, for which hats are fine enough
 MARGIN = 2.25  # of the load whose contacts the table reaches: contacts 1.5 times as wide
 PLACES = 17  # abscissae of the table at each end of the path
 BETWEEN = 200  # abscissae at which is looked for what touches
@@ -111,7 +112,9 @@ def _table(pair, materials, line_load, end, span, cache):
     sign, limit, corner = (-1, 1)[end], pair.path[end], end_corners(pair)[end]
     c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     unit = float(half_width(1.0, abs(float(pair.relative_radius(limit, pair.mate_roll(limit)))), modulus))
-    least = (RESOLVED * finest_hat(pair.gear_1.m_n, bodies[0].fine) / unit) ** 2
+    mesh = PairContact(pair, materials, bodies, [0.0], extended=True, state="plane strain")
+    finest = mesh.finest(line_load / LIGHT) and max(mesh.finest(line_load / LIGHT), LEAST * pair.gear_1.m_n)
+    least = (RESOLVED * (finest or finest_hat(pair.gear_1.m_n, bodies[0].fine)) / unit) ** 2
     line_load *= 2.0 ** max(math.ceil(math.log2(least / line_load)), 0)
     near = _reached(pair, end, MARGIN * line_load, modulus)
     low, high = min(span[0], -near), max(span[1], near)
@@ -128,7 +131,7 @@ def _table(pair, materials, line_load, end, span, cache):
     there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     width = half_width(MARGIN * line_load, mesh.radius[:, column], modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    made = mesh.rows([Wanted(i, column, 1 << int(touches[i] - 1), zone[i]) for i in np.flatnonzero(there).tolist()])
+    made = mesh.rows([Wanted(i, column, 1 << int(touches[i] - 1), zone[i], finest) for i in np.flatnonzero(there).tolist()])
     there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
     away = away[there]

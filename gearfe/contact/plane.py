@@ -16,7 +16,7 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
-from .rows import RESOLVED, Row, Wanted, corner_rows, finest_hat
+from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
 
 SLIDING = 0.05  # of what a pair yields at most that it comes closer by sliding
@@ -105,7 +105,7 @@ class PairContact:
         open_ = np.flatnonzero(~done)
         closed, fillet = [], []
         if open_.size:
-            finest = self._finest(line_load)
+            finest = self.finest(line_load)
             at = np.argwhere((corner > 0) & ~done[:, None]).tolist()
             rows = self.rows([Wanted(i, k, int(corner[i, k]), float(zone[i, k]), finest, float(width[i, k])) for i, k in at])
             rows = dict(zip(map(tuple, at), rows, strict=True)) | kink_rows(self, np.argwhere(kink), line_load)
@@ -239,13 +239,16 @@ class PairContact:
         local = sum(self.coefficients) * (np.log(2 / half_width(line_load, self.radius[at], self.modulus)) + 0.5)
         return 2 * np.maximum(self.matrix[at[0], best, best] + local, 0.0) * line_load
 
-    def _finest(self, line_load):
+    def finest(self, line_load):
         """Length of the hats next to corners [mm] where the default ones are too long for contacts under this load; else 0."""
-        fine = min((flexible.fine for flexible in self.flexibility), default=1.0) if self.extended else 1.0
+        if not self.extended:
+            return 0.0
         gear, ends = self.pair.gear_1, np.array(self.pair.path)
         radius = np.abs(self.pair.relative_radius(ends, self.pair.mate_roll(ends))).min()
-        width = float(half_width(line_load, max(radius, 1e-3 * gear.m_n), self.modulus)) / RESOLVED
-        return 0.0 if width > finest_hat(gear.m_n, fine) else gear.m_n * 2.0 ** math.floor(math.log2(width / gear.m_n))
+        width = float(half_width(line_load, max(radius, 1e-3 * gear.m_n), self.modulus)) / gear.m_n
+        finest = max(width / SHARP, min(LEAST, width / RESOLVED))
+        default = finest_hat(1.0, min(flexible.fine for flexible in self.flexibility))
+        return 0.0 if finest > default else gear.m_n * 2.0 ** math.floor(math.log2(finest))
 
     def _corners(self, line_load, possible):
         """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.

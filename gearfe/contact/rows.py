@@ -19,8 +19,10 @@ from geometry.tooth.side import on_fillet
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 
-FINEST, LONGEST, GROWTH = 1.5e-5, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
+FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
+SHARP = 100.0  # hats at a corner that the half width of a smooth contact spans: what an edge presses is as much narrower
+LEAST = 7.5e-6  # of hats, as long as a half width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
 
