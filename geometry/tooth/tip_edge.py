@@ -50,8 +50,8 @@ class TipEdge:
             radius, up = math.hypot(*first), first @ cut
             if gear.outward * up <= 0 or up**2 < radius**2 - gear.r_a**2:
                 raise ValueError(f"tip_chamfer = {size:g} mm does not reach the tip circle of z = {gear.z}: give a smaller one")
-            across = (first[1] * cut[0] - first[0] * cut[1]) / up  # of the cut, by its rise; the involute's is -start / r_b
-            self.kink = abs(gear.r_b * across + gear.outward * self.start) / radius
+            across = (first[1] * cut[0] - first[0] * cut[1]) / up  # dtheta/dR of the cut, times R; the involute has -start / r_b
+            self.kink = abs(gear.r_b * across + gear.outward * self.start) * self.start / radius**2
         left = float(self._angle(np.array([gear.roll_a]))[0])
         if left <= 0:
             raise ValueError(f"{name} = {size:g} mm cuts beyond the centre-line of a tooth of z = {gear.z}: give a smaller one")

@@ -58,14 +58,12 @@ def test_a_chamfer_is_a_straight_cut():
     assert_allclose(form.bend(roll[0]), 0.0, atol=1e-15)
 
 
-@pytest.mark.parametrize("edge", ["tip_rounding", "tip_chamfer"])
-def test_an_edge_beyond_the_centre_line_is_refused(edge):
-    pointed = gf.Gear(z=14, r_bore=8.0, x=0.6, **RACK)
-    left = 2 * pointed.half_thickness(pointed.r_a) * pointed.r_a
-    assert 0.5 < left < 1.0
-    assert gf.Flank(**{edge: 0.2 * left}).on(pointed).edge.most > 0
-    with pytest.raises(ValueError, match=f"{edge} = 0.8.* mm cuts beyond the centre-line of a tooth of z = 14"):
-        gf.Flank(**{edge: 0.8}).on(pointed)
+@pytest.mark.parametrize(("edge", "fits", "crosses"), [("tip_rounding", 0.3, 0.8), ("tip_chamfer", 0.3, 0.6)])
+def test_an_edge_beyond_the_centre_line_is_refused(edge, fits, crosses):
+    pointed = PAIR.gear_1 if edge == "tip_chamfer" else gf.Gear(z=9, r_bore=4.0, x=0.5, **RACK)
+    assert gf.Flank(**{edge: fits}).on(pointed).edge.most > 0
+    with pytest.raises(ValueError, match=f"{edge} = {crosses} mm cuts beyond the centre-line of a tooth of z = {pointed.z}"):
+        gf.Flank(**{edge: crosses}).on(pointed)
 
 
 @pytest.mark.parametrize("size", [0.02, 0.1, 0.3])
