@@ -102,7 +102,8 @@ class TipEdge:
     def removed(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
         """Material removed at roll lengths [mm]; beyond the tip circle as much as at it."""
         gear, on = self.gear, self.on(roll)
-        at = np.clip(np.where(on, roll, self.start), *sorted((self.start, gear.roll_a)))
+        low, high = sorted((self.start, gear.roll_a))
+        at = np.clip(np.where(on, roll, self.start), low, high)
         return np.where(on, gear.r_b * (flank(gear, at)[1] - self._angle(at)), 0.0)
 
     def on(self, roll: NDArray[np.float64]) -> NDArray[np.bool_]:
