@@ -42,7 +42,7 @@ def test_gaps_are_those_of_whole_outlines(seed):
     row = one_pair(list(unloaded([seed])))
     assert not row["refused"]
     assert row["rows"] > 20
-    assert float(row["largest_difference_um"]) < LIMIT
+    assert float(row["largest_difference_um"]) < 1e-3
 
 
 def test_the_table_is_of_the_pairs_that_seeds_draw():
