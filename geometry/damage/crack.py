@@ -302,11 +302,12 @@ def _size(crack):
 
 def _check_inside(gear, crack, path):
     tip = path[:, -1]
-    radius, angle = math.hypot(*tip), math.atan2(tip[0], tip[1])
+    angle = math.atan2(tip[0], tip[1])
     margin = 0.02 * gear.m_n
-    if gear.outward * (radius - gear.held) < margin:
+    if (gear.outward * (np.hypot(*_sampled(path)) - gear.held)).min() < margin:
+        where = "its tip" if path.shape[1] == 2 else "it"
         raise ValueError(
-            f"crack of {_size(crack)}: its tip reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
+            f"crack of {_size(crack)}: {where} reaches the held edge of z = {gear.z} (radius {gear.held:g} mm); make it shorter"
         )
     if abs(angle) > math.pi / gear.z:
         raise ValueError(f"crack of {_size(crack)}: it leaves the sector of its tooth (z = {gear.z}); make it shorter or steeper")

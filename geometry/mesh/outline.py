@@ -8,6 +8,7 @@ import numpy as np
 from ..tooth.profile import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
+MERGED = 1e-6  # m_n: a shorter root arc between two fillets is none
 GROWTH = 0.25  # of the edge length per length, away from fine places
 
 
@@ -72,7 +73,8 @@ def half(gear, roll, fillet_size, size, *, mark=None):
         parts = [np.linspace(top, below, max(2, round((top - below) / fillet_size)) + 1)]
     else:
         fine = [(mark[0], mark[0], mark[1])]
-        parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in ((mark[0], top), (below, mark[0]))]
+        bounds = [(mark[0], top), (below, mark[0])][: 2 if mark[0] - below > MERGED * gear.m_n else 1]
+        parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in bounds]
     root = _doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
     pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, _doubled(roll[::-1])), root_curve(gear, root)]
     radius, angle = (np.concatenate([p[k][:-1] for p in pieces]) for k in (0, 1))
@@ -148,6 +150,15 @@ def held_circle(gear):
     count = max(12, math.ceil(2 * math.pi * gear.held / size))
     angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)
     return gear.held * np.array([np.sin(angle), np.cos(angle)])
+
+
+def inside(loop, points):
+    """Whether points ``(2, n)`` lie inside a closed polygon, by the crossings of a ray."""
+    (x, y), (end_x, end_y) = loop[:, :, None], np.roll(loop, -1, axis=1)[:, :, None]
+    spans = (y > points[1]) != (end_y > points[1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = x + (points[1] - y) / (end_y - y) * (end_x - x)
+    return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
 
 
 def along(corners, first, last, largest):

@@ -14,7 +14,7 @@ from ..damage.crack import check_apart, check_through, meshed_path, mirrored, st
 from ..damage.seam import open_seam
 from ..tooth.gear import Gear
 from .mesher import triangulate
-from .outline import along, held_circle, outline
+from .outline import along, held_circle, inside, outline
 
 CRACK_EDGE = 0.2  # edge length at a crack tip, in edge lengths of the fillet, and at most a fifth of the crack
 
@@ -92,10 +92,32 @@ def section(gear, rolls, *, fillet_size, size, far_size, teeth=None, cracks=()):
         gear, rolls, fillet_size=fillet_size, size=size, far_size=far_size, teeth=teeth, marks=marks
     )
     chains = []
-    for place, corners in paths.items():
-        chains.append((starts[place], along(corners, marks[place][1], tips[place], max(fillet_size, tips[place]))[:, 1:]))
+    for crack, (place, corners) in zip(cracks, paths.items(), strict=True):
+        line = along(corners, marks[place][1], tips[place], max(fillet_size, tips[place]))
+        _check_within(gear, crack, rim[:, ::2], starts[place], line[:, 1:])
+        chains.append((starts[place], line[:, 1:]))
+    if len({start for start, _ in chains}) < len(chains):
+        raise ValueError(f"z = {gear.z}: two cracks start at the same place between two teeth: leave one out, or start it higher")
     mesh, faces = fill(rim, held_circle(gear), chains, ring=gear.internal)
     return Section(gear, mesh, flanks, rolls, fillets, tuple(Seam(f) for f in faces))
+
+
+def _check_within(gear, crack, rim, start, line):
+    """Raise ValueError if a crack cuts the outline as meshed, straight between its vertices: gmsh would not end."""
+    at, to = np.hstack([rim[:, [start]], line[:, :-1]]), line
+    ends = np.roll(rim, -1, axis=1)
+
+    def turn(a, b, c):
+        return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+    a, b, p, q = rim[:, :, None], ends[:, :, None], at[:, None, :], to[:, None, :]
+    cut = (turn(a, b, p) * turn(a, b, q) < 0) & (turn(p, q, a) * turn(p, q, b) < 0)
+    cut[[start - 1, start], 0] = False  # they meet the crack in its mouth
+    if cut.any() or (inside(rim, line) == gear.internal).any():
+        raise ValueError(
+            f"crack from {crack.start!r} at {math.degrees(crack.angle):.3g} degrees on tooth {crack.tooth} of z = {gear.z} "
+            "leaves the body along its outline: no mesh can follow it; start it elsewhere, or change its angle or its length"
+        )
 
 
 def _turned(points, angle):

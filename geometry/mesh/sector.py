@@ -13,7 +13,7 @@ from ..damage.seam import open_seam
 from ..tooth.profile import arc_at, cartesian, fillet, fillet_angle, fillet_length, flank, form_point, roll_at_arc, root_curve
 from ..tooth.profile import root_half_angle as root_half
 from .mesher import triangulate
-from .outline import spaced
+from .outline import MERGED, inside, spaced
 from .triangle import BULGE, ENDS, GAUSS, jacobians
 
 # edge lengths in modules: loaded flank, the other one, tip corner of the loaded flank, a form point with a kink, fillet,
@@ -124,7 +124,7 @@ def _attempt(gear, cracks, sizes, refine, finer):
     count = first[-1]
     loop = np.hstack([place(params[:-1]) for _, params, place in pieces])
     chains, around = _chains(gear, size, cracks, loop)
-    if chains and not _inside(loop, np.hstack([line for _, line in chains] + [around])).all():
+    if chains and not inside(loop, np.hstack([line for _, line in chains] + [around])).all():
         return None  # a chord of the outline cuts the crack off: gmsh would not end
     points, triangles = triangulate([loop], chains, False, around.T)
     twice = _twice_areas(points, triangles)
@@ -142,10 +142,11 @@ def _attempt(gear, cracks, sizes, refine, finer):
             doubles[start] = int(double[0])
         at += line.shape[1]
     vertices = {name: np.arange(first[k], first[k + 1] + 1) % count for k, (name, _, _) in enumerate(pieces)}
+    left, right = (_apart(side, triangles, doubles) for side in (vertices["left"], vertices["right"][::-1]))
     rolls = next(params for name, params, _ in pieces if name == "flank")
     made = Sector(
-        points, triangles, _bulges(pieces, first, doubles), vertices["left"], vertices["right"][::-1], vertices["held"],
-        vertices["flank"][::-1], rolls[::-1], tuple(faces),
+        points, triangles, _bulges(pieces, first, doubles), left, right, vertices["held"], vertices["flank"][::-1], rolls[::-1],
+        tuple(faces),
     )  # fmt: skip
     bulges = made.edge_bulges()
     bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
@@ -153,13 +154,12 @@ def _attempt(gear, cracks, sizes, refine, finer):
     return made if (xx * yy - xy * yx).min() > 0 else None
 
 
-def _inside(loop, points):
-    """Whether points ``(2, n)`` lie inside a closed polygon, by the crossings of a ray."""
-    (x, y), (end_x, end_y) = loop[:, :, None], np.roll(loop, -1, axis=1)[:, :, None]
-    spans = (y > points[1]) != (end_y > points[1])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = x + (points[1] - y) / (end_y - y) * (end_x - x)
-    return (spans & (points[0] < crossing)).sum(axis=0) % 2 == 1
+def _apart(side, triangles, doubles):
+    """A side whose corner is a crack's mouth ends at that face of the two which is its own."""
+    before, corner = side[-2:]
+    if corner in doubles and not ((triangles == before).any(axis=0) & (triangles == corner).any(axis=0)).any():
+        return np.append(side[:-1], doubles[int(corner)])
+    return side
 
 
 def _twice_areas(points, triangles):
@@ -241,7 +241,7 @@ def _roots(gear, size, mark, tips, side):
     fillet_arc = np.concatenate([parts[0], *[part[1:] for part in parts[1:]]])
     phi = fillet_angle(gear, fillet_arc)
     root = np.array([0.0])
-    if -below > 1e-6 * gear.m_n:
+    if -below > MERGED * gear.m_n:
         root = spaced(below, 0.0, size["root"], [*fine, (0.0, 0.0, largest)], 1, GROWTH)[::-1]
     return root_half(gear) - root / gear.r_f, phi
 

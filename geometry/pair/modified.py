@@ -206,7 +206,8 @@ def _exact(pair, forms, nominal, order, near):
     before, after = (approach(pair, at, nominal, start=found, flanks=forms, order=order)[0] for at in sides)
     bend = before - 2 * found + after
     off = np.where(bend > 0, (before - after) / np.where(bend > 0, 2 * bend, 1.0), 0.0)
-    tried = [(True, roll_at_arc(pair.gear_1, arc + step * np.clip(np.nan_to_num(off), -1, 1)))]
+    at = arc + step * np.clip(np.nan_to_num(off), -1, 1)
+    tried = [(True, roll_at_arc(pair.gear_1, np.minimum(at, arc_at(pair.gear_1, pair.gear_1.roll_a))))]  # not beyond the tip
     for driver, form in ((True, forms[0]), (False, forms[1])):  # a kink, as the end of the flank inside of it
         tried += [(driver, np.nextafter(kink, (form.low + form.high) / 2)) for kink, _ in form.kinks]
     for driver, at in tried:

@@ -134,6 +134,7 @@ class FlankForm:
     def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
         """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out.
 
+        Derivatives are those of the flank without the edge of its tip (for that see `bend`).
         The fillet goes on with what is removed at the form point.
         """
         given, n = np.asarray(roll, dtype=float), derivative
@@ -144,8 +145,8 @@ class FlankForm:
             out = out * own
         if self._worn is not None:
             out = out + self._wear(at, n)
-        if self.edge is not None:
-            out = out + self.edge.removed(at, n)
+        if self.edge is not None and n == 0:
+            out = out + self.edge.removed(at)
         if self.flank.eccentricity and self._tooth is not None:
             out = out + self._off_centre(at, n)
         return out

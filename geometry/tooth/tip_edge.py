@@ -4,13 +4,11 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from .gear import Gear
-from .profile import cartesian, flank, flank_normal, roll_at_arc
+from .profile import cartesian, flank, flank_normal
 
-POINTS = 400  # of the profile between flank and tip circle
 LARGEST = 0.3  # m_n: what is left of the flank must still be one
 FROM_FLANK = math.pi / 4  # between a chamfer and the flank it cuts
 SOFT = -1e-9  # "kink" at the start of a rounding: no sudden bend, but a curvature so much larger that contact is resolved there
@@ -37,65 +35,76 @@ class TipEdge:
                 f"{name} = {size:g} mm, but give one between 0 and {LARGEST * gear.m_n:g} mm ({LARGEST} m_n) of z = {gear.z}: "
                 "larger ones are another tooth; change the addendum"
             )
-        points = self._rounded() if rounding else self._chamfered(chamfer)
-        radius, angle = np.hypot(*points), np.arctan2(*points)
-        roll = np.sqrt(radius**2 - gear.r_b**2)
-        removed = gear.r_b * (flank(gear, roll)[1] - angle)
-        order = np.argsort(roll)
-        self._spline = PchipInterpolator(roll[order], removed[order], extrapolate=False)
-        self.most = float(removed.max())
-        self.start = float(roll[0])
-        rise = abs(float((removed[1] - removed[0]) / (roll[1] - roll[0])))
-        self.kink = SOFT if rounding else rise
+        if rounding:
+            self.start = self._touching()
+            first, normal = self._place(self.start)
+            self._centre = gear.r_a - gear.outward * size, math.atan2(*(first - size * normal))
+            self.kink = SOFT
+        else:
+            self.start = self._below(size)
+            first, normal = self._place(self.start)
+            upwards = np.array([-normal[1], normal[0]])
+            upwards *= math.copysign(1.0, gear.outward * (upwards @ first))
+            cut = math.cos(FROM_FLANK) * upwards - math.sin(FROM_FLANK) * normal
+            self._line = first, cut
+            radius, up = math.hypot(*first), first @ cut
+            if gear.outward * up <= 0 or up**2 < radius**2 - gear.r_a**2:
+                raise ValueError(f"tip_chamfer = {size:g} mm does not reach the tip circle of z = {gear.z}: give a smaller one")
+            across = (first[1] * cut[0] - first[0] * cut[1]) / up  # dtheta/dR of the cut, times R; the involute has -start / r_b
+            self.kink = abs(gear.r_b * across + gear.outward * self.start) * self.start / radius**2
+        left = float(self._angle(np.array([gear.roll_a]))[0])
+        if left <= 0:
+            raise ValueError(f"{name} = {size:g} mm cuts beyond the centre-line of a tooth of z = {gear.z}: give a smaller one")
+        self.most = gear.r_b * (float(flank(gear, gear.roll_a)[1]) - left)
 
-    def _rounded(self) -> NDArray[np.float64]:
-        """Points of the arc whose centre lies inside the flank and inside (a ring: outside) the tip circle by its radius."""
+    def _place(self, roll: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Point of the flank [mm] and its normal out of the material."""
+        return cartesian(*flank(self.gear, roll)), flank_normal(self.gear, roll)
+
+    def _touching(self) -> float:
+        """Roll length [mm] where the arc, whose centre lies `rounding` inside the tip circle (a ring: outside), touches."""
         gear, size = self.gear, self.rounding
         reach = gear.r_a - gear.outward * size
 
-        def centre(roll: float) -> NDArray[np.float64]:
-            return cartesian(*flank(gear, roll)) - size * flank_normal(gear, roll)
-
         def apart(roll: float) -> float:
-            return gear.outward * (float(np.hypot(*centre(roll))) - reach)
+            point, normal = self._place(roll)
+            return gear.outward * (math.hypot(*(point - size * normal)) - reach)
 
-        low = gear.roll_f
-        if apart(low) > 0 or apart(gear.roll_a) < 0:
+        if apart(gear.roll_f) > 0 or apart(gear.roll_a) < 0:
             raise ValueError(f"tip_rounding = {size:g} mm does not fit on the flank of z = {gear.z}: give a smaller one")
-        start = brentq(apart, *sorted((low, gear.roll_a)), xtol=1e-12 * gear.m_n)
-        middle = centre(start)
-        first = math.atan2(*flank_normal(gear, start)[::-1])
-        out = gear.outward * middle
-        last = math.atan2(out[1], out[0])
-        turn = (last - first + math.pi) % (2 * math.pi) - math.pi
-        angle = first + turn * np.linspace(0.0, 1.0, POINTS)[:-1]
-        return middle[:, None] + size * np.array([np.cos(angle), np.sin(angle)])
+        return float(brentq(apart, *sorted((gear.roll_f, gear.roll_a)), xtol=1e-13 * gear.m_n, rtol=1e-14))
 
-    def _chamfered(self, size: float) -> NDArray[np.float64]:
-        """Points of the straight cut, which begins `size` below the tip circle."""
+    def _below(self, size: float) -> float:
+        """Roll length [mm] of the place `size` below the tip circle."""
         gear = self.gear
         radius = gear.r_a - gear.outward * size
-        least = gear.r_form
-        if gear.outward * (radius - least) <= 0 or radius <= gear.r_b:
+        if gear.outward * (radius - gear.r_form) <= 0 or radius <= gear.r_b:
             raise ValueError(f"tip_chamfer = {size:g} mm leaves no flank of z = {gear.z}: give a smaller one")
-        roll = math.sqrt(radius**2 - gear.r_b**2)
-        start, normal = cartesian(*flank(gear, roll)), flank_normal(gear, roll)
-        step = cartesian(*flank(gear, roll_at_arc(gear, gear.outward * roll**2 / (2 * gear.r_b) + 1e-6 * gear.m_n))) - start
-        tangent = step - (step @ normal) * normal
-        tangent /= np.hypot(*tangent)
-        cut = math.cos(FROM_FLANK) * tangent - math.sin(FROM_FLANK) * normal
-        points = start[:, None] + cut[:, None] * np.linspace(0.0, 4 * size, 8 * POINTS)
-        inside = gear.outward * (np.hypot(*points) - gear.r_a) <= 0
-        return points[:, : int(np.argmin(inside)) or None]
+        return math.sqrt(radius**2 - gear.r_b**2)
 
-    def removed(self, roll: NDArray[np.float64], derivative: int) -> NDArray[np.float64]:
-        """Material removed at roll lengths [mm], or its derivative by the roll length."""
-        ends = self._spline.x[[0, -1]]
-        inside = (roll >= ends[0]) & (roll <= ends[1])
-        beyond = self.gear.outward * (roll - self.start) > 0
-        out = np.where(beyond & ~inside, self.most if derivative == 0 else 0.0, 0.0)
-        out[inside] = self._spline(roll[inside], derivative)
-        return out
+    def _angle(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Angle of the edge from the tooth's centre-line [rad] at the radii of roll lengths.
+
+        The gear's centre, that of the arc and the place make a triangle with sides c, rounding and R; its angle at the gear's
+        centre is written by ``d = |r_a - R|``, so that it stays exact where the arc ends. On a chamfer ``|first + t cut| = R``.
+        """
+        gear = self.gear
+        radius = np.hypot(roll, gear.r_b)
+        if self.rounding:
+            away, middle = self._centre
+            d = np.maximum(gear.outward * (gear.roll_a**2 - roll**2) / (gear.r_a + radius), 0.0)
+            return middle + 2 * np.arcsin(np.sqrt(d * np.maximum(2 * self.rounding - d, 0.0) / (4 * radius * away)))
+        first, cut = self._line
+        up, more = first @ cut, roll**2 - self.start**2
+        t = more / (up + gear.outward * np.sqrt(np.maximum(up**2 + more, 0.0)))
+        return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
+
+    def removed(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Material removed at roll lengths [mm]; beyond the tip circle as much as at it."""
+        gear, on = self.gear, self.on(roll)
+        low, high = sorted((self.start, gear.roll_a))
+        at = np.clip(np.where(on, roll, self.start), low, high)
+        return np.where(on, gear.r_b * (flank(gear, at)[1] - self._angle(at)), 0.0)
 
     def on(self, roll: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether places of the flank are on the edge."""

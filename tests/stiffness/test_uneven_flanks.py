@@ -32,12 +32,13 @@ RING = gf.Gear(z=60, r_rim=110.0, tip_radius=0.3, **RACK)
 def test_a_rounding_is_the_arc_that_touches_flank_and_tip_circle(gear):
     size = 0.25
     form = gf.Flank(tip_rounding=size).on(gear)
-    roll = form.edge.start + (gear.roll_a - form.edge.start) * np.array([0.0, 0.2, 0.5, 0.8])
+    roll = form.edge.start + (gear.roll_a - form.edge.start) * np.array([0.0, 0.2, 0.5, 0.8, 0.999, 1.0])
     radius, angle = flank(gear, roll)
     points = cartesian(radius, angle - form.removed(roll) / gear.r_b)
     middle = points[:, 0] - size * flank_normal(gear, roll[0])
-    assert_allclose(np.hypot(*(points - middle[:, None])), size, rtol=1e-5)
-    assert_allclose(np.hypot(*middle) + gear.outward * size, gear.r_a, rtol=1e-9)
+    assert_allclose(np.hypot(*(points - middle[:, None])), size, rtol=1e-11)
+    assert_allclose(np.hypot(*middle) + gear.outward * size, gear.r_a, rtol=1e-13)
+    assert_allclose(form.bend(roll[:1]), 0.0, atol=1e-15)
     assert_allclose(1 / roll[1:] * gear.outward + form.bend(roll[1:]), 1 / size)
     before = form.edge.start - gear.outward * 1e-3
     assert form.removed(before) == 0
@@ -47,12 +48,22 @@ def test_a_rounding_is_the_arc_that_touches_flank_and_tip_circle(gear):
 def test_a_chamfer_is_a_straight_cut():
     gear, size = PAIR.gear_1, 0.3
     form = gf.Flank(tip_chamfer=size).on(gear)
-    roll = form.edge.start + (gear.roll_a - form.edge.start) * np.array([0.0, 0.3, 0.6, 0.9])
+    roll = form.edge.start + (gear.roll_a - form.edge.start) * np.array([0.0, 0.3, 0.6, 0.9, 1.0])
     radius, angle = flank(gear, roll)
     points = cartesian(radius, angle - form.removed(roll) / gear.r_b)
     assert_allclose(radius[0], gear.r_a - size)
     cut = (points[:, 1:] - points[:, :1]) / np.hypot(*(points[:, 1:] - points[:, :1]))
-    assert_allclose(-flank_normal(gear, roll[0]) @ cut, math.sin(math.pi / 4), rtol=1e-4)
+    assert_allclose(-flank_normal(gear, roll[0]) @ cut, math.sin(math.pi / 4), rtol=1e-9)
+    assert_allclose(form.edge.kink, form.removed(roll[0] + 1e-6) / 1e-6, rtol=1e-5)
+    assert_allclose(form.bend(roll[0]), 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize(("edge", "fits", "crosses"), [("tip_rounding", 0.3, 0.8), ("tip_chamfer", 0.3, 0.6)])
+def test_an_edge_beyond_the_centre_line_is_refused(edge, fits, crosses):
+    pointed = PAIR.gear_1 if edge == "tip_chamfer" else gf.Gear(z=9, r_bore=4.0, x=0.5, **RACK)
+    assert gf.Flank(**{edge: fits}).on(pointed).edge.most > 0
+    with pytest.raises(ValueError, match=f"{edge} = {crosses} mm cuts beyond the centre-line of a tooth of z = {pointed.z}"):
+        gf.Flank(**{edge: crosses}).on(pointed)
 
 
 @pytest.mark.parametrize("size", [0.02, 0.1, 0.3])

@@ -1,11 +1,11 @@
-"""Whole outlines of gears pressed together, beside gearfe's two section methods: distributions and the ten worst phases."""
+"""Whole outlines of gears, without load and pressed together, beside gearfe: distributions and the ten worst phases."""
 
 import numpy as np
 
 from gearfe.files import written
 
+from ..shared.arbiter import kept, unloaded_table
 from ..shared.arbiter.beside import beside
-from ..shared.arbiter.kept import reference
 from ..shared.places import PAGES
 
 __all__ = ["reference", "run"]
@@ -19,14 +19,20 @@ outlines, finite elements of whole gears in plane strain of its own, contact bet
 Pairs are random, undercut ones, close and trimmed rings, rounded tips over-represented; phases are those where off-path pairs
 come near. They were chosen before any was pressed. Its mesh error is the larger of two that three meshes tell.
 
-`python -m validation outlines` makes this page; `--reference` presses the cases that are not on file.
+`python -m validation outlines` makes this page; `--reference` computes the gaps and presses the cases that are not on file.
 
 """
 
 
+def reference():
+    """Compute what is not on file: gaps of random pairs, and cases pressed."""
+    unloaded_table.reference()
+    kept.reference()
+
+
 def run():
     """Write the page."""
-    parts = [INTRODUCTION]
+    parts = [INTRODUCTION, unloaded_table.section()]
     for method in METHODS:
         rows = [(row, found) for row, found in beside(method)]
         refused = sorted({f"{row['pair']}: {found['refused']}" for row, found in rows if "refused" in found})

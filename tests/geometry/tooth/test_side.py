@@ -62,3 +62,16 @@ def test_beyond_tip_and_root_there_is_nothing():
     gear = GEARS[0]
     found = place(gear, np.array([gear.r_f - 0.1, gear.r_a + 0.1]))
     assert np.isnan(found.angle).all()
+
+
+@pytest.mark.parametrize("gear", GEARS, ids=lambda gear: f"z{gear.z}")
+def test_the_tip_and_the_root_are_reached_in_spite_of_last_digits(gear):
+    for end, out in ((gear.r_a, gear.outward), (gear.r_f, -gear.outward)):
+        assert np.isfinite(place(gear, end * (1 + out * 4e-16 * np.arange(4))).angle).all()
+        assert np.isnan(place(gear, end + out * 1e-6 * gear.m_n).angle)
+
+
+def test_a_slight_undercut_leaves_an_edge_too():
+    """The least profile shift without undercut of this tool is between the two."""
+    found = [form_corner(gf.Gear(z=13, x=x, r_bore=8.0, **RACK)) for x in (0.15, 0.3)]
+    assert found == [True, False]

@@ -1,0 +1,57 @@
+"""Kinks of modified flanks: how far the flank turns there, and rows as long as what is pressed."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.contact.kinks import _kinks, kink_rows, near_kink
+from gearfe.contact.plane import PairContact
+from gearfe.contact.sharing import share
+from gearfe.energy.ritz.plane import flexibility
+from geometry.pair.flanks import flank_forms
+from geometry.tooth.profile import arc_at, cartesian, flank
+
+RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
+PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
+RING = gf.Gear(z=72, r_rim=125.0, addendum=0.85, tip_radius=0.2, **RACK)
+
+
+def _left(points):
+    """Angle by which a line through three points turns to its left."""
+    (x, u), (y, v) = np.diff(points)
+    return math.asin((x * v - y * u) / (math.hypot(x, y) * math.hypot(u, v)))
+
+
+@pytest.mark.parametrize("wheel", [PAIR.gear_2, RING], ids=["external", "ring"])
+def test_a_relief_turns_the_flank_outwards(wheel):
+    """Against the tangents of the flank's points just before and after the kink: convex is positive, on both gears."""
+    pair = gf.GearPair(PAIR.gear_1, wheel)
+    gears = pair.gear_1, pair.gear_2
+    flanks = [gf.Flank(tip_relief=0.005, tip_start_roll=gear.roll_a - gear.outward * 4.0) for gear in gears]
+    forms = flank_forms(pair, dict(zip(("pinion", "wheel"), flanks, strict=True)))
+    contact = PairContact.__new__(PairContact)
+    contact.pair, contact.flanks = pair, forms
+    arcs, slopes = _kinks(contact)
+    for gear, form, slope in zip(gears, forms, slopes, strict=True):
+        start = gear.roll_a - gear.outward * 4.0
+        roll = start + 1e-3 * gear.outward * np.array([-1.0, 0.0, 1.0])
+        radius, angle = flank(gear, roll)
+        left = [_left(cartesian(radius, angle - removed)) for removed in (form.removed(roll) / gear.r_b, 0.0)]
+        assert_allclose(slope, gear.outward * (left[0] - left[1]), rtol=2e-3)
+    assert_allclose(arcs[0], arc_at(pair.gear_1, pair.gear_1.roll_a - 4.0))
+
+
+def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
+    """The load of the flank would press far more than the rounding's start does: such rows are fitted, not cut by Hertz."""
+    steel, load = gf.Material(E=207e3, nu=0.3), 50.0
+    forms = flank_forms(PAIR, {name: gf.Flank(tip_rounding=0.02) for name in ("pinion", "wheel")})
+    bodies = [flexibility(gear, steel) for gear in (PAIR.gear_1, PAIR.gear_2)]
+    contact = PairContact(PAIR, (steel, steel), bodies, np.arange(32) / 32, extended=True, state="plane strain", flanks=forms)
+    rows = kink_rows(contact, np.argwhere(near_kink(contact, load) & (contact.found.gap < 0.01)), load)
+    assert rows
+    for row in rows.values():
+        pressed = np.flatnonzero(share(row.influence, row.gap, load)[0] > 0)
+        assert pressed.size >= 3  # of a row that is not fitted: 1
