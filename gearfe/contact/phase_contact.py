@@ -15,7 +15,7 @@ from ..steps import steps
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
 from .cells import Cells, cells_of
-from .corner import CornerLaw
+from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way, hubs_of
 from .joined_lines import System
 from .kink_law import KinkLaw
@@ -171,10 +171,10 @@ class PhaseContact:
         return found
 
     def unloaded(self, found):
-        """Approach at which the flanks first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
-        if self.flanks is None:
-            return np.zeros(len(found))
+        """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
         best = [int(np.argmin(cells.gap)) for cells in found]
+        if self.flanks is None and not any(cells.gap[k] for cells, k in zip(found, best, strict=True)):
+            return np.zeros(len(found))
         names = ("half", "order", "nominal", "z", "width", "floor")
         half, order, nominal, z, width, floor = (
             np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
@@ -184,9 +184,10 @@ class PhaseContact:
         for _ in range(ROUNDS):
             steps = np.linspace(low, high, FINE, axis=1)
             at = (nominal[:, None] - slope[:, None] * steps).ravel()
-            known = touching(self.pair, at)[2]
-            met = first_touch(self.pair, self.flanks, at, np.repeat(order, FINE), known, (z[:, None] + steps).ravel())
-            gap, rows = met.gap.reshape(-1, FINE), np.arange(order.size)
+            gap = touching(self.pair, at).gap
+            if self.flanks is not None:
+                gap = first_touch(self.pair, self.flanks, at, np.repeat(order, FINE), gap, (z[:, None] + steps).ravel()).gap
+            gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
             least = np.argmin(gap, axis=1)
             low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
         return gap.min(axis=1) + floor / math.cos(self.beta_b)
@@ -266,9 +267,9 @@ class PhaseContact:
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""
-        radius = self.pair.relative_radius(cells.roll_1, cells.roll_2)
-        radius = np.where(radius > 0, radius, self.radius)
-        return np.where(cells.radius > 0, cells.radius, radius) / math.cos(self.beta_b)
+        radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
+        modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
+        return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)
 
 
 def _same(one, two):
