@@ -136,7 +136,10 @@ def __getattr__(name):
         return version("gearfe")
     if name not in _HOME:
         raise AttributeError(f"gearfe has no {name!r}; it has {', '.join(__all__)}")
-    value = getattr(importlib.import_module(_HOME[name]), name)
+    from .threads import loading
+
+    with loading:
+        value = getattr(importlib.import_module(_HOME[name]), name)
     globals()[name] = value
     return value
 

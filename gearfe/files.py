@@ -7,17 +7,30 @@ libraries into the path that `written` gives. Readers give lines of text or arra
 import codecs
 import contextlib
 import json
+import math
 import os
 import re
-import tempfile
+import secrets
+import struct
+import threading
 import warnings
+import zipfile
 import zlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from tokenize import TokenError
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib import format as npy
+
+from .matlab_file import MOST_PACKED, variables
+
+# what a file that is no archive of arrays can raise: no archive, of a kind not known, other arrays
+NO_ARCHIVE: tuple[type[Exception], ...] = (zipfile.BadZipFile, zlib.error, struct.error, EOFError, RuntimeError)
+NO_ARCHIVE += (MemoryError, KeyError, ValueError, TypeError, OverflowError, SyntaxError, TokenError)
+_drawing = threading.Lock()
 
 CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text holds
 
@@ -59,9 +72,6 @@ def written(path):
     name = _beside(path)
     try:
         yield name
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
         os.replace(name, path)
     except OSError as error:
         raise ValueError(f"cannot write {path}: {error.strerror or error}") from error
@@ -74,12 +84,23 @@ def _beside(path):
     """Name of a new empty file in the folder of `path`, its suffix in small letters: some libraries know no others."""
     path = Path(path)
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=path.suffix.lower())
+        handle, name = new_file(path.parent, f".{path.stem}-", path.suffix.lower())
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         told = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot write {path}: {told}; give an existing, writable folder") from error
     os.close(handle)
     return name
+
+
+def new_file(folder, prefix, suffix=""):
+    """Open a file that was not there before: its number, and its name; the rights are those of any new file of this process.
+
+    (`tempfile.mkstemp` gives fewer, and what they should be can be asked only by changing them, for all threads.)
+    """
+    while True:
+        name = os.path.join(folder, f"{prefix}{secrets.token_hex(6)}{suffix}")
+        with contextlib.suppress(FileExistsError):
+            return os.open(name, os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666), name
 
 
 def check_output(path, kind):
@@ -148,7 +169,7 @@ def save_figure(figure, path, dpi):
         suffix_of(path, "picture")
         for text in figure.findobj(lambda one: hasattr(one, "set_parse_math") and "$" in one.get_text()):
             text.set_parse_math("\\mathdefault" in text.get_text())  # a name of a file is no formula; a number of an axis may be
-        with written(path) as name:
+        with _drawing, written(path) as name:  # the fonts of matplotlib are shared by all threads
             figure.savefig(name, dpi=dpi)
     return figure
 
@@ -162,11 +183,6 @@ def read(path, kind):
         If its suffix holds no such content, or it cannot be read or is no file of its format.
     """
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
-
-
-def missing(name, extra, error):
-    """Return what to raise where the optional library `name` cannot be imported: a RuntimeError with the command for it."""
-    return RuntimeError(f"this needs {name} ({error}): pip install {name}, or pip install 'gearfe[{extra}]'")
 
 
 def write_csv(name, content):
@@ -234,39 +250,39 @@ def _decoded(content):
 
 
 def read_npz(path):
-    """Arrays of a numpy archive, by name; nothing is unpickled."""
-    from zipfile import BadZipFile
-
+    """Arrays of a numpy archive, by name; nothing is unpickled, and no more memory is asked for than the file can fill."""
     with _opened(path) as file:
         try:
+            with zipfile.ZipFile(file) as archive:
+                for member in archive.infolist():
+                    _check_member(archive, member)
+            file.seek(0)
             with np.load(file, allow_pickle=False) as archive:
                 return {name: archive[name] for name in archive.files}
-        except (BadZipFile, ValueError, TypeError, EOFError, zlib.error) as error:
+        except NO_ARCHIVE as error:
             raise ValueError(f"{path} is not a numpy archive of plain arrays: {error}") from error
 
 
-def read_mat(path):
-    """Variables of a MATLAB file of version 7 or older, by name."""
-    from scipy.io import loadmat
-    from scipy.io.matlab import MatReadError
+def _check_member(archive, member):
+    """ValueError if a member of a numpy archive is larger, by what it says, than its bytes can make it."""
+    if member.file_size > MOST_PACKED * (member.compress_size + 1):
+        raise ValueError(f"{member.filename} holds {member.compress_size} bytes that cannot become {member.file_size}")
+    if not member.filename.endswith(".npy"):
+        return
+    with archive.open(member) as file:
+        version = npy.read_magic(file)
+        shape, _, dtype = (npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0)(file)
+        if not dtype.hasobject and math.prod(shape) * dtype.itemsize > member.file_size - file.tell():
+            raise ValueError(f"{member.filename} says it is {dtype} {list(shape)}, more than its {member.file_size} bytes")
 
+
+def read_mat(path):
+    """Variables of a MATLAB file of version 7 or older, by name: arrays, or `gearfe.matlab_file.Unread`."""
     with _opened(path) as file:
         try:
-            return {name: value for name, value in loadmat(file).items() if not name.startswith("__")}
-        except NotImplementedError as error:
-            raise ValueError(f"{path} says it is a MATLAB file of version 7.3, but holds no HDF5: it is damaged") from error
-        except (
-            MatReadError,
-            ValueError,
-            TypeError,
-            EOFError,
-            IndexError,
-            KeyError,
-            MemoryError,
-            ArithmeticError,
-            zlib.error,
-        ) as error:
-            raise ValueError(f"{path} is not a MATLAB file: {error}") from error
+            return variables(file.read())
+        except (ValueError, MemoryError) as error:
+            raise ValueError(f"{path} is not a MATLAB file, or a damaged one: {error}") from error
 
 
 @contextlib.contextmanager

@@ -1,13 +1,16 @@
-"""Threads of the linear algebra: one inside of gearfe, unless the user has chosen their number.
+"""What belongs to the whole process, so that the threads of a caller do not matter: number of threads, warnings.
 
-Most matrices here are so small that several threads mostly wait for each other; on a busy machine that takes many times as long.
+Linear algebra has one thread inside of gearfe, unless the user has chosen their number. Most matrices here are so small that
+several threads mostly wait for each other; on a busy machine that takes many times as long.
 """
 
 import contextlib
 import functools
 import os
 import threading
+import warnings
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -15,33 +18,66 @@ R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 LARGE = "fe3d"  # the one method whose matrices are large: more threads make it faster
 
-_limiting = threading.Lock()
+# Python's own locks are of single modules: of two threads that load parts of a package at the same time one may be told that
+# they wait for each other
+loading = threading.RLock()
+
+
+class Shared:
+    """A change to the process that blocks of several threads share: the first to enter makes it, the last to leave undoes it.
+
+    A thread that leaves while another is still inside takes nothing away from it, and what was before comes back in whatever
+    order they leave.
+
+    Parameters
+    ----------
+    made : callable
+        Without arguments; returns the context manager that makes the change.
+    """
+
+    def __init__(self, made: Callable[[], AbstractContextManager[Any]]) -> None:
+        self._made, self._turn, self._inside = made, threading.Lock(), 0
+        self._opened: AbstractContextManager[Any] = contextlib.nullcontext()
+
+    def __enter__(self) -> None:
+        with self._turn:
+            if not self._inside:
+                opened = self._made()
+                opened.__enter__()
+                self._opened = opened
+            self._inside += 1
+
+    def __exit__(self, *error: object) -> None:
+        with self._turn:
+            self._inside -= 1
+            if not self._inside:
+                self._opened.__exit__(None, None, None)
 
 
 @functools.cache
 def _libraries() -> Any:
     """The linear algebra of numpy and scipy, looked for once: that takes some milliseconds."""
-    import scipy.linalg  # noqa: F401 - loads what is to be found
-    from threadpoolctl import ThreadpoolController
+    with loading:
+        import scipy.linalg  # noqa: F401 - loads what is to be found
+        from threadpoolctl import ThreadpoolController
 
     return ThreadpoolController().select(user_api="blas")
 
 
+_limited = Shared(lambda: _libraries().limit(limits=1))
+
+
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """In the block the linear algebra has one thread; if a variable of `CHOSEN` is set, as many as that says.
+    """In the block the linear algebra has one thread; if a variable of `CHOSEN` says another number, as many as that.
 
-    The limit is the process's: of calls that overlap in several threads only the first one sets it and takes it back, or the
-    numbers of before would be lost. The others may run on after it with more threads, which costs time and nothing else.
+    The limit is the process's: it holds until the last of the blocks that overlap in several threads has ended.
     """
-    if any(map(os.environ.get, CHOSEN)) or not _limiting.acquire(blocking=False):
+    if any(os.environ.get(name) not in (None, "", "1") for name in CHOSEN):
         yield
         return
-    try:
-        with _libraries().limit(limits=1):
-            yield
-    finally:
-        _limiting.release()
+    with _limited:
+        yield
 
 
 def single(function: Callable[P, R]) -> Callable[P, R]:
@@ -53,3 +89,50 @@ def single(function: Callable[P, R]) -> Callable[P, R]:
             return function(*args, **kwargs)
 
     return limited
+
+
+class _Lists(threading.local):
+    """Lists that take the warnings of this thread, the innermost block's last, each with the kind it takes."""
+
+    def __init__(self) -> None:
+        self.open: list[tuple[type[Warning], list[Any]]] = []
+
+
+_lists = _Lists()
+
+
+@contextlib.contextmanager
+def _dealt() -> Iterator[None]:
+    """In the block every warning that is shown goes to the list of its thread, if that has one for its kind."""
+    with warnings.catch_warnings():
+        before = warnings.showwarning
+
+        def show(message, category, filename, lineno, file=None, line=None):
+            for kind, found in reversed(_lists.open):
+                if issubclass(category, kind):
+                    found.append(warnings.WarningMessage(message, category, filename, lineno, file, line))
+                    return
+            before(message, category, filename, lineno, file, line)
+
+        warnings.showwarning = show
+        yield
+
+
+_dealing = Shared(_dealt)
+
+
+@contextlib.contextmanager
+def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
+    """In the block the list that is given gets the warnings of a kind that this thread makes; they are not shown.
+
+    As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
+    come into the list, and filters that one has set could stay for good.
+    """
+    found: list[Any] = []
+    with _dealing:
+        warnings.simplefilter("always", kind)
+        _lists.open.append((kind, found))
+        try:
+            yield found
+        finally:
+            _lists.open.pop()

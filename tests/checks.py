@@ -1,6 +1,8 @@
 """Independent checks that several tests share."""
 
 import math
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
@@ -36,3 +38,18 @@ def line_kernel(start, stop, x):
     """`halfspace.pair_kernel` of all pairs of cells of one line ``(n, n)`` [1/mm]."""
     i, j = (part.ravel() for part in np.indices((start.size, start.size)))
     return pair_kernel((start, stop), i, j, x).reshape(start.size, start.size)
+
+
+def together(count, work):
+    """What `work` gives of the numbers of `count` threads that begin at once, errors as they are."""
+    start = threading.Barrier(count)
+
+    def one(i):
+        start.wait()
+        try:
+            return work(i)
+        except Exception as error:
+            return error
+
+    with ThreadPoolExecutor(count) as pool:
+        return list(pool.map(one, range(count)))

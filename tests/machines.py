@@ -1,6 +1,5 @@
 """Machines that several tests share."""
 
-import importlib.util
 import math
 
 import numpy as np
@@ -11,7 +10,6 @@ from gearfe.machine.herringbone_planetary import herringbone_planetary
 from gearfe.machine.tables import Load, Machine, Spring
 
 WAVE = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(64) / 64))
-RUNS = [False] + [True] * (importlib.util.find_spec("numba") is not None)  # compiled loop where there is one
 
 SHAPE = 1 + 0.15 * np.cos(2 * math.pi * np.arange(64) / 64) + 0.05 * np.sin(4 * math.pi * np.arange(64) / 64)
 STEEL = gf.Material(E=207e3, nu=0.25)

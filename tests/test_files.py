@@ -103,7 +103,7 @@ def test_a_file_system_that_refuses_is_found_out(tmp_path, monkeypatch):
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("gearfe.files.tempfile.mkstemp", full)
+    monkeypatch.setattr("gearfe.files.os.open", full)
     with pytest.raises(ValueError, match="No space left on device"):
         check_output(tmp_path / "k.csv", "curve")
 

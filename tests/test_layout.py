@@ -12,10 +12,14 @@ import gearfe
 from gearfe.stiffness.methods import ROWS
 
 FLOORS = (  # from the ground: a room imports only from floors below its own
+    ("geometry/kept.py", "gearfe/matlab_file.py"),
     ("geometry/tooth",),
     ("geometry/damage",),
     ("geometry/pair", "geometry/mesh"),
-    ("gearfe/material.py", "gearfe/files.py", "gearfe/markdown.py", "gearfe/units.py", "gearfe/steps.py", "gearfe/threads.py"),
+    (
+        *("gearfe/material.py", "gearfe/files.py", "gearfe/markdown.py", "gearfe/units.py"),
+        *("gearfe/extras.py", "gearfe/steps.py", "gearfe/threads.py"),
+    ),
     ("gearfe/supports",),
     ("gearfe/flexibility", "gearfe/signal", "gearfe/scene", "gearfe/pictures", "gearfe/store"),
     ("gearfe/elements", "gearfe/energy"),

@@ -66,6 +66,7 @@ def test_calls_that_overlap_end_in_any_order(two):
         assert counts() == {1}
         leave.set()
         thread.join()
+        assert counts() == {1}, "the one who came first and left has taken nothing away"
     assert counts() == {2}
     with one_thread():
         assert counts() == {1}

@@ -6,33 +6,32 @@ import os
 import platform
 import shutil
 
-LIBRARIES = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh", "meshio", "pyvista", "vtk", "matplotlib", "rich", "threadpoolctl")
-EXTRAS = {  # package: (module, extra, what it is good for)
-    "numba": ("numba", "fast", "vibration under impact laws in seconds instead of an hour"),
-    "pypardiso": ("pypardiso", "solvers", "a faster solver for fe3d than SuperLU"),
-    "scikit-sparse": ("sksparse", "solvers", "a faster solver for fe3d than SuperLU"),
-    "plotly": ("plotly", "report", "gearfe report"),
-    "jinja2": ("jinja2", "report", "gearfe report"),
-    "pandas": ("pandas", "data", "curve.to_pandas()"),
-    "xarray": ("xarray", "data", "curve.to_xarray()"),
-    "h5py": ("h5py", "signals", "signals in HDF5 and MATLAB 7.3"),
-    "pyuff": ("pyuff", "signals", "signals in universal files (UFF58)"),
-    "npTDMS": ("nptdms", "signals", "signals in TDMS"),
-    "pyarrow": ("pyarrow", "signals", "signals in Parquet"),
+from ..extras import command, requirements
+
+OPTIONAL = {  # package: (module, what it is good for); of the project's extras
+    "pandas": ("pandas", "curve.to_pandas()"),
+    "xarray": ("xarray", "curve.to_xarray()"),
+    "h5py": ("h5py", "signals in HDF5 and MATLAB 7.3"),
+    "pyuff": ("pyuff", "signals in universal files (UFF58)"),
+    "npTDMS": ("nptdms", "signals in TDMS"),
+    "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
+    "dask": ("dask", "sweeps on a cluster"),
+    "distributed": ("distributed", "sweeps on a cluster"),
 }
 
 
 def lines():
     """Lines of text, one thing each."""
-    from ..elements.solver import available, free_memory
+    from ..elements.solver import dissects, free_memory
     from ..stiffness.cache import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
-    yield from (f"{name} {version(name) or 'is not installed'}" for name in LIBRARIES)
-    yield from (f"{name} {found}" for name in EXTRAS if (found := version(name)))
-    yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS; more help fe3d only)"
+    yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
+    yield from (f"{name} {found}" for name in OPTIONAL if (found := version(name)))
+    yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
-    yield f"solvers: sections dense Cholesky and SuperLU (scipy); three dimensions, the best first: {', '.join(available())}"
+    ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"
+    yield f"solvers: sections dense Cholesky and SuperLU (scipy); three dimensions CHOLMOD (cvxopt), ordered {ordered}"
     yield mesher()
     yield renderer()
     yield f"CalculiX for decks: {shutil.which('ccx') or 'ccx is not installed'}"
@@ -79,6 +78,6 @@ def cache(place):
 
 def advice():
     """What would make it faster, or is not possible yet."""
-    for name, (module, extra, good) in EXTRAS.items():
+    for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
-            yield f"not installed: {name}: pip install 'gearfe[{extra}]' for {good}"
+            yield f"not installed: {name}, for {good}: {command(name)}"

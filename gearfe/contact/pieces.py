@@ -5,11 +5,11 @@ of one gear on the other's side, with a gap that is exact kinematics of the sect
 """
 
 import math
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from geometry.kept import keeping
 from geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from geometry.pair.lines import covered
 
@@ -35,7 +35,7 @@ class Piece(NamedTuple):
     floor: float = 0.0
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def gaps(pair):
     """Return how far beyond the path (before its start, after its end) [mm], and the least gap from there on, where there is one.
 

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.tooth.profile import arc_at
+from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
@@ -19,11 +19,12 @@ from .kinks import kink_rows, near_kink
 from .rows import RESOLVED, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
 
+STEP = 0.01  # m_n: over which a flexibility changes along the flank
 CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
 BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
 KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
 SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
-UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "turn_1", "turn_2", "fillet")  # of a contact
+UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # of a contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone
 
 
@@ -47,7 +48,8 @@ def _aligned(rows):
     for k, row in enumerate(rows):
         size = row.gap.size
         out["roll_1"][k, size:], out["roll_2"][k, size:], out["gap"][k, size:] = row.roll_1[-1], row.roll_2[-1], np.nan
-    return out | {"coefficient": np.zeros(out["gap"].shape), "radius": np.ones(out["gap"].shape)}
+    zero = np.zeros(out["gap"].shape)
+    return out | {"coefficient": zero, "tilt": zero, "radius": zero + 1}
 
 
 class PairContact:
@@ -82,6 +84,7 @@ class PairContact:
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
+        self.tilt = self._tilt()
         self._rows = {}
 
     def solve(self, line_load):
@@ -92,7 +95,9 @@ class PairContact:
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
         corner, zone, width = self._corners(line_load, possible)
-        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible)
+        line, closing, tangent, done = line_contacts(
+            self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, self.tilt
+        )
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -112,15 +117,34 @@ class PairContact:
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded)
+        left_out = self._left_out(line, closing, beyond)
+        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=left_out)
+
+    def _left_out(self, line, closing, beyond):
+        """Part of the approach ``(phases,)`` by which gaps off the path are unsure: bent teeth also move along each other.
+
+        A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On
+        the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from
+        where the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base
+        circles.
+        """
+        found, (start, end) = self.found, self.pair.path
+        off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
+        if not off.any():
+            return np.zeros(closing.size)
+        stiff = np.where(line > 0, line / np.maximum(closing[:, None] - beyond, 1e-3 * closing[:, None]), 0.0)
+        u, gap = math.tan(self.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
+        changed = np.where(off, (np.sqrt(2 * self.radius * gap) * u + u**2 / 2) / self.radius, 0.0)
+        changed = np.minimum(changed, np.where(off, closing[:, None] - beyond, 0.0))  # no gap is unsure by more than it is closed
+        return (stiff * changed).sum(axis=1) / stiff.sum(axis=1) / closing
 
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
-        names = ("flexibility", "gap", "coefficient", "radius", "column")
-        flexibility, gap, coefficient, radius, column = (stacked([contacts[name] for contacts in sets]) for name in names)
+        names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
+        flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
         there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
         radius[~there] = 1.0
-        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there
+        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there, tilt
         force, approach, tangent, settled = line_contacts(*case)
         closed, fillet = [], []
         for k, contacts in enumerate(sets):
@@ -144,7 +168,7 @@ class PairContact:
     def _share(self, contacts, line_load, weight=None):
         names = ("coefficient", "radius")
         case = contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus
-        return line_contact(*case, weight)
+        return line_contact(*case, weight, tilt=contacts["tilt"])
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""
@@ -156,6 +180,7 @@ class PairContact:
             "gap": np.append(contacts["gap"], np.zeros(m)),
             "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
             "radius": np.append(contacts["radius"], np.ones(m)),
+            "tilt": np.append(contacts["tilt"], np.zeros(m)),
         }
         force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
         return force[:n], approach, tangent
@@ -168,6 +193,28 @@ class PairContact:
                 arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
                 rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
         return np.concatenate(rows, axis=-1) if rows else None
+
+    def _tilt(self):
+        """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
+
+        Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact
+        moves by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P
+        S')**2``. That counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load.
+        """
+        found, step = self.found, STEP * self.pair.gear_1.m_n
+        ahead, behind = (self._alone(found, sense * step) for sense in (1, -1))
+        return np.where(np.isfinite(found.gap), 3 / 8 * self.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
+
+    def _alone(self, found, moved):
+        """Flexibility of each pair alone ``(phases, pairs)``, its contact moved up the pinion's side by so much [mm]."""
+        out, rolls = np.zeros(found.gap.shape), []
+        places = ((found.roll_1, found.order, moved), (found.roll_2, -found.order, -moved))
+        for flexible, (roll, teeth, by) in zip(self.flexibility, places, strict=True):
+            rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
+            for k in range(teeth.size):
+                out[:, k] += flexible.matrix(rolls[-1][:, k, None], teeth[k : k + 1])[:, 0, 0]
+        opening = self._opening(*rolls, found.order)
+        return out if opening is None else out + np.einsum("pcf,fg,pcg->pc", opening, self.stiffness, opening)
 
     def _reach(self, line_load):
         """Gap beyond the first touch [mm] that no contact can close, by phase: twice what the best pair gives alone."""
@@ -194,7 +241,10 @@ class PairContact:
         corner = np.zeros(found.gap.shape, dtype=int)
         if not self.extended:
             return corner, *np.zeros((2, *corner.shape))
-        width = half_width(line_load, self.radius, self.modulus)
+        start, end = self.pair.path
+        mate = self.pair.mate_roll(found.nominal)
+        radius = np.where(found.corner > 0, self.pair.relative_radius(found.nominal, mate), self.radius)
+        width = half_width(line_load, np.where(radius > 0, radius, 1.0), self.modulus)
         pressed = sum(self.coefficients) * line_load * (np.log(2 * gear.m_n / width) + 0.5)
         away = np.abs(arc_at(gear, found.corner_roll[0]) - arc_at(gear, found.roll_1))
         other = self.pair.gear_2  # nearer on the side of the corner's own gear: neither gear is preferred
@@ -202,11 +252,12 @@ class PairContact:
         more = found.corner_gap - np.where(possible, found.gap, 0.0)
         with np.errstate(invalid="ignore"):
             reached = away < CORNER * width
-            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * self.radius)))
+            second = (more < pressed) & ((found.corner > 0) | (more < SMOOTH * away**2 / (2 * radius)))
         there = possible & np.isfinite(found.corner_gap)
         corner = ((there & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (found.corner == 0)
-        apart = smooth & ~(there & reached).any(axis=0)
+        also = (corner > 0) & (found.corner > 0) & (found.nominal > start) & (found.nominal < end) & (-found.gap < pressed)
+        apart = also | (smooth & ~(there & reached).any(axis=0))  # the flanks touch on the path, besides
         further = np.where(there & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)
@@ -262,7 +313,7 @@ class PairContact:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
         out, there = [], np.isfinite(values["gap"])
         for k, on in enumerate(there):
-            own = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "fillet")}
+            own = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}
             own |= {"column": column[on], "flexibility": total[k][on][:, on]}
             out.append(own | {"opening": None if opening is None else opening[k, on]})
         return out
@@ -270,6 +321,7 @@ class PairContact:
     def _single(self, phases, column):
         """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, each of `UNKNOWN`."""
         out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
-        out |= {"radius": self.radius[phases, column, None], "coefficient": np.full(phases.size, sum(self.coefficients))[:, None]}
+        out |= {name: getattr(self, name)[phases, column, None] for name in ("radius", "tilt")}
+        out |= {"coefficient": np.full(phases.size, sum(self.coefficients))[:, None]}
         one = np.ones((phases.size, 1))
         return out | {"turn_1": one, "turn_2": one, "fillet": np.zeros(one.shape, dtype=bool)}

@@ -6,20 +6,20 @@ side. So one row also holds a tip in its mate's fillet together with the flank c
 with the first of the corners, so that neither gear is preferred.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.kept import keeping
 from geometry.pair.contacts import TIP, approach
 from geometry.tooth.profile import arc_at, roll_at_arc
 from geometry.tooth.side import on_fillet
 
-from ..flexibility.hats import FLANK_EDGES, SPAN, TIP_ZONE
+from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 
-GROWTH = 0.25  # of the hats' edges per length, away from corners
+FINEST, LONGEST, GROWTH = 1.5e-5, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
@@ -55,14 +55,13 @@ class Wanted(NamedTuple):
     width: float = 0.0
 
 
-@lru_cache(maxsize=256)
+@keeping(256)
 def _offsets(m_n, fine, zone, finest=0.0):
     """Distances ``(n,)`` [mm] of the hats' tops from a corner, rising from 0, to the end of its zone."""
-    scale = SPAN * m_n / fine
-    least, most, growth = FLANK_EDGES["tip"] * scale, FLANK_EDGES["flank"] * scale, GROWTH / fine * SPAN
-    least, out = min(least, finest or least), [0.0]
+    least, out = FINEST * m_n / fine, [0.0]
+    least, growth = min(least, finest or least), GROWTH / fine
     while out[-1] < zone:
-        out.append(out[-1] + min(least + growth * (out[-1] + least / 2), most))
+        out.append(out[-1] + min(least + growth * (out[-1] + least / 2), LONGEST * m_n / fine))
     return np.array(out)
 
 
@@ -177,7 +176,10 @@ def _placed(contact, one, host):
         places = places[places <= marks[1 + host]]
     if not one.width:
         return _knots(_tops(places, ends, offsets), ends)
-    middle = float(arc_at(gear, (found.roll_1, found.roll_2)[host][at]))
+    flanks = (found.roll_1[at], found.roll_2[at])
+    if found.corner[at]:
+        flanks = (found.nominal[at], contact.pair.mate_roll(found.nominal[at]))
+    middle = float(arc_at(gear, flanks[host]))
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)

@@ -104,7 +104,7 @@ def _settled(flexibility, gap, load, weight, active):
     return None
 
 
-def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None, start=None):
+def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None, start=None, tilt=0.0):
     """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
@@ -129,6 +129,8 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
         As in `share`.
     start : ndarray, shape (n,), optional
         Line loads at nearly the same place and load, in any unit.
+    tilt : ndarray, shape (n,)
+        Contact k comes ``tilt_k P_k**2`` closer because it moves to where it yields less [mm per (N/mm)**2].
 
     Returns
     -------
@@ -140,9 +142,10 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     floor, touch = 1e-9 * load, None if start is None else start > 0
     for _ in range(60):
         width = half_width(np.maximum(force, floor), radius, modulus)
-        slope = coefficient * np.log(2 / width)
+        slope = coefficient * np.log(2 / width) - 2 * tilt * np.maximum(force, floor)
         total = flexibility + np.diag(slope)
-        new, approach = share(total, gap + coefficient / 2 * np.maximum(force, floor), load, weight, touch)
+        offset = (coefficient / 2 + tilt * np.maximum(force, floor)) * np.maximum(force, floor)
+        new, approach = share(total, gap + offset, load, weight, touch)
         touch = new > floor
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
@@ -154,7 +157,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     return force, approach, float(tangent)
 
 
-def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible):
+def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0):
     """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
@@ -168,6 +171,8 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     coefficient : float or ndarray, shape (sets, n)
     possible : ndarray of bool, shape (sets, n)
         Contacts that may carry load; at least one in each set.
+    tilt : float or ndarray, shape (sets, n)
+        As of `line_contact`.
 
     Returns
     -------
@@ -185,8 +190,8 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     for _ in range(30):
         carried = np.maximum(force, floor)
         total = flexibility.copy()
-        total[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus))
-        offset = gap + coefficient / 2 * carried
+        total[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried
+        offset = gap + (coefficient / 2 + tilt * carried) * carried
         both = active[:, :, None] & active[:, None, :]
         system[:, :n, :n] = np.where(both, total, 0.0)
         system[:, diagonal, diagonal] += ~active

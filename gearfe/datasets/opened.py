@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import missing, written
+from ..extras import missing
+from ..files import written
 from ..store.folder import read_about
 from ..store.shards import arrow, fields_of, opened, read, shard_names, where_of
 
@@ -69,7 +70,7 @@ class Dataset:
         try:
             import pandas  # noqa: F401
         except ImportError as error:
-            raise missing("pandas", "data", error) from error
+            raise missing("pandas", error) from error
         return self._read(where, signal=False)[0]
 
     def windows(self, where: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], "pandas.DataFrame"]:
@@ -159,7 +160,7 @@ def _hdf5(name, signals, labels, about):
     try:
         import h5py
     except ImportError as error:
-        raise missing("h5py", "data", error) from error
+        raise missing("h5py", error) from error
     with h5py.File(name, "w") as file:
         file.attrs["about"] = json.dumps(about)
         file.create_dataset("signals", data=signals, chunks=(1, signals.shape[1]), compression="gzip", shuffle=True)

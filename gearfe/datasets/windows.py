@@ -1,7 +1,6 @@
 """One condition of a data set: its machine simulated, heard by the sensors, cut into windows with their labels."""
 
 import math
-import warnings
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from ..signal.housing import housing_signal
 from ..signal.series import Signal, decimate
 from ..store.shards import Field, arrow, schema_of
 from ..studies.vibration import recorded
+from ..threads import own_warnings
 from .conditions import Condition
 from .faults import CASE, FAULTS
 from .plan import Plan
@@ -107,11 +107,10 @@ def losses(machine: Machine) -> tuple[float, float]:
 
 def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
     """All windows of a condition: the signal and its labels."""
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always", UserWarning)
+    with own_warnings() as said:
         machine, response, finer = simulated(plan, condition)
     same = _labels(plan, condition, machine, response)
-    same["notes"] = "; ".join(dict.fromkeys(str(one.message) for one in said if issubclass(one.category, UserWarning))) or None
+    same["notes"] = "; ".join(dict.fromkeys(str(one.message) for one in said)) or None
     count, size = plan.window["count"], samples_of(plan)
     first = float(response.time[0]) + EDGE / plan.window["rate_Hz"]
     out = []

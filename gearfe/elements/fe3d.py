@@ -172,7 +172,7 @@ def _points(ends, cuts, count):
     return interval, local, place, (half * weight).ravel()
 
 
-def influence(mesh, material, patches, *, solver=None, keep=False, tell=None, zones=None):
+def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
     """Influence matrix between all patches.
 
     Parameters
@@ -181,12 +181,10 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None, zo
         With the loaded flanks of all of `patches.teeth`, see `mesh_patches`.
     material : Material
     patches : Patches
-    solver : str, optional
-        See `gearfe.elements.solver.plan`.
     keep : bool
         Whether to return the displacements too.
     tell : callable, optional
-        Gets the `gearfe.elements.solver.Plan`, with the expected memory, before anything costly starts.
+        Gets the `gearfe.elements.solver.Plan`, with the expected seconds and memory, before anything costly starts.
     zones : ndarray, shape (3 nodes, k), optional
         Nodal forces that push apart zones of crack faces, of `gearfe.elements.crack_zones.zone_forces`.
 
@@ -198,7 +196,7 @@ def influence(mesh, material, patches, *, solver=None, keep=False, tell=None, zo
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     own = len(patches.teeth) * patches.knots.shape[1] * patches.modes
     zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
-    made = plan(3 * free.size, columns=own + zones.shape[1], solver=solver)
+    made = plan(3 * free.size, columns=own + zones.shape[1])
     if tell:
         tell(made)
     load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])

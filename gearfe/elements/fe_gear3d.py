@@ -37,7 +37,6 @@ def solid_flexibility(
     less=0,
     refine=1.0,
     section=None,
-    solver=None,
     tell=None,
     healthy=None,
     cache=True,
@@ -61,7 +60,7 @@ def solid_flexibility(
         Divides all edge lengths and the layers.
     section : float, optional
         Divides the edges of the section instead.
-    solver, tell
+    tell
         As in `gearfe.elements.fe3d.influence`.
     healthy : Flexibility3D, optional
         Of the gear without cracks; needed if there are `cracks`.
@@ -91,7 +90,7 @@ def solid_flexibility(
     layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
     fine = [(z, z, END * layer) for z in (0.0, gear.b)]
     mesh = mesh_patches(gear, patches, cracks=cracks, refine=section, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)
-    options = {"solver": solver, "tell": tell, "zones": zone_forces(mesh)}
+    options = {"tell": tell, "zones": zone_forces(mesh)}
     whole_gear = influence if shaft is None else partial(integral_influence, shaft=shaft)
     found = whole_gear(mesh, material, patches, **options)
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal

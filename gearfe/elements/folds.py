@@ -1,9 +1,9 @@
 """Elements that fold: where the Jacobian of a second-order tet or hexahedron is not positive, and tets bent less."""
 
-from functools import lru_cache
-
 import numpy as np
 from skfem import ElementHexS2
+
+from geometry.kept import keeping
 
 from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
@@ -13,7 +13,7 @@ NEAR = 0.975  # of the way to a hexahedron's corner: quads with a straight angle
 HALVINGS = 5  # of a bend, before the edge is left straight
 
 
-@lru_cache(maxsize=2)
+@keeping(2)
 def _slopes(count):
     """Slopes ``(count, 3, q)`` of the shapes of a C3D10 or C3D20R at its integration points and at or near its corners."""
     if count == 20:

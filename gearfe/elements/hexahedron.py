@@ -1,11 +1,10 @@
 """The 20-node serendipity hexahedron: shape functions and stiffness of many at once, in numpy."""
 
-from functools import lru_cache
-
 import numpy as np
 from scipy.sparse import bsr_matrix, csc_matrix
 from skfem import ElementHexS2
 
+from geometry.kept import keeping
 from geometry.mesh.solid import HEX
 
 CHUNK = 1000  # elements computed at a time
@@ -20,7 +19,7 @@ ORDER = (
 TWENTY = np.array([HEX.index(place) for place in ORDER])
 
 
-@lru_cache(maxsize=4)
+@keeping(4)
 def gauss(order):
     """Points ``(3, order**3)`` and weights of a Gauss rule on the unit cube."""
     at, weight = np.polynomial.legendre.leggauss(order)

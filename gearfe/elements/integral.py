@@ -20,7 +20,7 @@ from .hexahedron import assemble
 from .solver import factor, plan
 
 
-def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None, zones=None):
+def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
     """`gearfe.elements.fe3d.influence` of a gear on the stubs of its shaft.
 
     Parameters
@@ -29,7 +29,7 @@ def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None
     material : Material
     patches : Patches
     shaft : Shaft
-    solver, tell, zones
+    tell, zones
         As of `gearfe.elements.fe3d.influence`.
 
     Raises
@@ -43,7 +43,7 @@ def integral_influence(mesh, material, patches, shaft, *, solver=None, tell=None
     size = len(patches.teeth) * patches.knots.shape[1] * patches.modes
     zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
     columns = size + zones.shape[1]
-    made = plan(3 * free.size, columns=columns + discs.shape[1], solver=solver)
+    made = plan(3 * free.size, columns=columns + discs.shape[1])
     if tell:
         tell(made)
     load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])

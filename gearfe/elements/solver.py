@@ -1,45 +1,52 @@
-"""Sparse symmetric positive definite systems: the best solver installed, and a refusal beforehand of what does not fit."""
+"""Sparse symmetric positive definite systems of bodies: factor once, solve often; what does not fit is refused beforehand.
+
+CHOLMOD (of cvxopt) factors by dense blocks, in the order that METIS (of pymetis) finds for the nodes of the mesh by nested
+dissection. Where pymetis cannot be had (Windows) CHOLMOD's own order of least degree takes its place.
+"""
 
 import importlib.util
 import math
 import os
-import weakref
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.sparse import csc_array, csc_matrix, csr_matrix, tril
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_array, csc_array, tril
 
-SOLVERS = {"cholmod": "sksparse", "pardiso": "pypardiso", "superlu": "scipy"}  # in the order of preference, by package
+from ..steps import reached
+
 GROUP = "/sys/fs/cgroup"  # of this process; version 2, then version 1
 CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of cached files in the last
     (f"{GROUP}/memory.max", f"{GROUP}/memory.current", f"{GROUP}/memory.stat", "inactive_file"),
     (f"{GROUP}/memory/memory.limit_in_bytes", f"{GROUP}/memory/memory.usage_in_bytes", f"{GROUP}/memory/memory.stat",
      "total_inactive_file"),
 )  # fmt: skip
-SUPERLU_LIMIT = 40_000  # unknowns: above, its fill makes it slower by an order of magnitude and its memory a gamble
+A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the permutation
+NODE = 3  # unknowns of a node, one after the other
+MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
+SECONDS = {True: (1e-5, 1.9e-10), False: (1e-5, 3.2e-10)}  # of n and n**2
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What a factorisation will take.
 
-    `solver` is its name, `unknowns` their number, `memory` the expected and `free` the available memory [bytes].
+    `unknowns` is their number, `memory` the expected and `free` the available memory [bytes], `seconds` the expected time.
     """
 
-    solver: str
     unknowns: int
     memory: float
+    seconds: float
     free: float
 
     def __str__(self):
-        return f"{self.solver}, {self.unknowns} unknowns, about {self.memory / 1e9:.2g} GB of {self.free / 1e9:.3g} GB free"
+        seconds = float(f"{self.seconds:.2g}")
+        return f"{self.unknowns} unknowns, about {seconds:g} s and {self.memory / 1e9:.2g} GB of {self.free / 1e9:.3g} GB free"
 
 
-def available():
-    """Names of the solvers installed, the best first."""
-    return [name for name, package in SOLVERS.items() if importlib.util.find_spec(package)]
+def dissects():
+    """Whether METIS is there to order unknowns."""
+    return importlib.util.find_spec("pymetis") is not None
 
 
 def free_memory():
@@ -90,18 +97,18 @@ def _machine_free():
     return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) if hasattr(os, "sysconf") else math.inf
 
 
-def plan(unknowns, *, columns=0, solver=None, free=None):
-    """Choose a solver for a three-dimensional body and see whether it fits.
+def plan(unknowns, *, columns=0, free=None):
+    """What the factor of a three-dimensional body takes, refused if it does not fit.
 
-    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers.
+    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers and takes about ``c n**2``
+    operations. The constants are measured on gears of 20-node hexahedra with 41 000 to 422 000 unknowns, on one thread of a
+    processor of 2.5 GHz; teeth of tetrahedra, being slender, take less.
 
     Parameters
     ----------
     unknowns : int
     columns : int
         Right-hand sides solved for at once; three copies of them are held.
-    solver : {"cholmod", "pardiso", "superlu"}, optional
-        Default: the best that is installed.
     free : float, optional
         Memory [bytes] that may be used; default `free_memory`.
 
@@ -111,8 +118,6 @@ def plan(unknowns, *, columns=0, solver=None, free=None):
 
     Raises
     ------
-    ValueError
-        If the solver is not known or not installed.
     RuntimeError
         If the system does not fit; the message has the numbers.
 
@@ -120,32 +125,16 @@ def plan(unknowns, *, columns=0, solver=None, free=None):
     ----------
     A. George, J. W. H. Liu, Computer Solution of Large Sparse Positive Definite Systems, Prentice-Hall, 1981, ch. 8.
     """
-    found = available()
-    if solver is not None and solver not in found:
-        raise ValueError(f"solver = {solver!r}, but this machine has {', '.join(found)}")
-    name = solver or found[0]
-    free = free_memory() if free is None else float(free)
-    made = Plan(name, int(unknowns), expected_memory(unknowns, name) + 24.0 * columns * unknowns, free)
-    if name == "superlu" and unknowns > SUPERLU_LIMIT:
-        raise RuntimeError(
-            f"{unknowns} unknowns are too many for SuperLU (limit {SUPERLU_LIMIT}, about {made.memory / 1e9:.2g} GB): install "
-            "pypardiso (pip install 'gearfe[fast]') or scikit-sparse, or coarsen the mesh"
-        )
+    n, ordered, free = int(unknowns), dissects(), free_memory() if free is None else float(free)
+    matrix, factored = MEMORY[ordered]
+    first, second = SECONDS[ordered]
+    made = Plan(n, matrix * n + factored * n ** (4 / 3) + 24.0 * columns * n, first * n + second * n**2, free)
     if made.memory > free:
         raise RuntimeError(
-            f"{unknowns} unknowns need about {made.memory / 1e9:.3g} GB with {name}, but {free / 1e9:.3g} GB are free: "
-            "coarsen the mesh"
+            f"{n} unknowns need about {made.memory / 1e9:.3g} GB and {float(f'{made.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "
+            f"are free: coarsen the mesh (a smaller refine), or use a machine with more memory"
         )
     return made
-
-
-def expected_memory(unknowns, solver):
-    """Expected memory [bytes] of matrix and factor; the constants are measured on gears of 20-node hexahedra."""
-    matrix, factor = MEMORY[solver]
-    return matrix * unknowns + factor * unknowns ** (4 / 3)
-
-
-MEMORY = {"cholmod": (3600.0, 240.0), "pardiso": (2400.0, 200.0), "superlu": (4800.0, 450.0)}  # [bytes], see expected_memory
 
 
 def factor(matrix, plan_=None):
@@ -154,96 +143,66 @@ def factor(matrix, plan_=None):
     Parameters
     ----------
     matrix : sparse matrix, shape (n, n)
-        Only its lower triangle is read.
+        Only its lower triangle is read. The unknowns of a node are `NODE` that follow each other; others are right too, but
+        ordered less well.
     plan_ : Plan, optional
-        Default: `plan` of its size.
+        Default: `plan` of its size. `gearfe.steps` is told of it.
 
     Returns
     -------
     callable
         From right-hand sides ``(n,)`` or ``(n, k)`` to solutions of the same shape. Its attribute ``gram`` maps right-hand sides
-        F ``(n, k)`` to ``F' K^-1 F``, where the solver can by half a solution: with ``K = L L'`` it is that of ``L^-1 F``.
+        F ``(n, k)`` to ``F' K^-1 F`` by half a solution: with ``K = L L'`` it is the product of ``L^-1 F`` with itself.
 
     Raises
     ------
     RuntimeError
         If it does not fit, or is not positive definite: the body is not held.
     """
-    made = plan_ or plan(matrix.shape[0])
-    lower = csc_matrix(tril(matrix, format="csc"), dtype=float)
+    from cvxopt import cholmod, spmatrix
+    from cvxopt import matrix as dense
+
+    reached(f"solving {plan_ or plan(matrix.shape[0])}", 0.0)
+    lower = csc_array(tril(matrix, format="csc"), dtype=float)
     lower.sum_duplicates()
     if not (lower.diagonal() > 0).all():
         raise RuntimeError("the stiffness matrix has an empty or negative diagonal: the body is not held")
-    solve = {"cholmod": _cholmod, "pardiso": _pardiso, "superlu": _superlu}[made.solver](lower)
-    if not hasattr(solve, "gram"):
-        solve.gram = lambda rhs: rhs.T @ solve(rhs)
-    return solve
-
-
-def _cholmod(lower):
-    from sksparse import cholmod
-
-    if hasattr(cholmod, "cho_factor"):
-        return _cholmod_05(lower, cholmod)
+    rows, columns = lower.indices.astype(np.int64), np.repeat(np.arange(lower.shape[0]), np.diff(lower.indptr))
+    held = spmatrix(dense(lower.data), dense(rows), dense(columns), lower.shape)
+    factored = cholmod.symbolic(held, p=dense(dissection(rows, columns))) if dissects() else cholmod.symbolic(held)
+    del rows, columns, lower
     try:
-        factored = cholmod.cholesky(_full(lower), mode="supernodal", ordering_method="metis")
-    except cholmod.CholmodNotPositiveDefiniteError as error:
+        cholmod.numeric(held, factored)
+    except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
-    def solve(rhs):
-        return factored(np.ascontiguousarray(rhs))
+    def solve(rhs, parts=(A,)):
+        out = dense(np.asfortranarray(rhs, dtype=float))
+        for part in parts:
+            cholmod.solve(factored, out, sys=part)
+        return np.array(out).reshape(np.shape(rhs))
 
     def gram(rhs):
-        moved = factored.solve_L(factored.apply_P(np.ascontiguousarray(rhs)), use_LDLt_decomposition=False)
+        moved = solve(rhs, (P, L))
         return moved.T @ moved
 
     solve.gram = gram
     return solve
 
 
-def _cholmod_05(lower, cholmod):
-    """By scikit-sparse 0.5, whose functions have other names; `factor` adds ``gram`` by whole solutions."""
-    try:
-        factored = cholmod.cho_factor(csc_array(lower), lower=True, order="metis")
-    except cholmod.CholmodNotPositiveDefiniteError as error:
-        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
-    return lambda rhs: factored.solve(np.asfortranarray(rhs, dtype=float))
+def dissection(rows, columns):
+    """Order of elimination by nested dissection of the nodes; `rows` and `columns` of the entries of the lower triangle.
 
+    References
+    ----------
+    G. Karypis, V. Kumar, SIAM J. Sci. Comput. 20 (1998) 359-392.
+    """
+    import pymetis
 
-def _pardiso(lower):
-    from pypardiso import PyPardisoSolver
-    from pypardiso.pardiso_wrapper import PyPardisoError
-
-    solver = PyPardisoSolver(mtype=2, size_limit_storage=0)
-    # the lower triangle by columns is the upper one by rows, which PARDISO wants
-    upper = csr_matrix((lower.data, lower.indices, lower.indptr), shape=lower.shape)
-    try:
-        solver.factorize(upper)
-    except PyPardisoError as error:
-        raise RuntimeError(f"PARDISO failed ({error}): the body is not held, or memory is short") from error
-
-    def half(rhs, phase):
-        solver.set_phase(phase)
-        return solver._call_pardiso(upper, np.asfortranarray(rhs, dtype=float))
-
-    def solve(rhs):
-        return half(half(rhs, 331), 333)  # phase 33 would refine the solution, at five times the cost
-
-    def gram(rhs):
-        moved = half(rhs, 331)
-        return moved.T @ moved
-
-    solve.gram = gram
-    weakref.finalize(half, solver.free_memory, everything=True)  # PARDISO keeps its factor until told; `gram` may outlive `solve`
-    return solve
-
-
-def _superlu(lower):
-    factored = splu(_full(lower), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    if (factored.U.diagonal() <= 0).any():
-        raise RuntimeError("the stiffness matrix is not positive definite: the body is not held")
-    return lambda rhs: factored.solve(np.asarray(rhs, dtype=float))
-
-
-def _full(lower):
-    return csc_matrix(lower + tril(lower, -1).T)
+    n, i, j = int(rows[-1]) + 1, rows // NODE, columns // NODE
+    apart = i != j
+    shape = (int(i[-1]) + 1,) * 2
+    half = coo_array((np.ones(np.count_nonzero(apart), dtype=bool), (i[apart], j[apart])), shape=shape).tocsr()
+    graph = half + half.T
+    _, rank = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
+    return np.argsort(np.asarray(rank)[np.arange(n) // NODE], kind="stable")

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+FAR = 30.0  # hats further apart than so many of their lengths act like forces at their centroids
+
 
 def half_plane(material, state="plane strain"):
     """Coefficient c [mm per N/mm] of the half-plane: a line load P moves the surface by ``-c P ln r`` (Flamant).
@@ -54,7 +56,20 @@ def hat_logarithm(knots_1, knots_2):
     """
     (places_1, masses_1), (places_2, masses_2) = _masses(knots_1), _masses(knots_2)
     kernel = log_kernel(places_1[:, :, None, None] - places_2)
-    return -np.einsum("pn,pnqm,qm->nm", masses_1, kernel, masses_2)
+    out = -np.einsum("pn,pnqm,qm->nm", masses_1, kernel, masses_2)
+    wide = np.maximum(*np.meshgrid(np.ptp(knots_1, axis=0), np.ptp(knots_2, axis=0), indexing="ij"))
+    apart = knots_1.mean(axis=0)[:, None] - knots_2.mean(axis=0)
+    far = np.abs(apart) > FAR * wide
+    square = apart[far] ** 2  # there the nine values would cancel: the logarithm of the centroids and the next term of its series
+    spread = (_variance(knots_1)[:, None] + _variance(knots_2))[far]
+    out[far] = spread / (2 * square) - np.log(square) / 2
+    return out
+
+
+def _variance(knots):
+    """Variance of the place under hats of unit area [mm^2]."""
+    start, top, stop = knots
+    return (start**2 + top**2 + stop**2 - start * top - start * stop - top * stop) / 18
 
 
 def _masses(knots):

@@ -96,9 +96,14 @@ class Flexibility:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth."""
         tooth %= self.gear.z
         spline = self.own[tooth] if tooth in self.own else self._whole().own[0]
-        arc = np.clip(arc_at(self.gear, roll), *self.limits)
-        rising, back = np.unique(arc, return_inverse=True)
-        return spline(rising, rising)[np.ix_(back, back)]
+        arc = arc_at(self.gear, roll)
+        rising, back = np.unique(np.clip(arc, *self.limits), return_inverse=True)
+        out = spline(rising, rising)[np.ix_(back, back)]
+        depth = np.minimum(arc - self.limits[0], 0.0)
+        if (depth < 0).any():  # in the fillet it goes on straight
+            slope = spline(rising, rising, dx=1)[np.ix_(back, back)] * depth[:, None]
+            out = out + slope + slope.T
+        return out
 
     def _whole(self):
         return self if self.healthy is None else self.healthy

@@ -16,7 +16,7 @@ class Solved:
     in corner contact, where it is unbounded), `closed` the phases at which crack faces touch and were kept from passing through
     each other, `fillet` those at which a tip presses into its mate's fillet, `unloaded` (phases,) the approach at which the first
     pair touches [mm], None if it is zero everywhere, `supports` (phases,) what the supports of the hubs give way [mm], None of
-    rigid ones.
+    rigid ones, `left_out` (phases,) the part of `closing` that the model of contact may be off by, besides its discretisation.
 
     Light loads close by a millionth of what modified flanks lie apart: `closing` is solved for, never a difference of approaches.
     """
@@ -30,3 +30,4 @@ class Solved:
     fillet: tuple = ()
     unloaded: np.ndarray | None = None
     supports: np.ndarray | None = None
+    left_out: np.ndarray | None = None

@@ -6,12 +6,12 @@ like a half-space is taken out (`energy.halfspace`), the rest is smooth and carr
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from geometry.kept import keeping
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, roll_at_arc
 
@@ -206,7 +206,7 @@ def variable(gear, arc):
     return 2 * np.log(away / (high - low + offset)) / math.log(offset / (high - low + offset)) - 1
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def hats(gear):
     """Hats ``(3, PLACES)`` on the flank [mm]: at Chebyshev points of `variable`, from root to tip, cut off at the ends."""
     low, high, offset = _scale(gear)
@@ -216,7 +216,7 @@ def hats(gear):
     return np.array([np.maximum(middle - reach, low), middle, np.minimum(middle + reach, high)])
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def _from_hats(gear):
     """Coefficients ``(PLACES, PLACES)`` of Chebyshev polynomials by their means over the hats."""
     points, weight = hat_points(hats(gear), 12)

@@ -5,10 +5,11 @@ the one of this process, with ``cache=False`` an empty one that lasts as long as
 nothing is stored or displaced.
 """
 
+import os
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 
 import numpy as np
 from scipy.interpolate import BivariateSpline, PPoly
@@ -16,10 +17,21 @@ from scipy.interpolate import BivariateSpline, PPoly
 MOST = 512 * 2**20  # memory of the results kept [bytes]
 
 
+@dataclass(frozen=True, slots=True)
+class _Solve:
+    """A solve under way: the number of its thread, its result once there is one, and whether it has ended."""
+
+    thread: int
+    found: list = field(default_factory=list)
+    ended: threading.Event = field(default_factory=threading.Event)
+
+
 class SolvedGears:
     """Results by what was asked for, bounded in memory: those not asked for the longest go first.
 
-    Threads may share it. Two that ask for the same at the same time may both solve; they get the same object.
+    Threads may share it. Of those that ask for the same at the same time one solves, the others wait and get the same object; if
+    it fails nothing is kept, its error is its own, and the next of them tries. A solve may ask for other results, but not for
+    its own: nobody then waits for one who waits for him.
 
     Parameters
     ----------
@@ -30,25 +42,48 @@ class SolvedGears:
     def __init__(self, most: int = MOST):
         self.most = most
         self._kept: OrderedDict = OrderedDict()
+        self._solving: dict[Hashable, _Solve] = {}
         self._lock = threading.Lock()
         self.size = 0  # of what is kept [bytes]
 
     def get(self, key: Hashable, solve: Callable[[], object]):
-        """What is kept under `key`, or else what `solve` gives."""
-        with self._lock:
-            if key in self._kept:
-                self._kept.move_to_end(key)
-                return self._kept[key][0]
-        found = solve()
+        """What is kept under `key`, or else what `solve` gives.
+
+        Raises
+        ------
+        RuntimeError
+            If `solve` asks for `key` itself; and whatever it raises.
+        """
+        while True:
+            with self._lock:
+                if key in self._kept:
+                    self._kept.move_to_end(key)
+                    return self._kept[key][0]
+                other = self._solving.get(key)
+                if other is None:
+                    own = self._solving[key] = _Solve(threading.get_ident())
+                    break
+            if other.thread == threading.get_ident():
+                raise RuntimeError(f"the solve of {key!r} asks for its own result")
+            other.ended.wait()
+            if other.found:
+                return other.found[0]
+        try:
+            own.found.append(solve())
+            self._keep(key, own.found[0])
+            return own.found[0]
+        finally:
+            with self._lock:
+                self._solving.pop(key, None)
+            own.ended.set()
+
+    def _keep(self, key, found):
         size = memory(found)
         with self._lock:
-            if key in self._kept:  # another thread was quicker
-                return self._kept[key][0]
             self._kept[key] = found, size
             self.size += size
             while self.size > self.most and len(self._kept) > 1:
                 self.size -= self._kept.popitem(last=False)[1][1]
-        return found
 
     def __len__(self):
         """Number of results kept."""
@@ -60,8 +95,14 @@ class SolvedGears:
             self._kept.clear()
             self.size = 0
 
+    def begin_anew(self):
+        """In the child of a process that was forked: the threads whose solves were under way are not in it."""
+        self._lock, self._solving = threading.Lock(), {}
+
 
 PROCESS = SolvedGears()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=PROCESS.begin_anew)
 
 
 def solved_gears(cache: "bool | SolvedGears") -> SolvedGears:

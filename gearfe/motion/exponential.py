@@ -9,8 +9,8 @@ carry them:
     f1 = f(t, P z), f2 = f(t + h/2, y + S f1), f3 = f(t + h/2, y + S f2), f4 = f(t + h, w + R f1 + S (2 f3 - f1))
     z+ = exp(A h) z + F1 f1 + F2 (f2 + f3) + F3 f4
 
-`gearfe.motion.numpy_loop` takes these steps one after the other, and `gearfe.motion.steady` with as many columns as there are
-starts; `gearfe.motion.numba_loop` is the same step in scalar arithmetic, for numba.
+`gearfe.motion.loop` takes these steps one after the other, in scalar arithmetic; here they are taken on arrays, by
+`gearfe.motion.steady` with as many columns as there are starts.
 
 References
 ----------

@@ -5,7 +5,6 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from importlib.util import find_spec
 from numbers import Real
 
 import numpy as np
@@ -35,7 +34,6 @@ ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
 SLOW = 5.0  # s: above it the seconds expected are told
-LONGEST = 300.0  # s: a run without numba that would take longer is refused
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
@@ -53,7 +51,6 @@ def simulate(
     every: int = 1,
     rtol: float = 1e-8,
     error: bool | None = None,
-    numba: bool | None = None,
     progress: Callable[[str], object] | None = None,
 ) -> Response:
     """Response of a machine.
@@ -93,11 +90,9 @@ def simulate(
     error : bool, optional
         Fast path: True integrates the whole run again with half the step, until two runs agree within 1e-3 where the step is
         chosen; ``stats["error"]`` is then of the whole run. False leaves a given step unestimated.
-    numba : bool, optional
-        Fast path: use the compiled loop; default: if numba is installed. The first run compiles it, which takes about 10 s;
-        numba keeps the result on the disk.
     progress : callable, optional
-        Gets a line before the loop is compiled, and one with the seconds expected where a run takes long.
+        Gets a line before the loop is compiled, which the first run on a machine does in about 10 s, and one with the seconds
+        expected where a run takes long.
 
     Returns
     -------
@@ -111,15 +106,14 @@ def simulate(
     Raises
     ------
     ValueError
-        If an input is impossible, or numba is not installed and the run would take longer than `LONGEST` (``numba=False`` runs
-        it nevertheless).
+        If an input is impossible.
     RuntimeError
         If the response grows beyond all bounds, or the reference gives up.
 
     Warns
     -----
     UserWarning
-        If the estimate of a given step is above a tenth of the range.
+        If the estimate of a given step is above a tenth of the range. Without `progress`, before the loop is compiled.
     """
     _check(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
@@ -139,10 +133,13 @@ def simulate(
     if method != "fast":
         return reference(machine, duration, count, state, method, rtol, start)
     own = state if initial is not None else None
-    run = _Runs(machine, duration, count, state, own, start, numba, progress)
-    if step is None and dt is None:
-        return run.controlled(error)
-    return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
+    from .loop_parts import announced  # loads numba
+
+    run = _Runs(machine, duration, count, state, own, start, progress)
+    with announced(progress):
+        if step is None and dt is None:
+            return run.controlled(error)
+        return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
 
 
 def _check_initial(machine, state):
@@ -169,35 +166,21 @@ def _check_memory(machine, duration, count):
 class _Runs:
     """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
 
-    def __init__(self, machine, duration, count, state, own, start, numba, progress):
+    def __init__(self, machine, duration, count, state, own, start, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
-        self.own, self.start, self.numba = own, start, numba
-        self.compiled = find_spec("numba") is not None if numba is None else numba
+        self.own, self.start = own, start
         self.tell = progress or (lambda line: None)
-        if self.compiled and progress:
-            self._announce()
-
-    def _announce(self):
-        from .numba_loop import is_ready
-
-        if not is_ready():
-            self.tell("loading the integrator; the first time it is compiled by numba, which takes about 10 s")
 
     def _watch(self, cost):
-        """Refuse a run that takes too long without numba, from the seconds that one simulated second takes."""
+        """Tell how long a run takes, from the seconds that one simulated second takes."""
         seconds = cost * self.duration
-        if seconds > LONGEST and not self.compiled and self.numba is None:
-            raise ValueError(
-                f"duration = {self.duration:g} s: without numba this run would take about {seconds / 60:.2g} minutes, and up to "
-                "100 times less with it: pip install gearfe[fast]; or give a shorter duration, or numba=False to run it so"
-            )
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
     def __call__(self, every, state=None, adapt=False):
         """Run of `every` steps for each output."""
         state = self.state if state is None else state
-        options = {"every": every, "numba": self.numba, "start": self.start, "adapt": adapt}
+        options = {"every": every, "start": self.start, "adapt": adapt}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
@@ -212,7 +195,7 @@ class _Runs:
             found = Estimate(max(difference(out, finer)), False, length, 0.0, acceleration_difference(out, finer))
         else:
             try:
-                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, self.numba, begin=self.start)
+                found = estimate(self.machine, self.duration, out.stats["dt"], self.own, begin=self.start)
             except RuntimeError:  # the stretch, unlike the run, grows beyond all bounds
                 found = Estimate(math.inf, False, length, 0.0, math.inf)
         doubt = max(found.error, unseen(self.machine, self.start, self.duration, out.stats["dt"]))
@@ -234,7 +217,7 @@ class _Runs:
 
         longest = longest_seen(self.machine, self.start, self.duration)
         options = {"begin": self.start, "adapt": True, "watch": self._watch, "longest": longest}
-        dt, found = chosen_step(self.machine, self.duration, self.own, self.numba, **options)
+        dt, found = chosen_step(self.machine, self.duration, self.own, **options)
         every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):

@@ -13,7 +13,6 @@ from ..machine.tables import Machine
 from ..threads import single
 from . import excitation, propagator
 from .exponential import Step
-from .numpy_loop import run
 from .response import Response
 from .step_control import chosen_step
 
@@ -163,7 +162,11 @@ class _Flow:
         self.turn = self.coarse.inverse @ self.plan.basis
 
     def __call__(self, z):
-        return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
+        from .loop import run  # loads numba
+        from .loop_parts import announced
+
+        with announced():
+            return run(self.plan, self.machine, self.flat, z, 2 * self.steps, 1, self.breaks)
 
     def monodromy(self, states):
         """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""

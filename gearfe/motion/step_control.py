@@ -106,7 +106,7 @@ def stretch(machine, duration, begin=0.0):
     return max(begin, min(start, begin + duration - length)), length
 
 
-def chosen_step(machine, duration, initial=None, numba=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
+def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watch=None, longest=math.inf):
     """Step of the fast path, no longer than `default_step`, whose error on a `stretch` is at most `WANTED` of the range.
 
     Where contact is lost on the stretch, `WANTED_OPEN`.
@@ -118,7 +118,6 @@ def chosen_step(machine, duration, initial=None, numba=None, *, begin=0.0, adapt
         Of the whole run [s].
     initial : ndarray, shape (2n,), optional
         State from which the stretch starts; default: at rest.
-    numba : bool, optional
     begin : float
         Time at which the run starts [s].
     adapt : bool
@@ -137,7 +136,7 @@ def chosen_step(machine, duration, initial=None, numba=None, *, begin=0.0, adapt
 
     def error(h):
         try:
-            found = estimate(machine, duration, h, initial, numba, begin=begin, adapt=adapt)
+            found = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
@@ -180,7 +179,7 @@ class Estimate(NamedTuple):
     acceleration: float
 
 
-def estimate(machine, duration, h, initial=None, numba=None, *, begin=0.0, adapt=False):
+def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False):
     """`Estimate` of the step `h` on a `stretch`.
 
     Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
@@ -190,7 +189,7 @@ def estimate(machine, duration, h, initial=None, numba=None, *, begin=0.0, adapt
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
-    options = {"numba": numba, "start": start, "adapt": adapt}
+    options = {"start": start, "adapt": adapt}
     rough = adapt and is_bent(machine)
     runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
     cost = max(runs[1].stats["seconds"] - runs[0].stats["seconds"], 0.0) / length

@@ -1,7 +1,6 @@
 """What a report shows, computed: comparisons of all pairs, the loaded tooth, the machine's vibration; with what each cost."""
 
 import time
-import warnings
 from dataclasses import dataclass, field
 
 from ..scene.load import load_scene
@@ -9,6 +8,7 @@ from ..steps import part, steps
 from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
 from ..studies.vibration import analysis, check_run, responses
+from ..threads import own_warnings
 
 
 @dataclass(slots=True)
@@ -96,11 +96,10 @@ class _counted:  # noqa: N801
     """Seconds of a part, and its warnings, into the findings."""
 
     def __init__(self, found, name):
-        self.found, self.name, self.caught = found, name, warnings.catch_warnings(record=True)
+        self.found, self.name, self.caught = found, name, own_warnings()
 
     def __enter__(self):
         self.told, self.started = self.caught.__enter__(), time.perf_counter()
-        warnings.simplefilter("always", UserWarning)
 
     def __exit__(self, *error):
         self.found.seconds[self.name] = time.perf_counter() - self.started

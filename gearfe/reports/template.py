@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..files import check_output, missing, written
+from ..files import check_output, written
 
 
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:
@@ -15,15 +15,11 @@ def page_maker(path: str | os.PathLike[str], name: str) -> Any:
     ------
     ValueError
         If the page could not be written.
-    RuntimeError
-        If plotly or jinja2 is missing; the message has the command that installs them.
     """
     check_output(path, "page")
-    try:
-        import jinja2
-        from plotly.offline import get_plotlyjs
-    except ImportError as error:
-        raise missing(f"{error.name}", "report", error) from error
+    import jinja2
+    from plotly.offline import get_plotlyjs
+
     maker = jinja2.Environment(
         loader=jinja2.PackageLoader("gearfe.reports", ""), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )

@@ -6,7 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..files import missing, read
+from ..extras import missing
+from ..files import read
+from ..matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
@@ -48,10 +50,11 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
     try:
         import h5py
     except ImportError as error:
-        raise missing("h5py", "signals", error) from error
+        raise missing("h5py", error) from error
     found = Found({})
     try:
         with h5py.File(path, "r") as file:
+            _check_links(file, h5py)
             if None in file.values():
                 raise OSError("a part of it cannot be opened")
             matlab = any(MATLAB_CLASS in one.attrs for one in file.values())
@@ -64,6 +67,34 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
         raise ValueError(f"{path} is not a whole HDF5 file: {told}") from error
     _axes(found)
     return found
+
+
+def _check_links(file, h5py):
+    """ValueError if a name stands for something in another file."""
+
+    def first(name, link):
+        return f"{name!r} is a link to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
+
+    told = file.visititems_links(first)
+    if told:
+        raise ValueError(f"{told}; copy what it means into this one")
+
+
+def _hdf_values(item):
+    """Values of a dataset that stands in the file itself.
+
+    Raises
+    ------
+    ValueError
+        If it is read from other files, or says it is larger than what is stored of it can be.
+    """
+    if item.external or item.is_virtual:
+        kind = "in other files" if item.external else "put together from datasets, maybe of other files"
+        raise ValueError(f"the values of {item.name!r} stand {kind}, which are not read: copy them into this one")
+    stored = item.id.get_storage_size()
+    if item.nbytes > MOST_PACKED * (stored + 1024):
+        raise ValueError(f"{item.name!r} says it has {item.nbytes} bytes, but {stored} are stored, which cannot become so many")
+    return item[()]
 
 
 def _hdf_item(found, name, item, h5py, matlab):
@@ -80,17 +111,17 @@ def _hdf_item(found, name, item, h5py, matlab):
     if not isinstance(item, h5py.Dataset):
         return
     if attributes.get(MATLAB_CLASS) == "cell":
-        whole = [item.file[one] for one in np.ravel(item[()])[:PARTS] if one]
+        whole = [item.file[one] for one in np.ravel(_hdf_values(item))[:PARTS] if one]
         for i, one in enumerate(whole, 1):
             if isinstance(one, h5py.Dataset):
                 _take(found, f"{name}{{{i}}}", _matlab(one))
         return
-    _take(found, name, _matlab(item) if matlab else item[()])
+    _take(found, name, _matlab(item) if matlab else _hdf_values(item))
 
 
 def _matlab(item):
     """Array of a dataset as MATLAB shows it: axes turned round, characters as text."""
-    values = np.asarray(item[()])
+    values = np.asarray(_hdf_values(item))
     if _text(item.attrs.get(MATLAB_CLASS, "")) == "char":
         return np.array("".join(map(chr, np.ravel(values))))
     return np.empty(0) if "MATLAB_empty" in item.attrs else values.T
@@ -111,8 +142,8 @@ def _opens(value):
 
 def _take(found: Found, name: str, value: Any) -> None:
     """Add what an array holds to the channels, or to what is stated."""
-    if isinstance(value, np.ndarray) and type(value) is not np.ndarray:
-        found.other.append(f"{name!r} (a MATLAB object: save its numbers, for instance by table2array)")
+    if isinstance(value, Unread):
+        found.other.append(f"{name!r} ({value.why})")
     elif _opens(value):
         _open(found, name, value)
     elif np.size(value) == 1 and np.asarray(value).dtype.kind in "US":

@@ -4,11 +4,13 @@ import logging
 import os
 import struct
 import warnings
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
-from ..files import missing
+from ..extras import missing
+from ..threads import Shared, own_warnings
 from .found import TIMES, Found, numeric, plain
 from .text_table import named
 
@@ -26,10 +28,11 @@ def wav_file(path: str | os.PathLike[str]) -> Found:
     from scipy.io import wavfile
 
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", wavfile.WavFileWarning)
-            warnings.filterwarnings("ignore", ".*not understood", wavfile.WavFileWarning)  # chunks of other programs
+        with own_warnings(wavfile.WavFileWarning) as said:
             rate, data = wavfile.read(path)
+        for one in said:
+            if "not understood" not in str(one.message):  # chunks of other programs
+                raise one.message
     except DAMAGE as error:
         raise _damaged(path, "WAV", error) from error
     values = _full_scale(np.atleast_2d(data.T))
@@ -51,7 +54,7 @@ def uff_file(path: str | os.PathLike[str]) -> Found:
     try:
         import pyuff
     except ImportError as error:
-        raise missing("pyuff", "signals", error) from error
+        raise missing("pyuff", error) from error
     try:
         with open(path, "rb") as file:
             end = file.read().split()[-1:]
@@ -60,8 +63,7 @@ def uff_file(path: str | os.PathLike[str]) -> Found:
     if end != [b"-1"]:
         raise ValueError(f"{path} is not a whole universal file (UFF): it does not end with -1")
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with own_warnings(Warning):
             sets = pyuff.UFF(os.fspath(path)).read_sets()
     except Exception as error:  # pyuff itself raises just Exception
         raise _damaged(path, "universal file (UFF)", error) from error
@@ -99,12 +101,13 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
     try:
         from nptdms import TdmsFile
     except ImportError as error:
-        raise missing("npTDMS", "signals", error) from error
+        raise missing("npTDMS", error) from error
     try:
         with open(path, "rb") as file:
             if file.read(4) != b"TDSm":
                 raise ValueError("it does not begin with TDSm")
-        file = _quiet_tdms(TdmsFile, path)
+        with _quiet:
+            file = TdmsFile.read(path)
         groups = file.groups()
         values = {(group.name, one.name): one[:] for group in groups for one in group.channels()}
         status = file.file_status
@@ -121,14 +124,18 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
     return found
 
 
-def _quiet_tdms(kind, path):
-    """Read without what the library logs about damage, which is told otherwise."""
+@contextmanager
+def _no_log():
+    """Without what the library logs about damage, which is told otherwise."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:
-        return kind.read(path)
+        yield
     finally:
         logging.disable(before)
+
+
+_quiet = Shared(_no_log)
 
 
 def _tdms_channel(found: Found, name: str, data: Any, properties: Any) -> None:
@@ -149,7 +156,7 @@ def parquet_file(path: str | os.PathLike[str]) -> Found:
         import pyarrow as pa
         import pyarrow.parquet as pq
     except ImportError as error:
-        raise missing("pyarrow", "signals", error) from error
+        raise missing("pyarrow", error) from error
     try:
         table = pq.ParquetFile(path).read()
     except (OSError, pa.ArrowException, ValueError) as error:

@@ -57,7 +57,8 @@ def read_signal(
     - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated;
       dates of a clock in Parquet are the time.
 
-    Nothing is unpickled. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
+    Nothing is unpickled, no other file is opened, and an archive, MATLAB or HDF5 file that announces more numbers than it can
+    hold is refused. HDF5, version 7.3, UFF, TDMS and Parquet need ``pip install 'gearfe[signals]'``.
 
     Parameters
     ----------

@@ -76,9 +76,9 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     cache : bool or SolvedGears
         As of `solved_gear`.
     tell : callable, optional
-        Gets one line of text before each solve: which gear, the solver, the expected memory.
+        Gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     **options
-        As in `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine, solver.
+        As in `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine.
 
     Returns
     -------

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..files import missing, save, save_as
+from ..extras import missing
+from ..files import save, save_as
 from ..flexibility.section_contact import MARKS
 from ..pictures.inline import line_svg
 from ..pictures.stiffness_plots import plot_curves
@@ -93,7 +94,7 @@ class StiffnessCurve:
         try:
             import pandas
         except ImportError as error:
-            raise missing("pandas", "data", error) from error
+            raise missing("pandas", error) from error
         columns = dict(content(self).columns)
         index = pandas.Index(columns.pop("phase [-]"), name="phase [-]")
         table = pandas.DataFrame(columns, index=index)
@@ -116,7 +117,7 @@ class StiffnessCurve:
         try:
             import xarray
         except ImportError as error:
-            raise missing("xarray", "data", error) from error
+            raise missing("xarray", error) from error
         made = content(self)
         names = [name for name in made.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}

@@ -15,6 +15,8 @@ To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in
 from dataclasses import dataclass, replace
 from importlib import import_module
 
+from ..threads import loading
+
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
 
@@ -77,7 +79,9 @@ class Method:
     def load(self):
         """The function, or for a sum the module, that computes it."""
         module, _, function = self.home.partition(":")
-        return getattr(import_module(module), function) if function else import_module(module)
+        with loading:
+            found = import_module(module)
+        return getattr(found, function) if function else found
 
 
 ROWS = (

@@ -204,7 +204,7 @@ def mesh_stiffness(
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
     tell : callable, optional
-        For ``fe3d``: gets a line of text before each gear is solved, with the solver and the expected memory.
+        For ``fe3d``: gets a line of text before each gear is solved, with its unknowns and the expected seconds and memory.
     pose : {"mean", "pinion", "wheel"}
         Which gear the approach turns from where the phase has both: each by half of it (as a length on the line of action), or
         one against the held other. Near the ends of double contact k differs by 1 to 2 % (`geometry.pair.contacts`); the last two

@@ -36,7 +36,7 @@ def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topograph
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if row]
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise ValueError(f"{path}: not readable as a table: {error}") from error
     if len(rows) < 3 or len(rows[0]) < 3:
         raise ValueError(

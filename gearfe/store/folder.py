@@ -7,10 +7,11 @@ the disk and then renamed, so that a process that is killed, or a disk that runs
 import contextlib
 import json
 import os
-import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
+
+from ..files import new_file
 
 ABOUT, LOCK, PART = "about.json", ".lock", ".part-"
 
@@ -27,14 +28,11 @@ def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     path = Path(path)
     name = None
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=PART)
+        handle, name = new_file(path.parent, PART)
         with os.fdopen(handle, "wb") as file:
             yield file
             file.flush()
             os.fsync(file.fileno())
-        umask = os.umask(0)
-        os.umask(umask)
-        os.chmod(name, 0o666 & ~umask)
         os.replace(name, path)
         _sync(path.parent)
     except OSError as error:

@@ -1,5 +1,7 @@
 """Shards: Parquet files of rows in a folder, each whole or not there; nothing is ever appended to one. Needs pyarrow."""
 
+import filecmp
+import hashlib
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -8,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..files import missing
+from ..extras import missing
 from .folder import durable
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ def arrow() -> Any:
         import pyarrow.dataset
         import pyarrow.parquet
     except ImportError as error:
-        raise missing("pyarrow", "data", error) from error
+        raise missing("pyarrow", error) from error
     return pyarrow
 
 
@@ -58,7 +60,7 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
     Raises
     ------
     ValueError
-        If there is no such column.
+        If there is no such column, or it holds no such values.
     """
     if not isinstance(where, Mapping):
         return where
@@ -66,10 +68,16 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
     for name, value in where.items():
         if name not in names:
             raise ValueError(f"where: no column {name!r}; there is {', '.join(names)}")
-        if isinstance(value, tuple):
-            one = (field(name) >= value[0]) & (field(name) <= value[1])
-        else:
-            one = field(name).isin(value) if isinstance(value, list) else field(name) == value
+        try:
+            if isinstance(value, tuple):
+                low, high = value
+                one = (field(name) >= low) & (field(name) <= high)
+            else:
+                one = field(name).isin(value) if isinstance(value, list) else field(name) == value
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"where: {name} = {value!r}; give a value, a range as a tuple of two, or a list of values"
+            ) from error
         out = one if out is None else out & one
     return out
 
@@ -80,7 +88,8 @@ def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "py
     Raises
     ------
     ValueError
-        If a row has a value that `fields` does not name.
+        If a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among whole
+        numbers.
     """
     pa = arrow()
     extra = sorted({name for row in rows for name in row} - set(fields))
@@ -88,7 +97,8 @@ def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "py
         raise ValueError(f"rows have {', '.join(extra)}, but the columns are {', '.join(fields)}")
     schema = schema_of(fields)
     columns = [
-        pa.array([_plain(row.get(name), field.kind) for row in rows], schema.field(name).type) for name, field in fields.items()
+        pa.array([_plain(row.get(name), name, field.kind) for row in rows], schema.field(name).type)
+        for name, field in fields.items()
     ]
     return pa.Table.from_arrays(columns, schema=schema)
 
@@ -107,13 +117,35 @@ def fields_of(schema: "pyarrow.Schema") -> dict[str, Field]:
     return {name: Field(one.get("kind", "text"), one.get("unit", "-")) for name, one in told.items()}
 
 
-def _plain(value, kind):
-    """As pyarrow takes it."""
+def _plain(value, name, kind):
+    """As pyarrow takes it; ValueError if it is not of its kind."""
     if value is None:
         return None
-    if kind == "list":
-        return np.asarray(value, dtype=float)
-    return json.dumps(value) if kind == "json" else value
+    try:
+        if HELD[kind](value):
+            return TAKEN[kind](value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    text = repr(value)
+    raise ValueError(f"{name} = {text if len(text) < 60 else text[:56] + ' ...'}, but the column holds {TOLD[kind]}")
+
+
+TOLD = {
+    "number": "numbers", "whole": "whole numbers of 64 bits", "truth": "True and False", "text": "texts",
+    "list": "lists of numbers", "json": "what JSON can say",
+}  # fmt: skip
+HELD = {
+    "number": lambda value: isinstance(value, (int, float, np.integer, np.floating)),
+    "whole": lambda value: int(value) == value and not isinstance(value, str) and -(2**63) <= value < 2**63,
+    "truth": lambda value: isinstance(value, (bool, np.bool)),
+    "text": lambda value: isinstance(value, str) and value.encode() is not None,
+    "list": lambda value: np.ndim(value) == 1 and np.asarray(value).dtype.kind in "fiub",
+    "json": lambda value: True,
+}
+TAKEN = {
+    "number": float, "whole": int, "truth": bool, "text": str, "list": lambda value: np.asarray(value, dtype=float),
+    "json": json.dumps,
+}  # fmt: skip
 
 
 def encoded(table: "pyarrow.Table") -> bytes:
@@ -142,9 +174,10 @@ def shard_names(folder: str | os.PathLike[str]) -> list[str]:
 
 
 def check_shards(folder: str | os.PathLike[str]) -> None:
-    """Raise ValueError if a shard is damaged or has other columns than the rest: their ends are read, not all of them."""
+    """Raise ValueError if a shard is damaged, a copy, or has other columns than the rest: only their ends are read."""
     pa = arrow()
     first = None
+    _alike(folder)
     for name in shard_names(folder):
         file = Path(folder) / f"{name}{SUFFIX}"
         try:
@@ -156,13 +189,43 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
 
 
+def _alike(folder):
+    """Whether all shards say in the same words which columns they have.
+
+    Raises
+    ------
+    ValueError
+        If a shard is another one, byte for byte: its rows would count twice.
+    """
+    first: dict[tuple[int, bytes], Path] = {}
+    columns = set()
+    for name in shard_names(folder):
+        file = Path(folder) / f"{name}{SUFFIX}"
+        size, end = _end(file)
+        other = first.setdefault((size, hashlib.sha256(end).digest()), file)
+        if other is not file and filecmp.cmp(other, file, shallow=False):
+            raise ValueError(f"{folder} holds {other.name} and {file.name} with the same rows: one is a copy; take it out")
+        columns.add(end[end.rfind(b"ARROW:schema") :])
+    return len(columns) < 2
+
+
+def _end(file):
+    """Size of a shard, and what it says at its end of what it holds: columns, places and extremes of its parts."""
+    with open(file, "rb") as data:
+        size = data.seek(0, os.SEEK_END)
+        data.seek(max(size - 8, 0))
+        length = int.from_bytes(data.read(4), "little")
+        data.seek(max(size - 8 - length, 0))
+        return size, data.read()
+
+
 def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
 
     Raises
     ------
     ValueError
-        If there is no shard, or the first is damaged.
+        If there is no shard, one is damaged, has other columns than the first, or is a copy of another.
     """
     pa = arrow()
     files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
@@ -170,9 +233,15 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
         raise ValueError(f"{folder} holds no results yet")
     try:
         form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked_scan())
-        return pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
-    except (OSError, pa.ArrowInvalid) as error:
-        raise ValueError(f"{files[0]} is damaged: {_line(error)}") from error
+        found = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
+        alike = _alike(folder)
+    except (OSError, pa.ArrowException) as error:
+        raise ValueError(
+            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
+        ) from error
+    if not alike:
+        check_shards(folder)
+    return found
 
 
 def checked_scan() -> Any:
@@ -186,7 +255,7 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
     Raises
     ------
     ValueError
-        If a shard is damaged, or there is no such column.
+        If a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
     """
     pa = arrow()
     found = opened(folder)
@@ -195,6 +264,8 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
         raise ValueError(f"no column {unknown[0]!r} in {folder}; it has {', '.join(found.schema.names)}")
     try:
         return found.to_table(columns=list(columns) if columns is not None else None, filter=where)
+    except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
+        raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise ValueError(
             f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..elements.solid_deck import FACES, Part
 from ..files import suffix_of, written
-from .window import drawing_library
+from .window import plotting
 
 GEARS = ("#b9c7d6", "#d6cbb9")  # pinion, wheel
 HURT = "#d55e00"  # pits, and the rims of crack faces
@@ -48,9 +48,7 @@ def render_mesh(
         raise ValueError(f"{path}: meshes are drawn as .png only; give a name that ends in it")
     parts = (parts,) if isinstance(parts, Part) else tuple(parts)
     focus, view, half = _camera(parts, close_up)
-    pyvista = drawing_library()
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size))
-    try:
+    with plotting(window_size=list(size)) as plotter:
         plotter.set_background("white")
         for part, colour in zip(parts, GEARS * len(parts), strict=False):
             plotter.add_mesh(_surface(part), color=colour, show_edges=True, edge_color="#404040", line_width=1)
@@ -70,8 +68,6 @@ def render_mesh(
         plotter.renderer.ResetCameraClippingRange()
         with written(path) as name:
             plotter.screenshot(name)
-    finally:
-        plotter.close()
 
 
 def _camera(parts, close_up):

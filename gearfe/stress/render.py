@@ -20,7 +20,7 @@ from ..stiffness.limits import check_section
 from ..threads import single
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
 from .holed import contact_of, pressed_tooth, tooth_field
-from .window import drawing_library
+from .window import drawing_library, plotting
 
 COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
 OPENING = 0.2  # of a crack in a picture, in modules
@@ -169,9 +169,7 @@ def _text(title, told):
 @contextlib.contextmanager
 def _picture(path, size, text, top):
     """A plotter and how to draw stress with it; text and colour bar are added, and the picture is written to `path`."""
-    pyvista = drawing_library()
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
-    try:
+    with plotting(window_size=list(size), lighting="none") as plotter:
         plotter.set_background("white")
         look = {"scalars": MISES, "clim": [0, top], "cmap": COLOURS, "above_color": ABOVE, "show_scalar_bar": False}
         yield plotter, look
@@ -189,8 +187,6 @@ def _picture(path, size, text, top):
         plotter.enable_anti_aliasing("ssaa")
         with written(path) as name:
             plotter.screenshot(name)
-    finally:
-        plotter.close()
 
 
 def _grid(field, scale):

@@ -1,13 +1,16 @@
 """The library that draws, and its window: found without a screen, or what is missing is said with the command for it."""
 
+import contextlib
 import ctypes
 import os
 import sys
+import threading
 
 RENDERER_HELP = (
     "rendering needs pyvista and, without a screen, EGL or OSMesa: "
     "'pip install pyvista' and, on Debian, 'apt-get install libgl1 libegl1'"
 )
+_turn = threading.RLock()  # of the threads: pyvista is loaded part by part, and VTK's windows are the process's
 OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGLRenderWindow"}
 
 
@@ -19,12 +22,25 @@ def drawing_library():
     RuntimeError
         If pyvista, VTK or a window is missing; the message says what to install.
     """
-    try:
-        import pyvista
-    except (ImportError, OSError) as error:
-        raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
-    choose_window()
-    return pyvista
+    with _turn:
+        try:
+            import pyvista
+        except (ImportError, OSError) as error:
+            raise RuntimeError(f"{RENDERER_HELP} ({error})") from error
+        choose_window()
+        pyvista.Plotter  # noqa: B018 - loads all that draws, which two threads at once fail to do
+        return pyvista
+
+
+@contextlib.contextmanager
+def plotting(**options):
+    """A plotter without a screen, closed whatever happens; that of another thread waits until then."""
+    with _turn:
+        plotter = drawing_library().Plotter(off_screen=True, **options)
+        try:
+            yield plotter
+        finally:
+            plotter.close()
 
 
 def renderer_name():

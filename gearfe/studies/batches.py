@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..stiffness.solve import mesh_stiffness
+from ..threads import Shared
 
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
@@ -116,15 +117,22 @@ def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecuto
     own : bool
         Whether they need what the caller's script defines: then they run it again.
     """
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        _told_one,
+        contextlib.nullcontext() if own else _hidden,
+        ProcessPoolExecutor(workers, mp_context=spawn, initializer=_end_with_parent) as pool,
+    ):
+        yield pool
+
+
+@contextlib.contextmanager
+def _one_in_environment():
+    """Processes started here have one thread."""
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
-    spawn = multiprocessing.get_context("spawn")
     try:
-        with (
-            contextlib.nullcontext() if own else _without_main(),
-            ProcessPoolExecutor(workers, mp_context=spawn, initializer=_end_with_parent) as pool,
-        ):
-            yield pool
+        yield
     finally:
         for name, value in before.items():
             os.environ.pop(name, None) if value is None else os.environ.update({name: value})
@@ -154,6 +162,9 @@ def _without_main():
     finally:
         for name, value in hidden.items():
             setattr(main, name, value)
+
+
+_told_one, _hidden = Shared(_one_in_environment), Shared(_without_main)  # batches of several threads may overlap
 
 
 def _collect(results, total, progress):

@@ -3,7 +3,6 @@
 import csv
 import math
 import os
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -20,6 +19,7 @@ from ..files import written
 from ..material import Material
 from ..stiffness.methods import ROWS
 from ..stiffness.solve import mesh_stiffness
+from ..threads import own_warnings
 from .batches import batch
 from .own_model import OwnModel, own_curve
 
@@ -161,15 +161,13 @@ def build(sample):
     for k in (1, 2):
         z, x = sample[f"z_{k}"], sample[f"x_{k}"]
         gears.append(_gear(z, x, sample[f"bore_{k}"], rack))
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)
+    with own_warnings():
         return GearPair(*gears)
 
 
 def _gear(z, x, bore, rack):
     """Gear with its bore in root radii."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # tip radii are capped at the full rounding
+    with own_warnings():  # tip radii are capped at the full rounding
         return Gear(z=int(z), x=x, r_bore=bore * (z / 2 - 1.25 + x), **rack)
 
 

@@ -2,7 +2,6 @@
 
 import threading
 import time
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -15,6 +14,7 @@ from ..scene.load import Scene, scene_of
 from ..steps import listening
 from ..stiffness.cache import program
 from ..store.shards import Field, encoded, table
+from ..threads import own_warnings
 from .keys import placed, rank, trimmed
 from .kinds import KINDS
 from .study import Study, of_case, slim, values
@@ -24,7 +24,7 @@ DONE, FAILED, LOST = "done", "failed", "lost"
 FIRST = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
 LAST = {"status": Field("text"), "error": Field("text"), "notes": Field("text"), "seconds": Field("number", "s")}
 LAST |= {"version": Field("text"), "source": Field("text")}
-_ONE = threading.Lock()  # gmsh and the record of warnings are of a process, not of a thread
+_ONE = threading.Lock()  # processor time is counted for a process, not for a thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,13 +147,12 @@ def rows(job: Job) -> list[dict[str, Any]]:
 def _tried(study, cases, built):
     """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
     started = time.process_time()
-    with warnings.catch_warnings(record=True) as heard:
-        warnings.simplefilter("always", UserWarning)
+    with own_warnings() as said:
         try:
             found = [row | {"status": DONE} for row in _computed(study, cases, built)]
         except FAILURES as error:
             found = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
-    notes = "; ".join(dict.fromkeys(str(one.message) for one in heard if issubclass(one.category, UserWarning)))
+    notes = "; ".join(dict.fromkeys(str(one.message) for one in said))
     each = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
     return [row | each for row in found]
 

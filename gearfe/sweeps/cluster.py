@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterator, Sequence
 from itertools import islice
 
-from ..files import missing
+from ..extras import missing
 from .blocks import Job, compute, lost, shard
 
 AHEAD = 2  # jobs handed out for each thread of the workers
@@ -28,7 +28,7 @@ def cluster(jobs: Sequence[Job], address: str) -> Iterator[tuple[str, bytes, str
     try:
         from distributed import Client, KilledWorker, as_completed
     except ImportError as error:
-        raise missing("distributed", "cluster", error) from error
+        raise missing("distributed", error) from error
     try:
         client = Client(address, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:

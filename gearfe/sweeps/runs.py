@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..files import missing
+from ..extras import missing
 from ..store.folder import read_about
 from ..store.shards import Field, fields_of, opened, read, shard_names, where_of
 
@@ -86,7 +86,7 @@ class Runs:
         try:
             import pandas  # noqa: F401
         except ImportError as error:
-            raise missing("pandas", "data", error) from error
+            raise missing("pandas", error) from error
         if columns is None:
             columns = [name for name, field in self.fields.items() if field.kind != "list"]
         wanted = ["number", *(name for name in columns if name != "number")]
@@ -120,7 +120,7 @@ class Runs:
         try:
             import xarray
         except ImportError as error:
-            raise missing("xarray", "data", error) from error
+            raise missing("xarray", error) from error
         known = [name for name, field in self.fields.items() if field.kind == "list"]
         names = known if names is None else list(names)
         for name in names:

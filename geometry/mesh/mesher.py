@@ -1,6 +1,12 @@
-"""gmsh: triangles and quads between lines, tets between surfaces; nowhere else is it imported."""
+"""gmsh: triangles and quads between lines, tets between surfaces; nowhere else is it imported.
+
+gmsh has one model and one set of options for the whole process: threads that mesh at the same time take turns.
+"""
 
 import contextlib
+import os
+import sys
+import threading
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,30 +15,48 @@ import numpy as np
 # one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
 SEEN, DECIMALS = 50.0, 8
 
+_turn = threading.Lock()
+
 
 @contextlib.contextmanager
 def gmsh_session():
-    """A quiet gmsh session that is closed whatever happens.
+    """A quiet gmsh session that is closed whatever happens; that of another thread waits until then.
 
     Raises
     ------
     RuntimeError
-        If gmsh or one of the system libraries it loads is missing; the message says what to install.
+        If gmsh or one of the system libraries it loads is missing; the message says what to install. If the program that uses
+        gearfe has a session of its own open.
     """
-    try:
-        import gmsh
-    except (ImportError, OSError) as error:
-        raise RuntimeError(
-            f"gmsh cannot be loaded ({error}); install it with 'pip install gmsh' and, on Debian, 'apt-get install libglu1-mesa "
-            "libgl1 libxcursor1 libxft2 libxinerama1 libxfixes3 libxrender1 libgomp1'"
-        ) from error
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        yield gmsh
-    finally:
-        gmsh.finalize()
+    with _turn:
+        try:
+            import gmsh
+        except (ImportError, OSError) as error:
+            raise RuntimeError(
+                f"gmsh cannot be loaded ({error}); install it with 'pip install gmsh' and, on Debian, 'apt-get install "
+                "libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libxfixes3 libxrender1 libgomp1'"
+            ) from error
+        if gmsh.isInitialized():
+            raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
+        gmsh.initialize(readConfigFiles=False, interruptible=False)  # a user's own options would change the mesh
+        try:
+            gmsh.option.setNumber("General.Terminal", 0)
+            gmsh.option.setNumber("General.NumThreads", 1)
+            yield gmsh
+        finally:
+            gmsh.finalize()
+
+
+def _begin_anew():
+    """In the child of a process that was forked: the thread that was meshing is not in it, its session is."""
+    global _turn
+    if _turn.locked() and "gmsh" in sys.modules and sys.modules["gmsh"].isInitialized():
+        sys.modules["gmsh"].finalize()
+    _turn = threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_begin_anew)
 
 
 def triangulate(loops, chains, ring, free=()):

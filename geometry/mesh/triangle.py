@@ -1,31 +1,32 @@
 """A curved triangle of any polynomial order: nodes, quadrature and the blended map of its edges."""
 
-from functools import lru_cache
 from types import SimpleNamespace
 
 import numpy as np
 from numpy.polynomial import legendre
+
+from ..kept import keeping
 
 BULGE = 8  # points that describe how an edge departs from its chord
 GAUSS = legendre.leggauss(BULGE)  # these points and their weights
 ENDS = ((0, 1), (1, 2), (2, 0))  # local vertices of the three edges
 
 
-@lru_cache(maxsize=8)
+@keeping(8)
 def lobatto(order):
     """Gauss-Lobatto points on [-1, 1], `order` + 1 of them."""
     inner = legendre.legroots(legendre.legder([0] * order + [1])).real  # all are; from numpy 2.5 on the type is complex
     return np.concatenate([[-1.0], inner, [1.0]])
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def lagrange(order, points):
     """Values ``(order + 1, n)`` of the polynomials through the Gauss-Lobatto points, at a tuple of points in [-1, 1]."""
     nodes = legendre.legvander(lobatto(order), order)
     return np.linalg.solve(nodes.T, legendre.legvander(np.array(points), order).T)
 
 
-@lru_cache(maxsize=8)
+@keeping(8)
 def table(order):
     """All that depends on the polynomial order alone.
 

@@ -13,12 +13,12 @@ centred on each other.
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from ..damage.pit import crossing, rolls, union_length
+from ..kept import keeping
 from .gear_pair import GearPair
 
 FACES = ("spur", "helical", "herringbone")
@@ -263,7 +263,7 @@ def covered(pair, pits, order, rolls, z):
     return piece.astype(int), gear.astype(int), first, last
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def _limits(gear, pits):
     """Teeth of pits, the roll lengths and the heights [mm] they lie between: five arrays ``(pits,)``."""
     near, far = np.sort([rolls(gear, pit) for pit in pits], axis=1).T

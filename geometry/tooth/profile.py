@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.optimize import brentq
 
+from ..kept import keeping
 from .involute import inv, inverse_inv
 
 
@@ -173,7 +174,7 @@ def root_half_angle(gear):
     return float(fillet(gear, math.pi / 2)[1])
 
 
-@lru_cache(maxsize=256)
+@keeping(256)
 def _fillet_arc(gear):
     """Arc length [mm] from the root circle against rack tip angle, finely sampled for interpolation."""
     phi = np.linspace(math.pi / 2, form_point(gear)[0], 400)

@@ -73,7 +73,7 @@ def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage, 
     options = {"bearing": 1e10, "tilt": 1e7} if case.startswith("bearings") else {}
     machine = herringbone(herringbone_stage, damage, **options)
     assert len(machine.dofs) == 55
-    got = simulate(machine, 0.005, dt=2.5e-5, every=4, numba=False)
+    got = simulate(machine, 0.005, dt=2.5e-5, every=4)
     want = simulate(machine, 0.005, dt=1e-4, method="DOP853", rtol=1e-8)
     spans = np.ptp(want.q, axis=0)
     errors = np.abs(got.q - want.q).max(axis=0)
@@ -83,11 +83,3 @@ def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage, 
         assert (errors[same] < limit * spans[same].max()).all(), kind
     name = "force sun_planet1L"
     assert np.abs(got[name] - want[name]).max() < 1e-3 * np.ptp(want[name])
-
-
-def test_compiled_loop_on_55_degrees_of_freedom(herringbone_stage, monkeypatch):
-    """The halves share their stiffness look-ups there; without numba the loop is run as it stands."""
-    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: True)
-    machine = herringbone(herringbone_stage, {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})})
-    one, two = (simulate(machine, 0.001, dt=2.5e-5, numba=numba) for numba in (False, True))
-    assert_allclose(two.states, one.states, atol=1e-9 * np.ptp(one.states))

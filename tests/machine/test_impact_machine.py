@@ -57,7 +57,7 @@ def test_the_article_s_stage_runs_from_its_scene():
     assert machine.meshes[0].friction
     hurt = machine.meshes[0].changes[0][2].cells[:, 0].min() / machine.meshes[0].cycle.mean
     assert -0.3 < hurt < -0.1  # a quarter of the width of one of two pairs
-    got = simulate(machine, 0.004, dt=2e-6, every=10, numba=False)
+    got = simulate(machine, 0.004, dt=2e-6, every=10)
     assert got["force sun_planet1"].min() > 0
 
 

@@ -65,6 +65,6 @@ def test_motion_that_no_run_can_follow_says_so(monkeypatch):
     )
     monkeypatch.setattr(dynamics, "ALLOWED", 1e-12)
     monkeypatch.setattr(dynamics, "GROWN", 1e-12)
-    got = simulate(machine, 0.004, numba=False)
+    got = simulate(machine, 0.004)
     assert "no integration can follow" in got.stats["chaotic"]
     assert "switched" not in got.stats

@@ -1,24 +1,26 @@
 """What is kept and how it is integrated are two things: rate and step of `simulate`."""
 
-import time
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
-from machines import RUNS, two_masses
+from machines import two_masses
+from numba import njit
+from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.motion import simulate as dynamics
+from gearfe.motion.loop_parts import announced, compiled
 from gearfe.motion.simulate import simulate
 from gearfe.motion.step_control import difference
-
-FAST = {"numba": False}
 
 
 def test_a_low_rate_keeps_the_step_and_its_error():
     """At 2 kHz, a quarter of what one mesh cycle of 500 Hz needs as a step, the states are those of a fine run."""
     machine = two_masses()
-    got = simulate(machine, 0.02, rate=2e3, **FAST)
+    got = simulate(machine, 0.02, rate=2e3)
     want = simulate(machine, 0.02, dt=5e-4, method="DOP853", rtol=1e-10)
     assert_allclose(got.time, np.arange(41) / 2e3, rtol=1e-12)
     assert got.stats["dt"] < 1e-4
@@ -28,21 +30,21 @@ def test_a_low_rate_keeps_the_step_and_its_error():
 def test_a_given_step_is_estimated_and_warned_of():
     machine = two_masses()
     with pytest.warns(UserWarning, match="too long for this machine"):
-        got = simulate(machine, 0.02, dt=5e-4, **FAST)
+        got = simulate(machine, 0.02, dt=5e-4)
     want = simulate(machine, 0.02, dt=5e-4, method="DOP853", rtol=1e-10)
     assert got.stats["error"] > 0.1
     assert max(difference(got, want)) > 0.1
-    fine = simulate(machine, 0.02, rate=2e3, step=2e-5, **FAST)
+    fine = simulate(machine, 0.02, rate=2e3, step=2e-5)
     assert 0 < fine.stats["error"] < 1e-2
     assert fine.stats["dt"] <= 2e-5
     assert max(difference(fine, want)) < max(1.5 * fine.stats["error"], 1e-6)
-    assert "error" not in simulate(machine, 0.002, dt=1e-5, error=False, **FAST).stats
+    assert "error" not in simulate(machine, 0.002, dt=1e-5, error=False).stats
 
 
 def test_the_motion_goes_on_from_any_time():
     machine = two_masses()
-    whole = simulate(machine, 0.004, rate=1e4, step=1e-5, **FAST)
-    half = simulate(machine, 0.002, rate=1e4, step=1e-5, start=0.002, initial=(whole.q[20], whole.v[20]), error=False, **FAST)
+    whole = simulate(machine, 0.004, rate=1e4, step=1e-5)
+    half = simulate(machine, 0.002, rate=1e4, step=1e-5, start=0.002, initial=(whole.q[20], whole.v[20]), error=False)
     assert_allclose(half.time, whole.time[20:], rtol=1e-12)
     assert_allclose(half.q, whole.q[20:], atol=1e-9 * np.abs(whole.q).max())
 
@@ -76,20 +78,34 @@ def test_decimation_keeps_what_is_below_and_takes_out_what_is_above():
         gf.decimate(whole, 80e3)
 
 
-def test_a_long_run_without_numba_is_refused_before_it_starts(monkeypatch):
-    monkeypatch.setattr(dynamics, "find_spec", lambda name: None)
-    monkeypatch.setattr("gearfe.motion.fixed_step.find_spec", lambda name: None)
-    started = time.process_time()
-    with pytest.raises(ValueError, match=r"minutes.*pip install gearfe\[fast\]"):
-        simulate(two_masses(), 1e4, rate=10.0)
-    assert time.process_time() - started < 10
-    assert simulate(two_masses(), 0.002, rate=1e4).stats["numba"] is False
-
-
-def test_what_is_compiled_is_told_of(monkeypatch):
-    """Once, where numba is installed; never where it is not."""
-    told, compiled = [], len(RUNS) > 1
-    if compiled:
-        monkeypatch.setattr("gearfe.motion.numba_loop.is_ready", lambda: False)
+def test_what_is_compiled_is_told_of_once_and_what_is_kept_on_the_disk_is_not(tmp_path):
+    """Each time in a process of its own."""
+    code = """
+import numpy as np
+from machines import two_masses
+from gearfe.motion.loop_parts import announced, compiled
+from gearfe.motion.simulate import simulate
+told = []
+for _ in range(2):
     simulate(two_masses(), 0.002, rate=1e4, progress=told.append)
-    assert ["compiled by numba" in line for line in told] == [True] * compiled
+print(len([line for line in told if line.startswith("compiling the integrator")]))
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    found = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment) for _ in range(2)]
+    assert [one.stdout.strip() for one in found] == ["1", "0"], found[0].stderr
+
+
+def test_without_a_listener_compiling_is_a_warning():
+    with pytest.warns(UserWarning, match="compiling the integrator"), announced():
+        njit(lambda x: x + 1)(1)
+
+
+def test_where_nothing_may_be_written_loops_are_compiled_all_the_same(monkeypatch):
+    monkeypatch.setattr(CacheImpl, "_locator_classes", [])
+
+    def twice(x):
+        return 2 * x
+
+    with pytest.raises(RuntimeError, match="cannot cache"):
+        njit(cache=True)(twice)
+    assert compiled(twice)(21) == 42

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import RUNS, two_masses
+from machines import two_masses
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -26,17 +26,16 @@ def run_up(**mesh):
 
 def test_stiffness_follows_the_integrated_phase():
     machine = run_up()
-    got = simulate(machine, LAST, rate=2e4, numba=False)
+    got = simulate(machine, LAST, rate=2e4)
     # the wave of tests/machines.py: a cosine of the phase; the product of frequency and time would end a cycle and more away
     want = 1e8 * (1 + 0.2 * np.cos(2 * np.pi * 500 * turned(got.time)))
     assert_allclose(got["stiffness m"], want, rtol=2e-3)
     assert 500 * abs(turned(LAST) - END * LAST) > 10
 
 
-@pytest.mark.parametrize("numba", RUNS)
-def test_a_run_up_is_that_of_the_reference(numba):
+def test_a_run_up_is_that_of_the_reference():
     machine = gf.with_speed(two_masses(error=((20e-6, 500.0, 0.3),)), [0.0, 0.004], [0.3, 1.2])
-    got = simulate(machine, 0.006, rate=2e4, numba=numba)
+    got = simulate(machine, 0.006, rate=2e4)
     want = simulate(machine, 0.006, dt=5e-5, method="DOP853", rtol=1e-8)
     assert max(difference(got, want)) < 1e-3
     assert max(difference(got, want)) < got.stats["error"]
@@ -87,7 +86,7 @@ def test_what_is_no_profile_is_refused():
 
 def test_a_damaged_tooth_returns_by_the_angle():
     hurt = ToothDamage(0, 0, gf.Samples(np.arange(0, 1.51, 0.02), 5e7 * np.ones(76)))
-    got = simulate(run_up(teeth=(5, 7), damage=(hurt,)), LAST, rate=5e4, numba=False, step=5e-6, error=False)
+    got = simulate(run_up(teeth=(5, 7), damage=(hurt,)), LAST, rate=5e4, step=5e-6, error=False)
     low = got["stiffness m"] < 6e7
     first = np.flatnonzero(low[1:] & ~low[:-1]) + 1
     assert_allclose(500 * turned(got.time[first]) / 5, np.arange(1, first.size + 1), atol=0.01)

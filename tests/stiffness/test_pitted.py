@@ -160,7 +160,7 @@ def test_impact_law_of_the_spur_stage_runs(spur_stage):
         damping=9.6e3,
         backlash=1e-4,
     )
-    got = simulate(machine, 0.01, dt=2e-5, every=5, numba=False)
+    got = simulate(machine, 0.01, dt=2e-5, every=5)
     force = got["force sun_planet1"]
     assert force.min() >= 0
     assert force.max() > 1.2 * force[0]

@@ -122,3 +122,67 @@ def test_nothing_to_read(tmp_path):
     place.begin(tmp_path / "new", ABOUT)
     with pytest.raises(ValueError, match="no results yet"):
         shards.opened(Path(tmp_path / "new"))
+
+
+def test_a_copied_shard_is_found_and_named(folder):
+    content = (folder / "s1.parquet").read_bytes()
+    for name in ("s1 (copy).parquet", "s2.parquet"):
+        (folder / name).write_bytes(content)
+        for look in (shards.opened, shards.read, shards.check_shards):
+            with pytest.raises(ValueError, match=r"holds s1.*\.parquet and s.*\.parquet with the same rows: one is a copy"):
+                look(folder)
+        (folder / "s1 (copy).parquet").unlink(missing_ok=True)
+
+
+def test_shards_of_one_size_with_other_numbers_are_no_copies(folder):
+    """Their ends may agree too, where what differs are neither the smallest nor the largest numbers."""
+    for name, middle in (("a", 1.25), ("b", 1.5)):
+        rows = [{"case": 9, "k": [0.0, middle, 2.0]}]
+        shards.write_shard(folder, name, shards.encoded(shards.table(rows, FIELDS)))
+    one, other = ((folder / f"{name}.parquet").read_bytes() for name in "ab")
+    assert len(one) == len(other)
+    assert shards.read(folder, ["case"]).num_rows == 8
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("mean", "abc", "mean = 'abc', but the column holds numbers"),
+        ("mean", "1.5", "holds numbers"),
+        ("case", 1.5, "case = 1.5, but the column holds whole numbers"),
+        ("case", 2**70, "holds whole numbers of 64 bits"),
+        ("case", "3", "holds whole numbers"),
+        ("k", [[1.0], [2.0]], "holds lists of numbers"),
+        ("k", ["1", "2"], "holds lists of numbers"),
+        ("k", "a" * 500, r"k = 'aaa.* \.\.\., but the column holds lists of numbers"),
+        ("text", 5, "text = 5, but the column holds texts"),
+        ("text", "\ud800", "holds texts"),
+        ("any", object, "holds what JSON can say"),
+    ],
+)
+def test_a_value_that_its_column_cannot_hold_is_refused(name, value, told):
+    with pytest.raises(ValueError, match=told):
+        shards.table([{name: value}], FIELDS)
+
+
+def test_text_in_a_number_column_of_a_shard_is_refused_even_where_it_reads_as_a_number(folder):
+    fields = FIELDS | {"mean": Field("text")}
+    shards.write_shard(folder, "t", shards.encoded(shards.table([{"case": 7, "mean": "1.5"}], fields)))
+    for look in (shards.opened, shards.read, shards.check_shards):
+        with pytest.raises(ValueError, match=r"t\.parquet has other columns than the shards before it"):
+            look(folder)
+
+
+@pytest.mark.parametrize(
+    ("where", "told"),
+    [
+        ({"mean": "abc"}, "a column is compared with values of its own kind"),
+        ({"case": ("a", "b")}, "a column is compared with values of its own kind"),
+        ({"case": [1, "b"]}, "where: case = .* give a value, a range"),
+        ({"case": (1, 2, 3)}, "where: case = .* a range as a tuple of two"),
+        ({"case": object()}, "where: case = "),
+    ],
+)
+def test_conditions_that_a_column_cannot_have_are_refused(folder, where, told):
+    with pytest.raises(ValueError, match=told):
+        shards.read(folder, None, shards.where_of(where, list(FIELDS)))

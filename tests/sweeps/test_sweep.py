@@ -14,6 +14,7 @@ import pytest
 
 import gearfe as gf
 from gearfe.cli import main
+from gearfe.store import shards
 from gearfe.sweeps import run
 
 STUDY = {
@@ -116,7 +117,11 @@ def test_another_study_version_or_shard_is_noticed(undisturbed, tmp_path, monkey
     (tmp_path / "runs" / "about.json").write_text(json.dumps(about | {"made": about["made"] | {"source": "0" * 12}}))
     assert len(gf.sweep(small, tmp_path / "runs", workers=1, mixed=True)) == 2
     (tmp_path / "runs" / "about.json").write_text(json.dumps(about))
+    half = shards.encoded(shards.read(tmp_path / "runs").slice(0, 1))
     (tmp_path / "runs" / "other.parquet").write_bytes((tmp_path / "runs" / "block-000000.parquet").read_bytes())
+    with pytest.raises(ValueError, match=r"block-000000\.parquet and other\.parquet with the same rows"):
+        gf.sweep(small, tmp_path / "runs")
+    (tmp_path / "runs" / "other.parquet").write_bytes(half)
     with pytest.raises(ValueError, match=r"other\.parquet, which is none of this study's"):
         gf.sweep(small, tmp_path / "runs")
 

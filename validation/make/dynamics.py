@@ -69,12 +69,11 @@ SPEED = [
     "## Speed at that step",
     "",
     "Seconds of one processor per simulated second, the choice of the step and the outputs included, damaged tooth, best of",
-    "three; numpy: without numba, over 0.1 s, with the impact law 0.02 s, of which most goes into choosing the step. Wanted:",
-    "0.1 with numba and 1.5 without (herringbone), 0.1 (compound), 1 s for 10 s (planetary, 0.1 per second), and 1 s for the",
-    "impact law of the planetary stage.",
+    "three. Wanted: 0.1 (herringbone), 0.1 (compound), 1 s for 10 s (planetary, 0.1 per second), and 1 s for the impact law of",
+    "the planetary stage.",
     "",
-    "| machine | step, us | estimate | numba | numpy |",
-    "|---|---|---|---|---|",
+    "| machine | step, us | estimate | seconds |",
+    "|---|---|---|---|",
 ]
 
 
@@ -171,7 +170,7 @@ def _plain(made, like, rtol):
 
 
 def speeds(again=()):
-    """Lines: seconds of the processor per simulated second, with and without numba."""
+    """Lines: seconds of the processor per simulated second."""
     for name, build, duration in (
         ("herringbone, 55 degrees of freedom", lambda: stage(True), 1.0),
         ("compound_planetary, 39", lambda: compound(True), 1.0),
@@ -179,35 +178,29 @@ def speeds(again=()):
         ("helical_pitting, 8, impact law", lambda: helical(True), 1.0),
         ("planetary_pitting, 18, impact law, friction, pulses", article, 1.0),
     ):
-        row = kept(
-            "dynamics_speed", name, lambda build=build, duration=duration, name=name: speed(build(), duration, name), again
-        )
-        yield f"| {name} | {row['step']:.2g} | {row['estimate']:.1e} | {row['numba']:.3g} | {row['numpy']:.3g} |"
+        row = kept("dynamics_speed", name, lambda build=build, duration=duration: speed(build(), duration), again)
+        yield f"| {name} | {row['step']:.2g} | {row['estimate']:.1e} | {row['seconds']:.3g} |"
 
 
-def speed(made, duration, name):
-    """Seconds of the processor per simulated second of a machine, best of three with numba and one without."""
-    row = {}
-    for compiled in (True, False):
-        length = duration if compiled else min(duration / 10, 0.02 if "impact" in name else 0.1)
-        taken = []
-        for _ in range(4 if compiled else 1):  # the first run compiles
-            started = time.process_time()
-            got = simulate(made, length, numba=compiled)
-            taken.append((time.process_time() - started) / length)
-        row["numba" if compiled else "numpy"] = float(f"{min(taken):.3g}")
-    return row | {"step": 1e6 * got.stats["dt"], "estimate": got.stats["error"]}
+def speed(made, duration):
+    """Seconds of the processor per simulated second of a machine, best of three."""
+    taken = []
+    for _ in range(4):  # the first run compiles
+        started = time.process_time()
+        got = simulate(made, duration)
+        taken.append((time.process_time() - started) / duration)
+    return {"seconds": float(f"{min(taken):.3g}"), "step": 1e6 * got.stats["dt"], "estimate": got.stats["error"]}
 
 
 def integrators(again=()):
     """Lines: integrators on the herringbone stage; their rows go to the page of speed against error too."""
-    names = [f"fast, {how}, {1e6 * dt:g} us" for how in ("numpy", "numba") for dt in (5e-5, 2.5e-5, 1.25e-5)]
+    names = [f"fast, {1e6 * dt:g} us" for dt in (5e-5, 2.5e-5, 1.25e-5)]
     slow = (("RK45", 1e-4), ("RK45", 1e-6), ("DOP853", 1e-6), ("LSODA", 1e-4), ("DOP853", 1e-10))
     names += [f"{method}, rtol {rtol:g}" for method, rtol in slow]
     rows = []
     for name in names:
         row = kept("dynamics_integrators", name, lambda name=name: integrated(name), again)
-        family = name if name.count(",") == 0 else ", ".join(name.split(", ")[: name.count(",")])
+        family = name.split(", ")[0]
         rows.append((family, name, row["seconds"], math.nan, row["error"], int(name.endswith(" 25 us")), ""))
         yield f"| {name} | {row['seconds']:.3g} | {row['error']:.2g} |"
     save("speed_dynamics", f"Made by `python -m validation dynamics` on {machine.describe()}.", rows)
@@ -221,10 +214,10 @@ def integrated(name):
     if not name.startswith("fast"):
         got, seconds = _timed(model, name.split(",")[0], float(name.split()[-1]))
         return {"seconds": seconds / DURATION, "error": _error(got, want)}
-    dt, compiled = 1e-6 * float(name.split()[-2]), "numba" in name
-    got = simulate(model, DURATION, dt=dt, every=round(1e-4 / dt), numba=compiled)
+    dt = 1e-6 * float(name.split()[-2])
+    got = simulate(model, DURATION, dt=dt, every=round(1e-4 / dt))
     started = time.process_time()
-    simulate(model, 1.0, dt=dt, numba=compiled)
+    simulate(model, 1.0, dt=dt)
     return {"seconds": time.process_time() - started, "error": _error(got, want)}
 
 

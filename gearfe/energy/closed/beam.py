@@ -2,12 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.legendre import leggauss
 
+from geometry.kept import keeping
 from geometry.tooth.profile import cartesian, fillet, flank, form_point
 
 FOUNDATIONS = ("sainsot", "external", "printed", "none")
@@ -120,7 +120,7 @@ def along_flank(gear, roll):
     return Profile(x, y, -np.tan(angle), at / gear.r_b * np.cos(angle) * weights * span)
 
 
-@lru_cache(maxsize=128)
+@keeping(128)
 def along_fillet(gear, phi=math.pi / 2):
     """Fillet from rack tip angle `phi` [rad], pi/2 at the root circle, to the involute, as a `Profile` of shape ``(m,)``.
 

@@ -10,11 +10,11 @@ over the whole boundary of the sector, crack faces included.
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from scipy.sparse import coo_array
 
+from geometry.kept import keeping
 from geometry.mesh.triangle import BULGE, ENDS, GAUSS, jacobians, lagrange, lobatto, table
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
@@ -222,7 +222,7 @@ def _places(nodes, columns):
     return 2 * nodes + np.arange(2).reshape(2, *(1,) * max(np.ndim(nodes), np.ndim(columns))), columns
 
 
-@lru_cache(maxsize=1)
+@keeping(1)
 def _bulge_slope():
     """Matrix from the bulge at the points of an edge to the derivative of ``(1 - s**2) bulge`` there."""
     gauss, powers = GAUSS[0], np.arange(BULGE)

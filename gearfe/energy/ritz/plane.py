@@ -5,7 +5,7 @@ a hundred curved triangles of order 4; sectors without load are joined by doubli
 one tooth.
 """
 
-from functools import lru_cache, partial
+from functools import partial
 from numbers import Integral
 
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.polynomial import chebyshev
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
 from geometry.damage.crack import check_through
+from geometry.kept import keeping
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
@@ -135,7 +136,7 @@ def _arcs(gear, places):
     return arc_at(gear, gear.roll_a - gear.outward * away)
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def _places(gear):
     """Roll lengths of the loads: Chebyshev points in `_variable`, from root to tip."""
     return roll_at_arc(gear, _arcs(gear, chebyshev.chebpts2(PLACES)))
@@ -152,7 +153,7 @@ def _carry(places):
     return np.linalg.solve(nodes.T, chebyshev.chebvander(np.clip(places, -1, 1), PLACES - 1).T).T
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def _knots(gear):
     """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
     places = np.linspace(-1, 1, KNOTS)

@@ -1,26 +1,51 @@
-"""What the loops compiled by numba share: tables looked up, and products along memory."""
+"""Parts of `gearfe.motion.loop` that numba compiles: tables looked up, and products along memory; and how they are compiled."""
 
-from importlib.util import find_spec
+import contextlib
+import warnings
 
 import numpy as np
-
-if find_spec("numba"):
-    from numba import njit
-else:
-
-    def njit(**options):
-        """Leave the loops as they are: the same numbers, slowly (`gearfe.simulate` then uses `gearfe.motion.numpy_loop`)."""
-        return lambda function: function
+from numba import njit
+from numba.core import event
 
 
-@njit(cache=True, error_model="numpy")
+def compiled(function):
+    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write."""
+    try:
+        return njit(cache=True, error_model="numpy")(function)
+    except RuntimeError:  # no such folder: it is compiled by each process
+        return njit(error_model="numpy")(function)
+
+
+class _Announcer(event.Listener):
+    """Tells once that something is being compiled."""
+
+    def __init__(self, tell):
+        self.tell = tell
+
+    def on_start(self, event):
+        if self.tell:
+            tell, self.tell = self.tell, None
+            tell("compiling the integrator of vibration, which takes about 10 s once; the result is kept on the disk")
+
+    def on_end(self, event):
+        pass
+
+
+@contextlib.contextmanager
+def announced(tell=None):
+    """In the block, `tell` gets a line if something has to be compiled; by default it is a warning."""
+    with event.install_listener("numba:compile", _Announcer(tell or warnings.warn)):
+        yield
+
+
+@compiled
 def _cubic(cells, place, count, at):
     cell = min(int(at), count - 1)
     u, row = at - cell, place + cell
     return cells[row, 0] + u * (cells[row, 1] + u * (cells[row, 2] + u * cells[row, 3]))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _load(knots, low, high, t):
     """Straight between knots ``low <= i < high``, constant before and after them; a knot twice is a jump, and its end counts."""
     if t >= knots[high - 1, 0]:
@@ -36,7 +61,7 @@ def _load(knots, low, high, t):
     return knots[low, 1] + (t - knots[low, 0]) * (knots[low + 1, 1] - knots[low, 1]) / (knots[low + 1, 0] - knots[low, 0])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _paced(pace, t):
     """Turned time at time `t`, and the speed over the nominal one; both from the knots of `gearfe.machine.speed.Speed`."""
     last = pace.shape[0] - 1
@@ -56,7 +81,7 @@ def _paced(pace, t):
     return pace[low, 2] + own * (pace[low, 1] + now) / 2, now
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
@@ -101,7 +126,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
             now[row, 3 * m + rub + j] = _load(knots, knot_place[j], knot_place[j + 1], t)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def stage(out, base, at, columns, level, x, first):
     """``out = base[at:] + columns[level].T @ x[first:]``, four columns at a time, along memory."""
     n, last = out.size, first + columns.shape[1]

@@ -1,4 +1,8 @@
-"""The step of `gearfe.motion.exponential` and the halving of `gearfe.motion.numpy_loop` in scalar arithmetic, for numba.
+"""The fast path: one step of `gearfe.motion.exponential` after the other, in scalar arithmetic that numba compiles.
+
+A step in which a mesh opens or closes, or a load bends, is halved up to `gearfe.motion.propagator.LEVELS` times about it; under a
+law of contact that is not linear so is one whose estimate (`gearfe.motion.propagator.Plan.told`) is above what is allowed: flanks
+that come into contact are short, steep ramps of such a machine's coefficients, and all the rest of it is smooth.
 
 Loads that do not change are taken out of the stages and added at the end.
 """
@@ -9,11 +13,11 @@ import numpy as np
 
 from ..machine.contact_law import LAW, branches, contact_force
 from .exponential import UNSTABLE
-from .numba_lookup import lookup, njit, stage
-from .numpy_loop import GROW
+from .loop_parts import compiled, lookup, stage
 
+GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
 CHUNK = 64  # steps whose stiffnesses are looked up at once
-_force = njit(cache=True, error_model="numpy")(contact_force)
+_force = compiled(contact_force)
 
 
 class Matrices(NamedTuple):
@@ -35,7 +39,14 @@ class Matrices(NamedTuple):
 
 
 def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
-    """As `gearfe.motion.numpy_loop.run`."""
+    """Integrate `steps` steps from `z` at time `start`; states after each `every` steps, and counts.
+
+    Returns
+    -------
+    states : ndarray, shape (1 + steps // every, 2n)
+    stats : dict
+        ``steps`` done, ``rejected`` for a change of contact, ``losses`` of contact.
+    """
     count = np.diff(flat.knot_place)
     other = len(machine.meshes) + len(flat.rub_mesh)
     kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
@@ -59,11 +70,6 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
 
 
-def is_ready():
-    """Whether the loop is compiled and loaded in this process."""
-    return bool(getattr(_run, "signatures", ()))
-
-
 def _matrices(plan, kept, still):
     """`Matrices` of a plan with the columns `kept` of the forces, those that are constant having the values `still`."""
     wide = max(still.size, 1)  # nothing acts
@@ -82,7 +88,7 @@ def _matrices(plan, kept, still):
     return Matrices(E, Y, S, T, PF, add.ravel(), push.ravel(), W, plan.P)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total):
     """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``."""
     affine, rates, bent, stepped, pushing = kind
@@ -105,13 +111,13 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total):
         g[first + m + j] = now[row, 3 * m + j] * total[rub_mesh[j]]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _side(own, backlash):
     """1 where the front flanks touch, -1 the back ones, 0 none."""
     return 1.0 if own > 0 else (-1.0 if own < -backlash else 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _changed(side, x, now, row, laws):
     """Whether a mesh that can open is not on the side given."""
     m = side.size
@@ -121,7 +127,7 @@ def _changed(side, x, now, row, laws):
     return False
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _losses(side, x, now, row, laws):
     """Bring the sides up to date; how many meshes that can open have opened."""
     m, lost = side.size, 0
@@ -132,13 +138,13 @@ def _losses(side, x, now, row, laws):
     return lost
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _turned(first, middle, last):
     """How far a stiffness turns off its straight line within a step, part of it."""
     return (first - 2 * middle + last) / middle if middle > 0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _propagate(new, E, level, z):
     """``new[:n] += E[level] z`` of blocks along a diagonal."""
     if E.shape[2] == 2:
@@ -152,7 +158,7 @@ def _propagate(new, E, level, z):
                 new[i] += E[level, 0, i, j] * z[j]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled
 def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, W, P = matrices
@@ -163,17 +169,19 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
     total, side, edge, level = np.zeros(m), np.zeros(m), 0, 0
+    nil, one = np.int64(0), np.int64(1)  # numba compiles a function anew for every number written out
     allowed, scale = local
     held = allowed < np.inf
-    lookup(flat, now, 0, 1, start, h, 0.0, 0.0)
-    _losses(side, x0, now, 0, laws)
-    states[0] = z
+    lookup(flat, now, nil, one, start, h, 0.0, 0.0)
+    _losses(side, x0, now, nil, laws)
+    for i in range(n):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
+        states[0, i] = z[i]
     steps = (len(states) - 1) * every
     for step in range(steps):
         if step % CHUNK == 0:
             if not np.isfinite(np.sum(z)):
                 return step
-            lookup(flat, now, 0, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
+            lookup(flat, now, nil, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
         at, known = 0, -1  # `known`: the part whose end stands in the last row
         if not held:
             level = 0
@@ -198,40 +206,40 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                     lookup(flat, now, own, own + 1, start, h, low, 0.0)
                 lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
                 known = at + part
-            stage(y, add, 2 * p * level, Y, level, z, 0)
+            stage(y, add, 2 * p * level, Y, level, z, nil)
             if fresh:
                 for j in range(m + rub.size, f):  # a load may jump here
                     g[j] = now[row, 2 * m + j]
             else:
-                _forces(g, 0, x0, now, row, laws, kind, linear, rub, total)
+                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total)
             fresh = True
-            stage(x, y, 0, S, level, g, 0)
+            stage(x, y, nil, S, level, g, nil)
             change = opens and _changed(side, x, now, row + 1, laws)
             _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total)
-            stage(x, y, 0, S, level, g, 3 * f)
+            stage(x, y, nil, S, level, g, 3 * f)
             change = change or (opens and _changed(side, x, now, row + 1, laws))
             _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total)
-            stage(x, y, p, T, level, g, 0)
+            stage(x, y, p, T, level, g, nil)
             change = change or (opens and _changed(side, x, now, row + 2, laws))
             _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total)
             for i in range(f):
                 g[f + i] += g[3 * f + i]
-            stage(new, push, (n + p) * level, PF, level, g, 0)
+            stage(new, push, (n + p) * level, PF, level, g, nil)
             for i in range(p):  # the loads in y are those of x4, in new those of the end
                 end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
             away = 0.0
             if held:
-                _forces(last_g, 0, end, now, row + 2, laws, kind, linear, rub, total)
+                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total)
                 for i in range(f):
                     apart[i] = last_g[i] - g[2 * f + i]
-                stage(doubt, none, 0, W, level, apart, 0)
+                stage(doubt, none, nil, W, level, apart, nil)
                 for i in range(m):
                     scale = max(scale, abs(total[i]))
                     away = max(away, abs(doubt[i]))
                     apart[i] = _turned(now[row, i], now[row + 1, i], now[row + 2, i]) * total[i]
                 for i in range(m, f):
                     apart[i] = 0.0
-                stage(doubt, none, 0, W, level, apart, 0)
+                stage(doubt, none, nil, W, level, apart, nil)
                 for i in range(m):
                     away = max(away, abs(doubt[i]))
                 away = away / scale if scale > 0 else 0.0

@@ -1,0 +1,52 @@
+"""What the project's extras bring, read from its own metadata; what to say where an optional library is missing."""
+
+import functools
+import importlib.metadata
+import re
+
+COLLECTIONS = ("all", "docs", "test")  # extras that nobody installs for the sake of one library
+
+
+@functools.cache
+def requirements() -> dict[str, tuple[str, ...]]:
+    """Packages by extra, "" being what every install has; nothing if the project is not installed but run from its source."""
+    out: dict[str, list[str]] = {}
+    try:
+        lines = importlib.metadata.requires("gearfe") or []
+    except importlib.metadata.PackageNotFoundError:
+        lines = []
+    for line in lines:
+        extra = re.search(r"""extra *== *['"]([^'"]+)""", line)
+        name = re.match(r"[\w.-]+", line)
+        if name:
+            out.setdefault(extra[1] if extra else "", []).append(name[0])
+    return {extra: tuple(names) for extra, names in out.items()}
+
+
+def bringing(package: str) -> tuple[str, ...]:
+    """Extras that bring a package, without `COLLECTIONS`.
+
+    Examples
+    --------
+    >>> bringing("scikit-fem")
+    ()
+    """
+    return tuple(
+        extra
+        for extra, names in requirements().items()
+        if extra and extra not in COLLECTIONS and _plain(package) in map(_plain, names)
+    )
+
+
+def _plain(name):
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def command(package: str) -> str:
+    """How to install an optional package: by itself, or by the extras that bring it."""
+    return ", or ".join([f"pip install {package}", *(f"pip install 'gearfe[{extra}]'" for extra in bringing(package))])
+
+
+def missing(package: str, error: ImportError) -> RuntimeError:
+    """Return what to raise where an optional package cannot be imported: a RuntimeError with the command for it."""
+    return RuntimeError(f"this needs {package} ({error}): {command(package)}")

@@ -1,0 +1,40 @@
+"""Results kept by their arguments and handed to every caller: their arrays can be read, not written to."""
+
+from collections.abc import Callable
+from functools import lru_cache, wraps
+from types import SimpleNamespace
+from typing import Any, ParamSpec, TypeVar
+
+import numpy as np
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def keeping(most: int) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Decorate a function: its last `most` results are kept, their arrays set read-only.
+
+    Two threads that ask for the same at once may both compute it, which gives the same numbers.
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        @wraps(function)
+        def sealed(*args: P.args, **kwargs: P.kwargs) -> R:
+            out = function(*args, **kwargs)
+            seal(out)
+            return out
+
+        return lru_cache(maxsize=most)(sealed)  # type: ignore[return-value]
+
+    return decorate
+
+
+def seal(value: Any) -> None:
+    """Set arrays read-only, also those in tuples, lists and namespaces."""
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    elif isinstance(value, (tuple, list)):
+        for one in value:
+            seal(one)
+    elif isinstance(value, SimpleNamespace):
+        seal(list(vars(value).values()))
