@@ -30,7 +30,7 @@ from .rows import RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
-FINER = 3  # times as many where a tip presses into a fillet
+FINER = 2  # times as many where a tip presses into a fillet
 MARGIN = 2.25  # of the load whose contacts the table reaches: contacts 1.5 times as wide
 PLACES = 17  # abscissae of the table at each end of the path
 BETWEEN = 200  # abscissae at which is looked for what touches
@@ -147,11 +147,12 @@ def _table(pair, materials, line_load, end, span, cache):
         loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    pressed_in = c * MARGIN * line_load * (np.log(2 * pair.gear_1.m_n / width) + 0.5)
-    with np.errstate(invalid="ignore"):
-        also = (mesh.found.corner[:, column] > 0) & (mesh.found.corner_gap[:, :, column] - mesh.found.gap[:, column] < pressed_in)
-    taking = ((also | (np.arange(4)[:, None] == touches - 1)) * (1 << np.arange(4))[:, None]).sum(axis=0)
-    made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i]) for i in np.flatnonzero(there).tolist()])
+    # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
+    both = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
+    taking, _, beside = (np.where(both, values[:, column], 0) for values in mesh._corners(line_load, np.isfinite(mesh.found.gap)))
+    taking = taking.astype(int) | (1 << (touches - 1))
+    at = np.flatnonzero(there).tolist()
+    made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], width=float(beside[i])) for i in at])
     there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
     away = away[there]

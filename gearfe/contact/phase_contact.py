@@ -171,9 +171,14 @@ class PhaseContact:
         return found
 
     def unloaded(self, found):
-        """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
-        best = [int(np.argmin(cells.gap)) for cells in found]
-        if self.flanks is None and not any(cells.gap[k] for cells, k in zip(found, best, strict=True)):
+        """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap.
+
+        How deep pits are is part of it only where flanks are modified.
+        """
+        cos = math.cos(self.beta_b)
+        gaps = [cells.gap - (cells.floor / cos if self.flanks is None else 0.0) for cells in found]
+        best = [int(np.argmin(gap)) for gap in gaps]
+        if self.flanks is None and max(abs(gap[k]) for gap, k in zip(gaps, best, strict=True)) < 1e-12 * self.pair.p_bt:
             return np.zeros(len(found))
         names = ("half", "order", "nominal", "z", "width", "floor")
         half, order, nominal, z, width, floor = (
@@ -190,7 +195,7 @@ class PhaseContact:
             gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
             least = np.argmin(gap, axis=1)
             low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
-        return gap.min(axis=1) + floor / math.cos(self.beta_b)
+        return gap.min(axis=1) + (0.0 if self.flanks is None else floor / cos)
 
     def _cells(self, phases, reaches, closings):
         """`Cells` of each phase, None where there are none."""

@@ -56,7 +56,7 @@ def gaps(pair):
     return out
 
 
-@lru_cache(maxsize=64)
+@keeping(64)
 def cut(pair):
     """How far on the path itself, from its start and from its end [mm], a tip cuts into its mate's fillet; 0 where none does."""
     start, end = pair.path

@@ -95,6 +95,12 @@ def _tops(marks, ends, offsets):
     return np.concatenate(out)
 
 
+def _apart(places, least, last):
+    """Rising places without those closer than `least` [mm] to the one before, or to the one after to keep the `last`."""
+    away = np.diff(places) >= least * (1 - 1e-9)
+    return places[np.append(away, True) if last else np.append(True, away)]
+
+
 def _knots(tops, ends):
     """Start, top and end ``(3, n)`` of the hats; those at an end of contact are one-sided, others need a neighbour."""
     start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
@@ -169,7 +175,7 @@ def _placed(contact, one, host):
     offsets = _offsets(gear.m_n, min(flexible.fine for flexible in contact.flexibility), one.zone, one.finest)
     # its own tip ends a side above; the mate's tip faces the lowest place that is in contact
     ends = 2 - host in marks, 1 + host in marks
-    places = np.unique(list(marks.values()))
+    places = _apart(np.unique(list(marks.values())), offsets[1], ends[1])
     if ends[0]:
         places = places[places >= marks[2 - host]]
     if ends[1]:
@@ -183,5 +189,7 @@ def _placed(contact, one, host):
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
-    tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
+    tops = _apart(
+        np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)]), offsets[1], ends[1]
+    )
     return _knots(tops, ends)

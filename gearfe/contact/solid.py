@@ -32,12 +32,12 @@ class Contact3D:
 
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / (approach - unloaded)`` [N/m]; `approach` (phases,)
     of the gears along the transverse line of action [mm]; `unloaded` (phases,) the approach at which they first touch without
-    load [mm], 0 of involutes on the path whose tips do not cut into their mate's fillets; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
-    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
-    of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other; `fillet` those
-    at which a tip presses into its mate's fillet;
-    `error` (phases,) differences of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,)
-    ``d force / d approach`` of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
+    load [mm], 0 of involutes on the path whose tips do not cut into their mate's fillets; `order` (pairs,) and `load` (phases,
+    pairs) the share of each tooth pair in the transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution
+    along the lines; `dofs` the unknowns of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept
+    from passing through each other; `fillet` those at which a tip presses into its mate's fillet; `error` (phases,) differences
+    of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach`` of what
+    pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
     of the hubs give way [mm], the mean over the loads.
     """
 

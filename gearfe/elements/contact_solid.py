@@ -95,8 +95,8 @@ class Touching:
     """Tooth pairs that may touch, n of them.
 
     `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths
-    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side, `fillet` by gear whether its fillet
-    touches too: a tip in it, or the corner that undercut leaves between flank and fillet.
+    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side, `fillet` by gear whether its
+    fillet touches too: a tip in it, or the corner that undercut leaves between flank and fillet.
     """
 
     order: list[int]
@@ -211,7 +211,7 @@ def write_contact_solid(
 
 
 def _faces(pair, part, found, number, k):
-    """Faces ``(corners, n)`` of a gear that may touch in a tooth pair: the flank, and the fillet if that is hexahedra and touches."""
+    """Faces ``(corners, n)`` of a gear that may touch in a tooth pair: the flank, and of hexahedra the fillet if that touches."""
     gear = (pair.gear_1, pair.gear_2)[number]
     tooth = (1, -1)[number] * found.order[k] % gear.z
     out = part.faces[f"flank {tooth}"]
