@@ -189,7 +189,5 @@ def _placed(contact, one, host):
     steps = middle + one.width / WITHIN * np.arange(-2 * WITHIN, 2 * WITHIN + 1)
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
-    tops = _apart(
-        np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)]), offsets[1], ends[1]
-    )
-    return _knots(tops, ends)
+    tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
+    return _knots(_apart(tops, offsets[1], ends[1]), ends)
