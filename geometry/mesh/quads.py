@@ -240,7 +240,9 @@ def _half(gear, size, away, own, mouth, patches):
     root = size["fillet"] if away == 0 else size["root"]
     out = [("tip", np.full(tip.size, gear.r_a), tip, tip), ("flank", *flank(gear, rolls), rolls)]
     mark, fine = (below, []) if mouth is None else (mouth[0], [(mouth[0], mouth[0], 2 * mouth[1])])
-    fine += [(top + a - start, top + min(b - start, 0.0), 2 * s) for a, b, s in (patches if own else ()) if a < start]
+    fine += [
+        (top + a - start, top + min(b - start, 0.0), 2 * s) for a, b, s in (patches if own else ()) if a < start - 1e-6 * gear.m_n
+    ]
     for name, low, high in (("root" if mouth is None else "fillet", mark, top), ("root", below, mark)):
         if high - low > 1e-6 * gear.m_n:
             arcs = _quarters(spaced(low, high, 2 * root, fine, 1, GROWTH)[::-1])

@@ -4,8 +4,9 @@ import numpy as np
 
 from gearfe.files import written
 
+from ..shared import outlines_three
+from ..shared.arbiter import kept
 from ..shared.arbiter.beside import beside
-from ..shared.arbiter.kept import reference
 from ..shared.places import PAGES
 
 __all__ = ["reference", "run"]
@@ -22,6 +23,12 @@ come near. They were chosen before any was pressed. Its mesh error is the larger
 `python -m validation outlines` makes this page; `--reference` presses the cases that are not on file.
 
 """
+
+
+def reference():
+    """Press the cases that the tables lack: sections by the arbiter, whole gears by CalculiX."""
+    kept.reference()
+    outlines_three.reference()
 
 
 def run():
@@ -53,6 +60,7 @@ def run():
                 f"{found['estimate']:.3f} | {row['places']} |\n"
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
+    parts.append(outlines_three.section())
     with written(PAGE) as target, open(target, "w", encoding="utf-8") as file:
         file.write("".join(parts))
     print(f"wrote {PAGE.name}")
