@@ -1,4 +1,4 @@
-"""Decks of pairs in three dimensions where an undercut flank touches with the edge below it: faces, nodes and who is the slave."""
+"""Decks of pairs in three dimensions where an undercut flank touches with the edge below it: faces, nodes, the slave."""
 
 import math
 

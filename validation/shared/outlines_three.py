@@ -26,12 +26,12 @@ HEAD = f"""
 
 Three undercut helical pairs (m_n 2 mm, x 0, 20 degrees, {LOAD:g} N/mm, both gears held at their bores) at phase {PHASE:g}: the
 whole line of tooth pair 0 lies before the start of the path, where only the edge that undercut leaves on the pinion touches.
-They were chosen before any was pressed; the phase is that of sixteen at which `ritz3d` and its forerunner, which did not know
-this edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that
-`ritz3d` has under the load; the pinion's fillets are part of the contact and meshed as finely as its flanks. CalculiX knows no
-path and no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the difference rises; two meshes
-do not tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and fillet; `layers`: of elements
-along the width. 'Path alone': `ritz3d` without contact off the path.
+They were chosen before any was pressed; the phase is one of those at which `ritz3d` and its forerunner, which did not know this
+edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that `ritz3d`
+has under the load; the pinion's fillets are part of the contact and meshed as finely as its flanks. CalculiX knows no path and
+no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the difference rises; two meshes do not
+tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and fillet; `layers`: of elements along the
+width. 'Path alone': `ritz3d` without contact off the path.
 
 """
 NAMES = ("pair", "mesh", "nodes", "`ritz3d` [N/um]", "path alone", "CalculiX", "difference")
