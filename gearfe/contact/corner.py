@@ -142,14 +142,14 @@ def _table(pair, materials, line_load, end, span, cache):
     touches = np.where(mesh.found.corner[:, column] > 0, mesh.found.corner[:, column], corner)
     there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
-    radius, fillets = plain_radius(pair, *rolls), in_fillet(pair, *rolls).any()
-    if fillets:  # what presses into a hollow changes more with the load
+    radius = plain_radius(pair, *rolls)
+    if inside:  # what presses into a hollow changes more with the load
         loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
     width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
     # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
     both = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
-    taking, _, beside = (np.where(both, values[:, column], 0) for values in mesh._corners(line_load, np.isfinite(mesh.found.gap)))
+    taking, _, beside = (np.where(both, values[:, column], 0) for values in mesh.corners(line_load, np.isfinite(mesh.found.gap)))
     taking = taking.astype(int) | (1 << (touches - 1))
     at = np.flatnonzero(there).tolist()
     made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], width=float(beside[i])) for i in at])

@@ -94,7 +94,7 @@ class PairContact:
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
-        corner, zone, width = self._corners(line_load, possible)
+        corner, zone, width = self.corners(line_load, possible)
         line, closing, tangent, done = line_contacts(
             self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, self.tilt
         )
@@ -231,7 +231,7 @@ class PairContact:
         width = float(half_width(line_load, max(radius, 1e-3 * gear.m_n), self.modulus)) / RESOLVED
         return 0.0 if width > finest_hat(gear.m_n, fine) else gear.m_n * 2.0 ** math.floor(math.log2(width / gear.m_n))
 
-    def _corners(self, line_load, possible):
+    def corners(self, line_load, possible):
         """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.
 
         A corner takes part if the contact of the flanks reaches it, or if it is a second place of contact of the same pair and
