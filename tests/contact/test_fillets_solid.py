@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.contact.pieces import cut
+from gearfe.contact.rows import _apart
 from gearfe.contact.solid import pair_stiffness3d
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -59,3 +60,9 @@ def test_a_helix_of_a_thousandth_of_a_degree_changes_nothing():
     run = {"phases": [0.02, 0.08], "refine": 0.6, "method": "ritz3d"}
     helical, spur = (gf.mesh_stiffness(pair_of(8.0, degrees), 800.0, STEEL, **run).k for degrees in (0.001, 0.0))
     assert_allclose(helical, spur, rtol=1e-4)
+
+
+def test_corners_that_nearly_coincide_are_one_place_and_ends_stay():
+    places = np.array([0.0, 1e-9, 1.0, 2.0 - 1e-9, 2.0])
+    assert _apart(places, 1e-6, False).tolist() == [0.0, 1.0, 2.0 - 1e-9]
+    assert _apart(places, 1e-6, True).tolist() == [1e-9, 1.0, 2.0]

@@ -96,7 +96,8 @@ def section():
     """The section of the page, from the table alone."""
     known = rows_of(TABLE)
     lines = ["| " + " | ".join(NAMES) + " |\n", "|---" * len(NAMES) + "|\n"]
-    for row in sorted(known, key=lambda row: ([*cases()].index(row["case"]), int(row["nodes"]))):
+    meshes = [told(mesh) for mesh in MESHES]
+    for row in sorted(known, key=lambda row: ([*cases()].index(row["case"]), meshes.index(row["mesh"]))):
         cells = [row["case"], row["mesh"], f"{int(row['nodes']):,}", row["ours"], row["path only"], row["theirs"]]
         cells += [f"{100 * (float(row['ours']) / float(row['theirs']) - 1):+.2f} %", row["at corners"], row["theirs there"]]
         cells += [f"{100 * float(row['forces apart']):+.2f} %", f"{float(row['seconds']):.0f}"]
