@@ -11,6 +11,8 @@ from geometry.pair.contacts import touching
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import first_touch
 
+from .pieces import cut
+
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
@@ -99,7 +101,7 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
     *named, count = (np.array(values) for values in zip(*number, strict=True))
     phase, half, order, corner, floor = (np.repeat(values, count) for values in named)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
-    there, radius = corner > 0, np.zeros(z.size)
+    there, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
     if there.any():
         roll_1[there], roll_2[there], gap[there], corner[there] = touching(pair, nominal[there])[:4]
     if flanks is not None:
@@ -109,6 +111,15 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
     whole = Cells(half, order, z, width, depth, nominal, roll_1, roll_2, gap, corner, floor.astype(float), radius)
     kept = np.isfinite(gap)
     return (whole, phase) if kept.all() else (whole.some(kept), phase[kept])
+
+
+def _cut(pair, nominal):
+    """Whether a tip may cut into its mate's fillet while flanks touch at `nominal` [mm], on the path or beyond it."""
+    after, before = cut(pair)
+    out = np.zeros(nominal.size, dtype=bool)
+    if after:
+        out |= nominal < pair.path[0] + after
+    return out | (nominal > pair.path[1] - before) if before else out
 
 
 def _edges(piece, finest, step, slope):

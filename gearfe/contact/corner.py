@@ -16,6 +16,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from geometry.pair.contacts import TIP, end_corners, touching
 from geometry.tooth.profile import arc_at
+from geometry.tooth.side import on_fillet
 
 from ..energy.ritz.plane import flexibility
 from ..energy.ritz.plane_strain import plane_hats
@@ -23,16 +24,17 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
+from .pieces import AT_END, cut
 from .plane import BEYOND, CORNER, PairContact
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
 LOADS = 2.0 ** np.arange(-9, 5)  # line loads of the table, of the even one
 LIGHT = 16.0  # times lighter loads than the even one, for which hats are fine enough
+FINER = 2  # times as many where a tip presses into a fillet
 MARGIN = 2.25  # of the load whose contacts the table reaches: contacts 1.5 times as wide
 PLACES = 17  # abscissae of the table at each end of the path
 BETWEEN = 200  # abscissae at which is looked for what touches
-AT_END = (2, 3), (1, 4)  # numbers of the corners that touch before the start and after the end of the path
 
 
 class CornerLaw:
@@ -86,6 +88,17 @@ class CornerLaw:
         return out
 
 
+def in_fillet(pair, roll_1, roll_2):
+    """Whether a tip touches the mate's fillet, by places of both gears."""
+    return on_fillet(pair.gear_1, roll_1) | on_fillet(pair.gear_2, roll_2)
+
+
+def plain_radius(pair, roll_1, roll_2):
+    """Relative radius of curvature of involutes [mm]; of a tip in a fillet, where no parabola counts, that at the pitch point."""
+    radius, middle = pair.relative_radius(roll_1, roll_2), pair.relative_radius(*pair.curvature_radii(pair.pitch_phase))
+    return np.where((radius > 0) & ~in_fillet(pair, roll_1, roll_2), radius, np.abs(middle))
+
+
 def _reached(pair, end, line_load, modulus):
     """How far before an end of the path [mm] contacts reach the corner there, by the rule of the plane (`CORNER`)."""
     number, sign, limit = end_corners(pair)[end], (-1, 1)[end], pair.path[end]
@@ -116,9 +129,11 @@ def _table(pair, materials, line_load, end, span, cache):
     finest = mesh.finest(line_load / LIGHT) and max(mesh.finest(line_load / LIGHT), LEAST * pair.gear_1.m_n)
     least = (RESOLVED * (finest or finest_hat(pair.gear_1.m_n, bodies[0].fine)) / unit) ** 2
     line_load *= 2.0 ** max(math.ceil(math.log2(least / line_load)), 0)
+    inside = cut(pair)[end]
     near = _reached(pair, end, MARGIN * line_load, modulus)
     low, high = min(span[0], -near), max(span[1], near)
     away = np.append(low + (high - low) * np.linspace(0, 1, PLACES) ** 1.5, 0.0)
+    away = np.append(away, np.linspace(-inside, 0.0, PLACES) if inside else [])  # in a fillet, where more changes
     between = low + (high - low) * np.linspace(0, 1, BETWEEN)
     changes = np.flatnonzero(np.diff(touching(pair, limit + sign * between).corner))  # where another corner takes over
     away = np.unique(np.concatenate([away, between[changes], between[changes + 1]]))
@@ -129,18 +144,26 @@ def _table(pair, materials, line_load, end, span, cache):
     loads = loads[loads >= least]
     touches = np.where(mesh.found.corner[:, column] > 0, mesh.found.corner[:, column], corner)
     there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
-    width = half_width(MARGIN * line_load, mesh.radius[:, column], modulus)
+    rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
+    radius = plain_radius(pair, *rolls)
+    if inside:  # what presses into a hollow changes more with the load
+        loads = np.exp2(np.linspace(*np.log2(loads[[0, -1]]), FINER * (loads.size - 1) + 1))
+    width = half_width(MARGIN * line_load, radius, modulus)
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
-    made = mesh.rows([Wanted(i, column, 1 << int(touches[i] - 1), zone[i], finest) for i in np.flatnonzero(there).tolist()])
+    # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
+    both = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
+    taking, _, beside = (np.where(both, values[:, column], 0) for values in mesh.corners(line_load, np.isfinite(mesh.found.gap)))
+    taking = taking.astype(int) | (1 << (touches - 1))
+    at = np.flatnonzero(there).tolist()
+    made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], finest, float(beside[i])) for i in at])
     there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
     away = away[there]
     if away.size < 2:
         return None
-    rolls = mesh.found.roll_1[there, column], mesh.found.roll_2[there, column]
-    smooth = sum(_read(*own, roll, cache) for own, roll in zip(gears, rolls, strict=True))
+    smooth = sum(_read(*own, roll[there], cache) for own, roll in zip(gears, rolls, strict=True))
     closing = pressed(rows, loads) - mesh.found.gap[there, column]
-    width = half_width(loads[:, None], mesh.radius[there, column], modulus)
+    width = half_width(loads[:, None], radius[there], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 

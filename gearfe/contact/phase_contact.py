@@ -15,7 +15,7 @@ from ..steps import steps
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
 from .cells import Cells, cells_of
-from .corner import CornerLaw
+from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way, hubs_of
 from .joined_lines import System
 from .kink_law import KinkLaw
@@ -171,10 +171,15 @@ class PhaseContact:
         return found
 
     def unloaded(self, found):
-        """Approach at which the flanks first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap."""
-        if self.flanks is None:
+        """Approach at which the gears first touch, from the `Cells` of each phase ``(phases,)`` [mm]: the least gap.
+
+        How deep pits are is part of it only where flanks are modified.
+        """
+        cos = math.cos(self.beta_b)
+        gaps = [cells.gap - (cells.floor / cos if self.flanks is None else 0.0) for cells in found]
+        best = [int(np.argmin(gap)) for gap in gaps]
+        if self.flanks is None and max(abs(gap[k]) for gap, k in zip(gaps, best, strict=True)) < 1e-12 * self.pair.p_bt:
             return np.zeros(len(found))
-        best = [int(np.argmin(cells.gap)) for cells in found]
         names = ("half", "order", "nominal", "z", "width", "floor")
         half, order, nominal, z, width, floor = (
             np.array([getattr(c, n)[k] for c, k in zip(found, best, strict=True)]) for n in names
@@ -184,12 +189,13 @@ class PhaseContact:
         for _ in range(ROUNDS):
             steps = np.linspace(low, high, FINE, axis=1)
             at = (nominal[:, None] - slope[:, None] * steps).ravel()
-            known = touching(self.pair, at)[2]
-            met = first_touch(self.pair, self.flanks, at, np.repeat(order, FINE), known, (z[:, None] + steps).ravel())
-            gap, rows = met.gap.reshape(-1, FINE), np.arange(order.size)
+            gap = touching(self.pair, at).gap
+            if self.flanks is not None:
+                gap = first_touch(self.pair, self.flanks, at, np.repeat(order, FINE), gap, (z[:, None] + steps).ravel()).gap
+            gap, rows = gap.reshape(-1, FINE), np.arange(order.size)
             least = np.argmin(gap, axis=1)
             low, high = steps[rows, np.maximum(least - 1, 0)], steps[rows, np.minimum(least + 1, FINE - 1)]
-        return gap.min(axis=1) + floor / math.cos(self.beta_b)
+        return gap.min(axis=1) + (0.0 if self.flanks is None else floor / cos)
 
     def _cells(self, phases, reaches, closings):
         """`Cells` of each phase, None where there are none."""
@@ -266,9 +272,9 @@ class PhaseContact:
 
     def _radius(self, cells):
         """Relative radii of curvature of cells at right angles to the flanks [mm]."""
-        radius = self.pair.relative_radius(cells.roll_1, cells.roll_2)
-        radius = np.where(radius > 0, radius, self.radius)
-        return np.where(cells.radius > 0, cells.radius, radius) / math.cos(self.beta_b)
+        radius = plain_radius(self.pair, cells.roll_1, cells.roll_2)
+        modified = (cells.radius > 0) & ~in_fillet(self.pair, cells.roll_1, cells.roll_2)
+        return np.where(modified, cells.radius, radius) / math.cos(self.beta_b)
 
 
 def _same(one, two):

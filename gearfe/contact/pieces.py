@@ -14,6 +14,7 @@ from geometry.pair.contacts import FORM, end_corners, near_pitches, touching
 from geometry.pair.lines import covered
 
 SAMPLES = 400  # of the gap beyond the path, over a base pitch
+AT_END = (2, 3), (1, 4)  # numbers of the corners that touch at the start and at the end of the path
 PARTS = 4  # straight parts of a line beyond the path, where pits are looked for
 
 
@@ -53,6 +54,16 @@ def gaps(pair):
         own = slice(first, met[-1] + 1 if met.size else gap.size)
         out.append((away[own], np.minimum.accumulate(gap[own][::-1])[::-1]))
     return out
+
+
+@keeping(64)
+def cut(pair):
+    """How far on the path itself, from its start and from its end [mm], a tip cuts into its mate's fillet; 0 where none does."""
+    start, end = pair.path
+    nominal = np.linspace(start, end, max(2, math.ceil(pair.eps_alpha * SAMPLES)))
+    found, step = touching(pair, nominal), nominal[1] - nominal[0]
+    away = nominal - start, end - nominal
+    return tuple(max((away[k][(found.gap < 0) & np.isin(found.corner, AT_END[k])] + step).tolist(), default=0.0) for k in (0, 1))
 
 
 def beyond(pair, reach):

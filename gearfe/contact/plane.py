@@ -95,7 +95,7 @@ class PairContact:
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
-        corner, zone, width = self._corners(line_load, possible)
+        corner, zone, width = self.corners(line_load, possible)
         line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, tilt)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
@@ -250,7 +250,7 @@ class PairContact:
         default = finest_hat(1.0, min(flexible.fine for flexible in self.flexibility))
         return 0.0 if finest > default else gear.m_n * 2.0 ** math.floor(math.log2(finest))
 
-    def _corners(self, line_load, possible):
+    def corners(self, line_load, possible):
         """Corners that take part in the contact of each pair as a sum of bits, and `zone` and `width` of their `Wanted`.
 
         A corner takes part if the contact of the flanks reaches it, or if it is a second place of contact of the same pair and

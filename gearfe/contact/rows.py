@@ -97,6 +97,12 @@ def _tops(marks, ends, offsets):
     return np.concatenate(out)
 
 
+def _apart(places, least, last):
+    """Rising places without those closer than `least` [mm] to the one before, or to the one after to keep the `last`."""
+    away = np.diff(places) >= least * (1 - 1e-9)
+    return places[np.append(away, True) if last else np.append(True, away)]
+
+
 def _knots(tops, ends):
     """Start, top and end ``(3, n)`` of the hats; those at an end of contact are one-sided, others need a neighbour."""
     start, stop = np.append(tops[0], tops[:-1]), np.append(tops[1:], tops[-1])
@@ -201,7 +207,7 @@ def _placed(contact, one, host):
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
-    places = np.unique(list(marks.values()))
+    places = _apart(np.unique(list(marks.values())), offsets[1], ends[1])
     if ends[0]:
         places = places[places >= marks[2 - host]]
     if ends[1]:
@@ -216,4 +222,4 @@ def _placed(contact, one, host):
     tops = _tops(np.unique([*places, middle]), ends, offsets)
     tops = np.append(tops[np.abs(tops - middle) > steps[-1] - middle], steps)
     tops = np.sort(tops[(tops >= places[0] if ends[0] else True) & (tops <= places[-1] if ends[1] else True)])
-    return _knots(tops, ends)
+    return _knots(_apart(tops, offsets[1], ends[1]), ends)

@@ -19,6 +19,7 @@ from ..flexibility.solved import solved_gears
 from ..steps import part, steps
 from .bodies import bodies_of
 from .cells import Cells
+from .corner import in_fillet
 from .phase_contact import PhaseContact
 
 STEP = 0.2  # longest cell along the width [m_n]
@@ -30,12 +31,13 @@ class Contact3D:
     """Contact of a pair at some phases.
 
     `phase` (phases,): of the end that touches first; `k` (phases,) ``force / (approach - unloaded)`` [N/m]; `approach` (phases,)
-    of the gears along the transverse line of action [mm]; `unloaded` (phases,) the approach at which modified flanks first touch
-    without load [mm], 0 of involutes; `order` (pairs,) and `load` (phases, pairs) the share of each tooth pair in the
-    transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution along the lines; `dofs` the unknowns
-    of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept from passing through each other;
-    `error` (phases,) differences of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,)
-    ``d force / d approach`` of what pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
+    of the gears along the transverse line of action [mm]; `unloaded` (phases,) the approach at which they first touch without
+    load [mm], 0 of involutes on the path whose tips do not cut into their mate's fillets; `order` (pairs,) and `load` (phases,
+    pairs) the share of each tooth pair in the transverse force [N]; `cells` (phases,) tuple of `Cells`, the load distribution
+    along the lines; `dofs` the unknowns of pinion and wheel; `closed` the phases at which faces of cracks touched and were kept
+    from passing through each other; `fillet` those at which a tip presses into its mate's fillet; `error` (phases,) differences
+    of k from those of longer cells and of coarser bodies [N/m], or None; `k_tangent` (phases,) ``d force / d approach`` of what
+    pushes at this force [N/m]; `supports` (phases,) the part of the approach that the supports
     of the hubs give way [mm], the mean over the loads.
     """
 
@@ -47,6 +49,7 @@ class Contact3D:
     cells: tuple[Cells, ...]
     dofs: tuple[int, int]
     closed: tuple[int, ...] = ()
+    fillet: tuple[int, ...] = ()
     error: NDArray[np.float64] | None = None
     unloaded: NDArray[np.float64] | None = None
     k_tangent: NDArray[np.float64] | None = None
@@ -205,8 +208,9 @@ def _solved(contact, phase, bodies):
     for i, one in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))
     closed = tuple(i for i, one in enumerate(own) if one.closed)
+    fillet = tuple(i for i, one in enumerate(cells) if (in_fillet(contact.pair, one.roll_1, one.roll_2) & (one.load > 0)).any())
     unloaded = contact.unloaded(cells)
     k = 1e3 * contact.force / (approach - unloaded)
     given = None if contact.hubs is None else np.array([one.given for one in own])
-    more = {"closed": closed, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
+    more = {"closed": closed, "fillet": fillet, "unloaded": unloaded, "k_tangent": tangent, "supports": given}
     return Contact3D(phase, k, approach, orders, load, cells, dofs, **more)

@@ -43,11 +43,13 @@ def write_contact_inp(
 
     Frictionless surface-to-surface contact of all flanks that may touch, with a linear pressure-overclosure of `penalty` times
     E (50 is 0.8 % too soft, 500 is not distinguishable from more); large displacements, so that the flanks touch where the
-    turned gears have them. The gear whose tip corner touches is the slave side of its pair, with the finer edges there: other
-    choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from which `ContactDeck.force` gives the load.
+    turned gears have them. The gear whose corner touches, of a tip or at the foot of an undercut flank, is the slave side of its
+    pair, with the finer edges there: other choices are up to 2 % too stiff. ``ccx -i NAME`` prints the bores' reactions, from
+    which `ContactDeck.force` gives the load.
 
     Without `face`: the transverse section in second-order triangles (CPE6), plane strain. With it: both whole gears of their
-    finite width, real teeth, in 20-node hexahedra (C3D20R), finer along the contact lines; a gear with pits, and its mate if that
+    finite width, real teeth, in 20-node hexahedra (C3D20R), finer along the contact lines, fillets among the faces in contact
+    where the edge of an undercut flank or the mate's tip touches there; a gear with pits, and its mate if that
     is undamaged, in second-order tets (C3D10) with the pits cut out as holes.
 
     Parameters

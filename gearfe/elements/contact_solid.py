@@ -15,12 +15,13 @@ from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
-from geometry.pair.contacts import Contacts
+from geometry.pair.contacts import FORM, Contacts
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import first_touch
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import FlankForm
 from geometry.tooth.profile import arc_at, cartesian, flank
+from geometry.tooth.side import on_fillet
 
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
@@ -94,7 +95,8 @@ class Touching:
     """Tooth pairs that may touch, n of them.
 
     `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths
-    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side.
+    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side, `fillet` by gear whether its
+    fillet touches too: a tip in it, or the corner that undercut leaves between flank and fillet.
     """
 
     order: list[int]
@@ -102,6 +104,7 @@ class Touching:
     rolls: tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]
     width: list[float]
     slave: list[int]
+    fillet: tuple[list[bool], list[bool]]
 
 
 def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> NDArray[np.float64]:
@@ -117,7 +120,7 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
     found = pair.contacts((nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
     if forms is not None:
         found = _modified(pair, found, heights, forms)
-    out = Touching([], [], ([], []), [], [])
+    out = Touching([], [], ([], []), [], [], ([], []))
     for k, order in enumerate(found.order.tolist()):
         near = found.gap[:, k] < REACH * approach
         if not near.any():
@@ -128,8 +131,11 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
         out.rolls[0].append(rolls[0])
         out.rolls[1].append(rolls[1])
         out.width.append(float(half_width(line_load, float(found.radius[near, k].max()), contact_modulus(materials))))
-        tips = [np.isclose(roll, gear.roll_a, atol=0).any() for gear, roll in zip((pair.gear_1, pair.gear_2), rolls, strict=True)]
-        out.slave.append(int(tips[1] and not tips[0]))
+        corners = [np.isin(found.corner[near, k], own).any() for own in ((1, 3), (2, 4))]  # a corner of pinion or wheel
+        out.slave.append(int(corners[1] and not corners[0]))
+        for number, gear in enumerate((pair.gear_1, pair.gear_2)):
+            edge = found.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # it may touch as a second place of contact
+            out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
     return out
 
 
@@ -179,7 +185,9 @@ def write_contact_solid(
             patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
             fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
             options = {"layer": gear.b / layers, "loaded": teeth, "patches": patches, "fine": fine}
-            body = part_of(solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options))
+            made = solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options)
+            body = part_of(made)
+            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in made.fillets.items()})
         if forms is not None:
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
@@ -192,7 +200,7 @@ def write_contact_solid(
     slaves = {}
     for k, order in enumerate(found.order):
         side = found.slave[k]
-        slaves[order] = side, parts[side].faces[_flank(pair, side, order)]
+        slaves[order] = side, _faces(pair, parts[side], found, side, k)
     with written(path) as name:
         Path(name).write_text("\n".join(_text(pair, parts, materials, found, turned, penalty)), encoding="ascii")
     starts = [0, parts[0].points.shape[1]]
@@ -202,14 +210,19 @@ def write_contact_solid(
     return SolidDeck((held[0], held[1]), (centred[0], centred[1]), radii, (parts[0], parts[1]), slaves)
 
 
-def _flank(pair, number, order):
+def _faces(pair, part, found, number, k):
+    """Faces ``(corners, n)`` of a gear that may touch in a tooth pair: the flank, and of hexahedra the fillet if that touches."""
     gear = (pair.gear_1, pair.gear_2)[number]
-    return f"flank {(1, -1)[number] * order % gear.z}"
+    tooth = (1, -1)[number] * found.order[k] % gear.z
+    out = part.faces[f"flank {tooth}"]
+    below = part.faces.get(f"fillet {tooth}") if found.fillet[number][k] else None
+    return out if below is None else np.hstack([out, below])
 
 
 def _patch(gear, found, number, k, per_width):
     """Place on the flank and edge length of the strip that a contact line sweeps [mm]."""
-    arcs, a = arc_at(gear, found.rolls[number][k]), found.width[k]
+    rolls = found.rolls[number][k]
+    arcs, a = arc_at(gear, np.append(rolls, gear.roll_f) if found.fillet[number][k] else rolls), found.width[k]
     return float(arcs.min()) - STRIP * a, float(arcs.max()) + STRIP * a, a / per_width
 
 
@@ -267,8 +280,8 @@ def _text(pair, parts, materials, found, turned, penalty):
     first = 0
     for number, part in enumerate(parts):
         yield from element_lines(part, number + 1, first, element, materials[number])
-        for k, order in enumerate(found.order):
-            yield from surface_lines(part, f"C{number + 1}P{k}", part.faces[_flank(pair, number, order)], element)
+        for k in range(len(found.order)):
+            yield from surface_lines(part, f"C{number + 1}P{k}", _faces(pair, part, found, number, k), element)
         held = part.held + first + 1
         yield f"*NSET, NSET=H{number + 1}"
         yield from (f"{n}," for n in held.tolist())

@@ -108,6 +108,9 @@ def wide_curves(
     if any(cracks):
         for own, one in zip(metas, found, strict=True):
             own |= {"crack_closed_phases": phase[list(one.closed)].tolist()}
+    for own, one in zip(metas, found, strict=True):
+        if one.fillet:
+            own["tip_in_fillet_phases"] = phase[list(one.fillet)].tolist()
     return [_curve(*own, flanks is not None) for own in zip(found, doubts, metas, strict=True)]
 
 
@@ -129,7 +132,7 @@ def _curve(found, doubt, meta, modified):
         force=found.load[:, used],
         pressure=1e6 * pressure[:, used],
         error=doubt,
-        unloaded=1e-3 * found.unloaded if modified else None,
+        unloaded=1e-3 * found.unloaded if modified or found.unloaded.any() else None,
         lte_supports=None if found.supports is None else 1e-3 * found.supports,
         meta=meta,
     )

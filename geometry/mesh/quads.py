@@ -30,6 +30,7 @@ ATTEMPTS = (
     (1.6, 8),
 )  # finer, algorithm: gmsh may leave triangles
 GROWTH = 0.4  # of the edge length per length, away from fine places
+BELOW = 2  # of the pieces of half a tooth: the one below the flank
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +66,8 @@ class QuadSection:
     roll : dict of int to ndarray, shape (n + 1,)
         Roll lengths of their ends [mm]; middles are half-way in roll.
     cuts : tuple of Cut
+    fillet : dict of int to ndarray, shape (3, n)
+        Edges of the fillets below these flanks, from below to the form point; of a cracked tooth from the crack's mouth on.
     """
 
     gear: Gear
@@ -76,6 +79,7 @@ class QuadSection:
     flank: dict
     roll: dict
     cuts: tuple
+    fillet: dict
 
 
 def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=None):
@@ -88,7 +92,8 @@ def quad_section(gear, *, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
         Teeth whose loaded flanks carry or read loads.
     cracks : sequence of Crack
     patches : sequence of (float, float, float), or dict of int to such
-        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth.
+        Places on the loaded flanks to mesh finer: first arc, last arc, edge length [mm]; of all of them, or by tooth. An
+        arc less than that of the form point is one of the fillet, which is then finer too.
     refine : float
         Divides all edge lengths.
     sizes : dict, optional
@@ -131,7 +136,7 @@ def _attempt(gear, teeth, cracks, patches, size, algorithm):
     for number, crack in enumerate(cracks):
         damaged.setdefault(crack.tooth % gear.z, []).append((number, crack))
     mouths = {tooth: _mouths(gear, size, found) for tooth, found in damaged.items()}
-    outline, flanks, marks = _rim(gear, draft, size, teeth, mouths, patches)
+    outline, flanks, fillets, marks = _rim(gear, draft, size, teeth, mouths, patches)
     rim = abs(gear.r_f - gear.held)  # two quads through it at least: with one a ring's section is 0.2 ... 0.5 % too stiff
     count = max(8, math.ceil(math.pi * gear.held / min(rim / 2, 3 * size["far"])))
     turn = _quarters(np.linspace(0.0, 2 * math.pi, count + 1))
@@ -150,7 +155,7 @@ def _attempt(gear, teeth, cracks, patches, size, algorithm):
         cuts.append(cut)
     loops = [bore, body] if gear.internal else [body, bore]
     made = quadrangulate(np.array(draft.points).T, np.array(draft.lines), [loops, *tops], algorithm)
-    return _finish(gear, draft, made, bore, flanks, cuts)
+    return _finish(gear, draft, made, bore, flanks, fillets, cuts)
 
 
 class _Draft:
@@ -198,15 +203,15 @@ def _lengths(gear, crack):
 
 
 def _rim(gear, draft, size, teeth, mouths, patches):
-    """The toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, nodes of the cracks' ends."""
-    lines, flanks, marks, last = [], {}, {}, None
+    """The toothed outline clockwise from the tip of tooth 0: line numbers, loaded flanks, fillets, nodes of cracks' ends."""
+    lines, flanks, fillets, marks, last = [], {}, {}, {}, None
     halves = [(tooth, side) for k in range(gear.z) for tooth, side in ((k, "loaded"), ((k + 1) % gear.z, "unloaded"))]
     for owner, side in halves:
         away = min(abs((owner - k + gear.z // 2) % gear.z - gear.z // 2) for k in [*teeth, *mouths])
         own = side == "loaded" and owner in teeth
         pieces = _half(gear, size, away, own, mouths.get(owner, {}).get(side), patches.get(owner, ()))
         sign = 1 if side == "loaded" else -1
-        for name, radius, angle, params in pieces[::sign]:
+        for k, (name, radius, angle, params) in list(enumerate(pieces))[::sign]:
             final = (owner, side, name) == (0, "unloaded", "tip")
             points = cartesian(radius, 2 * math.pi * owner / gear.z + sign * angle)[:, ::sign]
             found = draft.add(points, first=last, last=draft.lines[0][0] if final else None)
@@ -214,9 +219,11 @@ def _rim(gear, draft, size, teeth, mouths, patches):
             lines += found
             if name == "flank" and own:
                 flanks[owner] = draft.edges(found)[::-1, ::-1], params[::-2]
+            if k == BELOW and own:
+                fillets[owner] = draft.edges(found)[::-1, ::-1]
             if name == "fillet":
                 marks[owner, side] = last if sign > 0 else draft.lines[found[0] - 1][0]
-    return lines, flanks, marks
+    return lines, flanks, fillets, marks
 
 
 def _half(gear, size, away, own, mouth, patches):
@@ -233,6 +240,9 @@ def _half(gear, size, away, own, mouth, patches):
     root = size["fillet"] if away == 0 else size["root"]
     out = [("tip", np.full(tip.size, gear.r_a), tip, tip), ("flank", *flank(gear, rolls), rolls)]
     mark, fine = (below, []) if mouth is None else (mouth[0], [(mouth[0], mouth[0], 2 * mouth[1])])
+    fine += [
+        (top + a - start, top + min(b - start, 0.0), 2 * s) for a, b, s in (patches if own else ()) if a < start - 1e-6 * gear.m_n
+    ]
     for name, low, high in (("root" if mouth is None else "fillet", mark, top), ("root", below, mark)):
         if high - low > 1e-6 * gear.m_n:
             arcs = _quarters(spaced(low, high, 2 * root, fine, 1, GROWTH)[::-1])
@@ -270,7 +280,7 @@ def _cut(gear, draft, size, tooth, found, mouths, marks):
     return lines, Cut(draft.edges(lines), np.array(crack), np.array(depth))
 
 
-def _finish(gear, draft, made, bore, flanks, cuts):
+def _finish(gear, draft, made, bore, flanks, fillets, cuts):
     """Middles of all edges, exact on the outline, and the check that no quad folds."""
     points, quads, part = made
     arms = points[:, quads[2:]] - points[:, quads[:2]]
@@ -297,6 +307,7 @@ def _finish(gear, draft, made, bore, flanks, cuts):
         with_middle(draft.edges(bore)), {k: with_middle(ends) for k, (ends, _) in flanks.items()},
         {k: roll for k, (_, roll) in flanks.items()},
         tuple(Cut(with_middle(cut.edges), cut.crack, cut.depth) for cut in cuts),
+        {k: with_middle(ends) for k, ends in fillets.items()},
     )  # fmt: skip
     if jacobian(made).min() <= 0:
         raise RuntimeError(f"z = {gear.z}: a quad of the section folds; change refine or the sizes")

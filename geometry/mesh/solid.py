@@ -46,6 +46,8 @@ class Solid:
         other, column by column). Corners counter-clockwise in (along the section's edge, z), then the middles of 01, 12, 23, 30.
     fronts : dict of int to Front
         By crack, where its depth changes along the width, the front that the elements follow.
+    fillets : dict of int to ndarray, shape (8, k)
+        Faces of the fillets below the loaded flanks, as `faces`; of a cracked tooth those above the crack's mouth.
     """
 
     gear: Gear
@@ -56,6 +58,7 @@ class Solid:
     held: np.ndarray
     faces: dict
     fronts: dict = field(default_factory=dict)
+    fillets: dict = field(default_factory=dict)
 
     def flank(self, tooth):
         """Faces ``(8, edges, layers)`` of a loaded flank, edges from root to tip."""
@@ -198,7 +201,9 @@ def extrude(section, levels, rate, moves=()):
     for k, cut in enumerate(section.cuts):
         faces[f"cut {k}"] = walls(cut.edges)
     held = np.unique(faces["held"])
-    return Solid(section.gear, points, cells, levels, section, held, {name: f.reshape(8, -1) for name, f in faces.items()})
+    faces = {name: found.reshape(8, -1) for name, found in faces.items()}
+    fillets = {k: walls(edges).reshape(8, -1) for k, edges in section.fillet.items()}
+    return Solid(section.gear, points, cells, levels, section, held, faces, fillets=fillets)
 
 
 def _moved(points, heights, moves):
@@ -245,4 +250,7 @@ def _open(made, cut, part, cracks):
         own = walls[:, opened & np.repeat(cut.crack == number, height.size)]
         if own.size:
             faces |= {f"crack {number} body": own, f"crack {number} tooth": double[own]}
-    return replace(made, points=np.hstack([made.points, made.points[:, free]]), cells=cells, faces=faces)
+    above = {cracks[number].tooth % made.section.gear.z for number in set(cut.crack.tolist()) - {-1}}
+    fillets = {k: double[found] if k in above else found for k, found in made.fillets.items()}
+    points = np.hstack([made.points, made.points[:, free]])
+    return replace(made, points=points, cells=cells, faces=faces, fillets=fillets)

@@ -4,6 +4,7 @@ import numpy as np
 
 from gearfe.files import written
 
+from ..shared import outlines_three
 from ..shared.arbiter import kept, unloaded_table
 from ..shared.arbiter.beside import beside
 from ..shared.places import PAGES
@@ -25,9 +26,10 @@ come near. They were chosen before any was pressed. Its mesh error is the larger
 
 
 def reference():
-    """Compute what is not on file: gaps of random pairs, and cases pressed."""
+    """Compute what is not on file: gaps of random pairs, sections pressed by the arbiter, whole gears by CalculiX."""
     unloaded_table.reference()
     kept.reference()
+    outlines_three.reference()
 
 
 def run():
@@ -59,6 +61,7 @@ def run():
                 f"{found['estimate']:.3f} | {row['places']} |\n"
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
+    parts.append(outlines_three.section())
     with written(PAGE) as target, open(target, "w", encoding="utf-8") as file:
         file.write("".join(parts))
     print(f"wrote {PAGE.name}")

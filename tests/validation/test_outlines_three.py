@@ -1,0 +1,25 @@
+"""Undercut helical pairs pressed by CalculiX: rows on file against `ritz3d` of today."""
+
+import pytest
+from numpy.testing import assert_allclose
+
+from validation.shared.outlines_three import ASKED, TABLE, cases, ours, section
+from validation.shared.outsider import rows_of
+
+
+@pytest.mark.parametrize("name", [*cases()])
+def test_form_corners_carry_what_calculix_says(name):
+    rows = [row for row in rows_of(TABLE) if row["case"] == name]
+    assert len(rows) >= 2, "two meshes"
+    k, approach, carried, path = ours(name)
+    for row in rows:
+        assert_allclose(k, float(row["ours"]), rtol=5e-4)
+        assert_allclose(1e3 * approach, float(row["approach_um"]), rtol=5e-4)
+        assert abs(k / float(row["theirs"]) - 1) < ASKED, row["mesh"]
+        assert_allclose(carried, float(row["theirs there"]), rtol=0.02)
+    assert path < 0.85 * k, "without the corner it would be another number"
+
+
+def test_the_section_has_every_row():
+    text = section()
+    assert text.count("\n| ") == 1 + len(rows_of(TABLE))
