@@ -207,11 +207,11 @@ def _placed(contact, one, host):
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
-    places = _apart(np.unique(list(marks.values())), offsets[1], ends[1])
-    if ends[0]:
-        places = places[places >= marks[2 - host]]
-    if ends[1]:
-        places = places[places <= marks[1 + host]]
+    low, high = marks.get(2 - host, -np.inf), marks.get(1 + host, np.inf)
+    if low > high:  # each tip stands beyond the other: they touch at one of them
+        low = high = marks[1 + host]
+    places = np.unique([min(max(mark, low), high) for mark in marks.values()])
+    places = _apart(places, offsets[1], ends[1])
     if not one.width:
         return _knots(_tops(places, ends, offsets), ends)
     flanks = (found.roll_1[at], found.roll_2[at])
