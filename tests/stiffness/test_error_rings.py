@@ -63,7 +63,8 @@ def share_inside(seeds, fine, least, count=64):
         f"{(found < told).sum()} of {found.size} phases inside, closest {np.max(found / told):.2f}, median {np.median(told):.2e}"
     )
     assert found.size >= least
-    assert np.median(told) < 4e-3 + MODEL, "what the model of contact may be off is in every estimate"
+    # what discretisation may be off, and what the model of contact may: everywhere, and where tips touch off the path
+    assert np.median(told) < 4e-3 + 2 * MODEL
     return np.mean(found < told)
 
 
