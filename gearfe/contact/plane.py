@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.tooth.profile import arc_at, roll_at_arc
+from geometry.tooth.profile import arc_at
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
@@ -18,9 +18,8 @@ from ..flexibility.section_contact import Solved
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
+from .sliding import bounded, left_out, sliding
 
-SLIDING = 0.05  # of what a pair yields at most that it comes closer by sliding
-STEP = 0.01  # m_n: over which a flexibility changes along the flank
 CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
 BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
 KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
@@ -81,16 +80,16 @@ class PairContact:
         if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
             beside = pair.relative_radius(found.roll_1, found.roll_2)
             self.flat_radius = np.where(beside > 0, np.maximum(beside, found.radius), found.radius)
-        self.opening = self._opening(found.roll_1, found.roll_2, found.order)
+        self.opening = self.opening_at(found.roll_1, found.roll_2, found.order)
         if self.opening is not None:
             self.stiffness = block_diag(*(flexible.seam.stiffness for flexible in flexibility if flexible.seam))
             self.matrix = self.matrix + self.opening @ self.stiffness @ np.swapaxes(self.opening, -1, -2)
-        self._tilting = self._tilt()
+        self.sliding = sliding(self)
         self._rows = {}
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found, c, tilt = self.found, sum(self.coefficients), self.tilt(line_load)
+        found, c, tilt = self.found, sum(self.coefficients), bounded(self, line_load)
         # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
@@ -118,26 +117,8 @@ class PairContact:
             line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
-        left_out = self._left_out(line, closing, beyond)
-        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=left_out)
-
-    def _left_out(self, line, closing, beyond):
-        """Part of the approach ``(phases,)`` by which gaps off the path are unsure: bent teeth also move along each other.
-
-        A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On
-        the path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from
-        where the flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base
-        circles.
-        """
-        found, (start, end) = self.found, self.pair.path
-        off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
-        if not off.any():
-            return np.zeros(closing.size)
-        stiff = np.where(line > 0, line / np.maximum(closing[:, None] - beyond, 1e-3 * closing[:, None]), 0.0)
-        u, gap = math.tan(self.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
-        changed = np.where(off, (np.sqrt(2 * self.radius * gap) * u + u**2 / 2) / self.radius, 0.0)
-        changed = np.minimum(changed, np.where(off, closing[:, None] - beyond, 0.0))  # no gap is unsure by more than it is closed
-        return (stiff * changed).sum(axis=1) / stiff.sum(axis=1) / closing
+        doubt = left_out(self, line, closing, beyond)
+        return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
     def _solved(self, sets, line_load):
         """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
@@ -186,7 +167,7 @@ class PairContact:
         force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
         return force[:n], approach, tangent
 
-    def _opening(self, roll_1, roll_2, order):
+    def opening_at(self, roll_1, roll_2, order):
         """Opening ``(..., contacts, faces)`` of all cracks under unit loads, None without cracks."""
         rows = []
         for flexible, roll, teeth in zip(self.flexibility, (roll_1, roll_2), (order, -order), strict=True):
@@ -194,43 +175,6 @@ class PairContact:
                 arc = np.clip(arc_at(flexible.gear, roll), *flexible.limits)
                 rows.append(flexible.seam.at(arc, (teeth % flexible.gear.z).tolist()))
         return np.concatenate(rows, axis=-1) if rows else None
-
-    def tilt(self, line_load):
-        """`tilt` of `line_contacts`, at most the part `SLIDING` of what a pair yields: more would be no small strains."""
-        width = half_width(line_load, self.radius, self.modulus)
-        yields = np.diagonal(self.matrix, axis1=1, axis2=2) + sum(self.coefficients) * (np.log(2 / width) + 0.5)
-        return np.minimum(self._tilting, SLIDING * np.maximum(yields, 0.0) / line_load)
-
-    def _tilt(self):
-        """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
-
-        Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact
-        moves by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P
-        S')**2``. That counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load.
-        """
-        found, step = self.found, STEP * self.pair.gear_1.m_n
-        ahead, behind = (self._alone(found, sense * step) for sense in (1, -1))
-        on = np.isfinite(found.gap)
-        for flexible, roll in zip(self.flexibility, (found.roll_1, found.roll_2), strict=True):
-            arc, (low, high) = (
-                arc_at(flexible.gear, roll),
-                (arc_at(flexible.gear, r) for r in (flexible.gear.roll_f, flexible.gear.roll_a)),
-            )
-            on &= (arc > low + step) & (
-                arc < high - step
-            )  # at the ends of flanks contact is no line in the middle of two surfaces
-        return np.where(on, 3 / 8 * self.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
-
-    def _alone(self, found, moved):
-        """Flexibility of each pair alone ``(phases, pairs)``, its contact moved up the pinion's side by so much [mm]."""
-        out, rolls = np.zeros(found.gap.shape), []
-        places = ((found.roll_1, found.order, moved), (found.roll_2, -found.order, -moved))
-        for flexible, (roll, teeth, by) in zip(self.flexibility, places, strict=True):
-            rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
-            for k in range(teeth.size):
-                out[:, k] += flexible.matrix(rolls[-1][:, k, None], teeth[k : k + 1])[:, 0, 0]
-        opening = self._opening(*rolls, found.order)
-        return out if opening is None else out + np.einsum("pcf,fg,pcg->pc", opening, self.stiffness, opening)
 
     def _reach(self, line_load):
         """Gap beyond the first touch [mm] that no contact can close, by phase: twice what the best pair gives alone."""
@@ -329,7 +273,7 @@ class PairContact:
             if "influence" in part:
                 own = np.flatnonzero(column == k)
                 total[:, own[:, None], own] = part["influence"]
-        opening = self._opening(values["roll_1"], values["roll_2"], order)
+        opening = self.opening_at(values["roll_1"], values["roll_2"], order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
         out, there = [], np.isfinite(values["gap"])

@@ -21,9 +21,9 @@ Pairs are random, undercut ones, close and trimmed rings, rounded tips over-repr
 come near. They were chosen before any was pressed. Its mesh error is the larger of two that three meshes tell.
 
 What is left, in the ten worst phases of each method: bent teeth also move along each other, which shifts a corner beside a base
-circle, where the relative radius is a tenth of elsewhere, under heavy loads (15/68, 9/57, 11/60, 10/32: the estimates know of it); on a
-tip in a fillet the flexibility is that of the flank's end, gone on straight (13/45); where an arc at a tip begins on the flank,
-or a pair off the path carries all of a light load, it is not explained (14/47, 12/17).
+circle, where the relative radius is a tenth of elsewhere, under heavy loads (15/68, 9/57, 11/60, 10/32: the estimates know of
+it); on a tip in a fillet the flexibility is that of the flank's end, gone on straight (13/45); where an arc at a tip begins on
+the flank, or a pair off the path carries all of a light load, it is not explained (14/47, 12/17).
 
 `python -m validation outlines` makes this page; `--reference` computes the gaps and presses the cases that are not on file.
 

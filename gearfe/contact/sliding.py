@@ -1,0 +1,80 @@
+"""What contacts gain and lose by moving along the flanks under load: sliding to where they yield less, and gaps that shift."""
+
+import math
+
+import numpy as np
+
+from geometry.tooth.profile import arc_at, roll_at_arc
+
+from ..flexibility.hertz import half_width
+
+MOST = 0.05  # of what a pair yields at most that it comes closer by sliding: more would be no small strains
+STEP = 0.01  # m_n: over which a flexibility changes along the flank
+
+
+def sliding(contact):
+    """How contacts move under load to where they yield less ``(phases, pairs)`` [mm per (N/mm)**2].
+
+    Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact moves
+    by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
+    counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    """
+    found, step = contact.found, STEP * contact.pair.gear_1.m_n
+    ahead, behind = (_alone(contact, sense * step) for sense in (1, -1))
+    on = np.isfinite(found.gap)
+    for flexible, roll in zip(contact.flexibility, (found.roll_1, found.roll_2), strict=True):
+        gear = flexible.gear
+        arc, low, high = arc_at(gear, roll), arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+        on &= (arc > low + step) & (arc < high - step)
+    return np.where(on, 3 / 8 * contact.radius * ((ahead - behind) / (2 * step)) ** 2, 0.0)
+
+
+def _alone(contact, moved):
+    """Flexibility of each pair alone ``(phases, pairs)``, its contact moved up the pinion's side by so much [mm]."""
+    found, rolls = contact.found, []
+    out = np.zeros(found.gap.shape)
+    places = ((found.roll_1, found.order, moved), (found.roll_2, -found.order, -moved))
+    for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
+        rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
+        for k in range(teeth.size):
+            out[:, k] += flexible.matrix(rolls[-1][:, k, None], teeth[k : k + 1])[:, 0, 0]
+    opening = contact.opening_at(*rolls, found.order)
+    return out if opening is None else out + np.einsum("pcf,fg,pcg->pc", opening, contact.stiffness, opening)
+
+
+def bounded(contact, line_load):
+    """`sliding` of a contact under a load [N/mm], at most the part `MOST` of what a pair yields."""
+    width = half_width(line_load, contact.radius, contact.modulus)
+    yields = np.diagonal(contact.matrix, axis1=1, axis2=2) + sum(contact.coefficients) * (np.log(2 / width) + 0.5)
+    return np.minimum(contact.sliding, MOST * np.maximum(yields, 0.0) / line_load)
+
+
+def left_out(contact, line, closing, beyond):
+    """Part of the approach ``(phases,)`` by which gaps off the path are unsure: bent teeth also move along each other.
+
+    A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
+    path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
+    flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    line, beyond : ndarray, shape (phases, pairs)
+        Line loads [N/mm], and gaps beyond the first touch [mm].
+    closing : ndarray, shape (phases,)
+        How far the load moves the gears [mm].
+    """
+    found, (start, end) = contact.found, contact.pair.path
+    off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
+    if not off.any():
+        return np.zeros(closing.size)
+    closed = closing[:, None] - beyond
+    stiff = np.where(line > 0, line / np.maximum(closed, 1e-3 * closing[:, None]), 0.0)
+    u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
+    changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
+    changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
+    return (stiff * changed).sum(axis=1) / stiff.sum(axis=1) / closing
