@@ -13,7 +13,6 @@ from gearfe.elements.fe_gear3d import solid_flexibility
 STEEL = gf.Material(206e3, 0.3)
 PHASES = np.array([0.05, 0.3, 0.62, 0.9, 0.98])
 SCALES = 0.25, 7.0, 25.0  # as a power of two, and such that the last digits of all lengths change
-# tables of the plane's contact at corners and kinks are for line loads that are powers of two in N/mm (`contact.corner`)
 SOLID_SCALES = 0.25, 7.0, 25.0, 32.0
 
 
@@ -28,7 +27,8 @@ def pair(s, beta=0.0, **options):
 
 
 def ring(s, **options):
-    return gf.GearPair(gear(s, 20, **options), gear(s, 62, ring=True, **options))
+    options = {"tip_radius": 0.3} | options  # what fits on the tip of the cutter
+    return gf.GearPair(gear(s, 20, **options), gear(s, 62, ring=True, addendum=0.9, **options))
 
 
 def undercut(s):
