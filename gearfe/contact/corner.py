@@ -126,7 +126,8 @@ def _table(pair, materials, line_load, end, span, cache):
     c, modulus = sum(half_plane(m) for m in materials), contact_modulus(materials)
     unit = float(half_width(1.0, abs(float(pair.relative_radius(limit, pair.mate_roll(limit)))), modulus))
     mesh = PairContact(pair, materials, bodies, [0.0], extended=True, state="plane strain")
-    finest = mesh.finest(line_load / LIGHT) and max(mesh.finest(line_load / LIGHT), LEAST * pair.gear_1.m_n)
+    finest = mesh.finest(line_load / LIGHT)
+    finest = max(finest, LEAST * pair.gear_1.m_n) if finest else 0.0
     least = (RESOLVED * (finest or finest_hat(pair.gear_1.m_n, bodies[0].fine)) / unit) ** 2
     line_load *= 2.0 ** max(math.ceil(math.log2(least / line_load)), 0)
     inside = cut(pair)[end]

@@ -7,9 +7,15 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.stiffness.plane import MODEL
 
 STEEL = gf.Material(E=206e3, nu=0.3)
+
+
+@pytest.fixture(autouse=True)
+def discretisation_alone(monkeypatch):
+    """What the model of contact may be off is in every estimate, too; here it is left out of it."""
+    monkeypatch.setattr("gearfe.stiffness.plane.MODEL", 0.0)
+    monkeypatch.setattr("gearfe.contact.plane.left_out", lambda contact, line, closing, beyond: np.zeros(closing.size))
 
 
 def ring_pair(seed):
@@ -63,8 +69,7 @@ def share_inside(seeds, fine, least, count=64):
         f"{(found < told).sum()} of {found.size} phases inside, closest {np.max(found / told):.2f}, median {np.median(told):.2e}"
     )
     assert found.size >= least
-    # what discretisation may be off, and what the model of contact may: everywhere, and where tips touch off the path
-    assert np.median(told) < 4e-3 + 2 * MODEL
+    assert np.median(told) < 4e-3
     return np.mean(found < told)
 
 
