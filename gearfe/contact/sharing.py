@@ -178,7 +178,7 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     -------
     force, approach, tangent, settled : ndarray (sets, n), (sets,), (sets,), (sets,) of bool
     """
-    sets, n = gap.shape
+    sets = len(gap)
     gap, load = np.where(possible, gap, 0.0), np.broadcast_to(load, sets)[:, None]
     coefficient, tilt = (np.broadcast_to(values, gap.shape) for values in (coefficient, tilt))
     force, approach, tangent = np.zeros(gap.shape), np.zeros(sets), np.zeros(sets)
