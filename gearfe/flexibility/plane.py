@@ -125,12 +125,17 @@ class Flexibility:
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
         members = {tooth: (teeth == tooth).nonzero()[0] for tooth in sorted(set(teeth.tolist()))}
+        near, far = {}, {}  # contacts by the spline that holds for them: teeth that are alike have one
         for tooth, own in members.items():
-            out[..., own, own] = self.near_of(tooth)(arc[..., own])
+            near.setdefault(self.near_of(tooth), []).append(own)
             for other, theirs in members.items():
-                spline = self.far_of(tooth, other) if tooth < other else None
-                if spline is not None:
-                    block = spline.ev(arc[..., own, None], arc[..., None, theirs])
-                    out[..., own[:, None], theirs] = block
-                    out[..., theirs[:, None], own] = np.swapaxes(block, -1, -2)
+                if tooth < other:
+                    far.setdefault(self.far_of(tooth, other), []).append(np.array(np.meshgrid(own, theirs)).reshape(2, -1))
+        for spline, parts in near.items():
+            own = np.concatenate(parts)
+            out[..., own, own] = spline(arc[..., own])
+        far.pop(None, None)
+        for spline, parts in far.items():
+            own, theirs = np.hstack(parts)
+            out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
         return out
