@@ -157,7 +157,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     return force, approach, float(tangent)
 
 
-def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0):
+def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0, start=None):
     """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
@@ -173,6 +173,8 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
         Contacts that may carry load; at least one in each set.
     tilt : float or ndarray, shape (sets, n)
         As of `line_contact`.
+    start : ndarray of bool, shape (sets, n), optional
+        Of the possible ones, those that are likely in touch, at least one in each set; default: all.
 
     Returns
     -------
@@ -183,7 +185,8 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     coefficient, tilt = (np.broadcast_to(values, gap.shape) for values in (coefficient, tilt))
     force, approach, tangent = np.zeros(gap.shape), np.zeros(sets), np.zeros(sets)
     open_, case = np.arange(sets), (flexibility, gap, load, coefficient, radius, tilt, possible)
-    active, old = possible, load / possible.sum(axis=1, keepdims=True) * possible
+    active = possible if start is None else start
+    old = load / active.sum(axis=1, keepdims=True) * active
     for _ in range(30):
         new, approach[open_], tangent[open_] = _newton(*case[:-1], modulus, active, old)
         force[open_] = np.where(active, new, 0.0)
