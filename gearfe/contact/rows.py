@@ -164,7 +164,7 @@ def _on_side(contact, wanted, host):
     out, log = [], np.log(gear.m_n)  # local is what happens within about a module
     for one, hats, on, part, *smooth in zip(wanted, knots, there, parts, *bodies, strict=True):
         roll_1, roll_2, gaps, *turns, slow = part
-        kernel = _kernel(contact, one, host)[np.ix_(on, on)] if _alone(one) else hat_logarithm(hats[:, on], hats[:, on])
+        kernel = _standing(contact, one, host)[1][np.ix_(on, on)] if _alone(one) else hat_logarithm(hats[:, on], hats[:, on])
         influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
         for coefficient, own, turn in zip(contact.coefficients, smooth, turns, strict=True):
             influence = influence + np.outer(turn, turn) * (own - coefficient * log)
@@ -181,15 +181,16 @@ def _alone(one):
     return len(_numbers(one)) == 1 and not one.width
 
 
-def _kernel(contact, one, host):
+def _standing(contact, one, host):
+    """Knots of a row that is `_alone`, from its corner, and what its hats are to each other."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
-    return _alone_kernel(gear.m_n, fine, one.zone, one.finest, ends)
+    return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 
 
 @keeping(16)
-def _alone_kernel(m_n, fine, zone, finest, ends):
+def _alone_hats(m_n, fine, zone, finest, ends):
     knots = _knots(_tops(np.zeros(1), ends, _offsets(m_n, fine, zone, finest)), ends)
-    return hat_logarithm(knots, knots)
+    return knots, hat_logarithm(knots, knots)
 
 
 def _scale(contact, host):
@@ -210,6 +211,8 @@ def _placed(contact, one, host):
     found, at = contact.found, (one.phase, one.column)
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
+    if _alone(one):
+        return next(iter(marks.values())) + _standing(contact, one, host)[0]
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
     low, high = marks.get(2 - host, -np.inf), marks.get(1 + host, np.inf)
     if low > high:  # each tip stands beyond the other: they touch at one of them

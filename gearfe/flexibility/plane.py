@@ -98,9 +98,9 @@ class Flexibility:
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
         arc = arc_at(self.gear, np.concatenate(rolls))
-        at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)[:, None]
+        at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        rows = {basis: (basis(at), depth * basis(at, 1)) for basis in {one.basis for one in solved}}
+        rows = {basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {one.basis for one in solved}}
         out, stop = [], 0
         for one, roll, tooth in zip(solved, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), one.own.get(tooth % self.gear.z, one.own.get(0))
@@ -124,18 +124,18 @@ class Flexibility:
         arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
-        members = {tooth: (teeth == tooth).nonzero()[0] for tooth in sorted(set(teeth.tolist()))}
+        members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
         near, far = {}, {}  # contacts by the spline that holds for them: teeth that are alike have one
-        for tooth, own in members.items():
-            near.setdefault(self.near_of(tooth), []).append(own)
+        for tooth, on in members.items():
+            spline = self.near_of(tooth)
+            near[spline] = near.get(spline, False) | on
             for other, theirs in members.items():
-                if tooth < other:
-                    far.setdefault(self.far_of(tooth, other), []).append(np.array(np.meshgrid(own, theirs)).reshape(2, -1))
-        for spline, parts in near.items():
-            own = np.concatenate(parts)
+                if tooth < other and (spline := self.far_of(tooth, other)) is not None:
+                    far[spline] = far.get(spline, False) | on[:, None] & theirs
+        for spline, on in near.items():
+            (own,) = on.nonzero()
             out[..., own, own] = spline(arc[..., own])
-        far.pop(None, None)
-        for spline, parts in far.items():
-            own, theirs = np.hstack(parts)
+        for spline, on in far.items():
+            own, theirs = on.nonzero()
             out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
         return out
