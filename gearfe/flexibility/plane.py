@@ -38,11 +38,10 @@ class SeamFaces:
 
         It is zero for teeth that were not solved.
         """
-        arc = np.asarray(arc)
+        arc, teeth = np.asarray(arc), np.asarray(teeth)
         out = np.zeros((*arc.shape, self.influence.shape[0]))
-        for k, tooth in enumerate(teeth):
-            if tooth in self.opening:
-                out[..., k, :] = self.opening[tooth](arc[..., k])
+        for tooth in set(teeth.tolist()) & self.opening.keys():
+            out[..., teeth == tooth, :] = self.opening[tooth](arc[..., teeth == tooth])
         return out
 
 
