@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import make_interp_spline
 
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, roll_at_arc, root_curve
@@ -39,7 +39,7 @@ def _fillet(gear):
     radius, angle = fillet(gear, phi)
     height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cartesian(radius, angle), axis=1)))])
-    return CubicSpline(height, np.array([angle, length - length[-1]]).T)
+    return make_interp_spline(height, np.array([angle, length - length[-1]]).T)
 
 
 def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:

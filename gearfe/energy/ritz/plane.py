@@ -156,8 +156,12 @@ def _carry(places):
 @keeping(64)
 def _knots(gear):
     """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
-    places = np.linspace(-1, 1, KNOTS)
-    return _arcs(gear, places), _carry(places)
+    return _arcs(gear, np.linspace(-1, 1, KNOTS)), _between()
+
+
+@keeping(1)
+def _between():
+    return _carry(np.linspace(-1, 1, KNOTS))
 
 
 def _spline(gear, influence):
