@@ -28,6 +28,8 @@ ATTEMPTS = (
     (1.24, 5),
     (1.4, 8),
     (1.6, 8),
+    (1.0, 6),
+    (2.0, 5),
 )  # finer, algorithm: gmsh may leave triangles
 GROWTH = 0.4  # of the edge length per length, away from fine places
 BELOW = 2  # of the pieces of half a tooth: the one below the flank
