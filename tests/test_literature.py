@@ -6,7 +6,6 @@ and fails if the verdict changes, either way. Numbers whose simulation takes lon
 
 import functools
 import math
-import shutil
 
 import numpy as np
 import pytest
@@ -98,17 +97,33 @@ def now(page, name):
     return {row[1:3]: row for row in machines.computed(page, {name})}
 
 
-def printed():
-    """Rows of all machines; those of long simulations are slow."""
-    for page in machines.PAGES:
-        by_id, soon = {one.id: one for one in machines.references(page)}, machines.ordinary(page)
-        for row in table_rows.read(page):
-            name = "-".join(filter(None, (page, row.id, row.case, row.pair)))
-            yield pytest.param(page, row, by_id[row.id], id=name, marks=[] if row.id in soon else [pytest.mark.slow])
+def printed(page, *, simulated):
+    """Rows of a machine, each with its reference: those of long simulations, or all others."""
+    by_id, soon = {one.id: one for one in machines.references(page)}, machines.ordinary(page)
+    return [(row, by_id[row.id]) for row in table_rows.read(page) if simulated == (row.id not in soon)]
 
 
-@pytest.mark.parametrize(("page", "row", "source"), list(printed()))
+def named(page, row):
+    return "-".join(filter(None, (page, row.id, row.case, row.pair)))
+
+
+SOON = [pytest.param(page, *one, id=named(page, one[0])) for page in machines.PAGES for one in printed(page, simulated=False)]
+
+
+@pytest.mark.parametrize(("page", "row", "source"), SOON)
 def test_verdict_on_a_printed_number(page, row, source):
+    judge(page, row, source)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", machines.PAGES)
+def test_verdicts_on_numbers_of_long_simulations(page):
+    for row, source in printed(page, simulated=True):
+        judge(page, row, source)
+
+
+def judge(page, row, source):
+    """Whether a number computed now has the verdict of the table."""
     found = now(page, row.id)
     ours = found[row[1:3]].ours
     if row.verdict == verdicts.NEVER:
@@ -161,10 +176,3 @@ def test_contact_in_calculix_as_committed():
     assert_allclose(ours, theirs, rtol=0.02, err_msg="the same near the ends of double contact")
     again = gf.mesh_stiffness(pair, truth.LINE_LOAD * pair.gear_1.b, steel, phases=phase).k
     assert_allclose(again, ours, rtol=1e-4, err_msg="run python -m validation truth")
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx")
-def test_contact_in_calculix_again():
-    phase, _, theirs = truth.read_contact()
-    assert_allclose(truth.contact_row(float(phase[2]))[2], theirs[2], rtol=1e-3)

@@ -32,11 +32,9 @@ def line_loads(found):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cracks", [(), (gf.Crack(level=0.5),)], ids=["healthy", "crack"])
-@pytest.mark.parametrize("beta", [0.0, 0.35])
-def test_patches_move_as_in_the_energy_model(cracks, beta, steel):
+def test_patches_move_as_in_the_energy_model(steel):
     """To within the step from one mesh to the next and the model's own error, in parts of the largest displacement."""
-    gear = replace(GEAR, beta=beta)
+    gear, cracks = replace(GEAR, beta=0.35), (gf.Crack(level=0.5),)
     healthy = solid_flexibility(gear, steel, **LEVELS[0])
     levels = [solid_flexibility(gear, steel, cracks, healthy=healthy, **options) for options in LEVELS]
     model = flexibility3d(gear, steel, cracks, axial=DEGREE + 4)
@@ -145,12 +143,11 @@ def test_part_width_is_seen_from_the_right_end(steel):
     """The mirrored pair with its crack at the other end."""
     crack = gf.Crack(level=0.5, width=(0.0, 1.5))
     other = gf.Crack(level=0.5, width=(2.5, 4.0))
-    for gear in ("pinion", "wheel"):
-        one = curve_of(steel, {gear: [crack]}, phases=np.array([0.2, 0.7]))
-        mirrored = curve_of(steel, {gear: [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-        wrong = curve_of(steel, {gear: [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-        assert_allclose(one.k, mirrored.k, rtol=1e-9)
-        assert np.abs(one.k / wrong.k - 1).max() > 2e-3
+    one = curve_of(steel, {"wheel": [crack]}, phases=np.array([0.2, 0.7]))
+    mirrored = curve_of(steel, {"wheel": [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
+    wrong = curve_of(steel, {"wheel": [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
+    assert_allclose(one.k, mirrored.k, rtol=1e-9)
+    assert np.abs(one.k / wrong.k - 1).max() > 2e-3
 
 
 @pytest.mark.slow
