@@ -109,10 +109,10 @@ def test_several_pitted_teeth_show_twice_the_turning_frequency_only_half_a_turn_
     """The claim of S3, that 2 f_r dominates with several pits, is a statement on where they are, not on how many.
 
     In the squared envelope of the pinion's acceleration the largest line is 2 f_r = 83.3 Hz for teeth 0 and 8 (17 teeth cannot
-    be halved: 8 is the nearest), f_r for neighbours and for three pits on one tooth, as for one pit. Where the impacts are apart
-    the lines are those of one tooth times the factors of their places, within 0.15. Verdict: the claim holds for teeth half
-    a turn apart only; it does not hold for several pits in general, and not for several on one tooth, which is how the scene reads the
-    article's case of several pits.
+    be halved: 8 is the nearest), f_r for neighbours and for three pits on one tooth, as for one pit. Where the impacts are
+    apart the lines are those of one tooth times the factors of their places, within 0.15. Verdict: the claim holds for teeth
+    half a turn apart only; it does not hold for several pits in general, and not for several on one tooth, which is how the
+    scene reads the article's case of several pits.
     """
     found = {name: turns(one) for name, one in pitted_responses.items()}
     largest = {name: 1 + int(np.argmax(lines)) for name, lines in found.items()}
