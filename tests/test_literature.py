@@ -1,7 +1,7 @@
 """What others print: the articles' machines with their verdicts, and boundary elements, other finite elements, codes, standards.
 
 Whether gearfe finds a printed number is a recorded verdict (`validation/pages/tables/*.csv`): a test computes the number again
-and fails if the verdict changes, either way. Numbers whose simulation takes long are computed again in the slow tests.
+and fails if the verdict changes, either way. Numbers of long simulations are computed again with their pages alone.
 """
 
 import functools
@@ -97,33 +97,18 @@ def now(page, name):
     return {row[1:3]: row for row in machines.computed(page, {name})}
 
 
-def printed(page, *, simulated):
-    """Rows of a machine, each with its reference: those of long simulations, or all others."""
-    by_id, soon = {one.id: one for one in machines.references(page)}, machines.ordinary(page)
-    return [(row, by_id[row.id]) for row in table_rows.read(page) if simulated == (row.id not in soon)]
+def printed():
+    """Rows of all machines but those of long simulations, which their pages compute again."""
+    for page in machines.PAGES:
+        by_id, soon = {one.id: one for one in machines.references(page)}, machines.ordinary(page)
+        for row in table_rows.read(page):
+            name = "-".join(filter(None, (page, row.id, row.case, row.pair)))
+            if row.id in soon:
+                yield pytest.param(page, row, by_id[row.id], id=name)
 
 
-def named(page, row):
-    return "-".join(filter(None, (page, row.id, row.case, row.pair)))
-
-
-SOON = [pytest.param(page, *one, id=named(page, one[0])) for page in machines.PAGES for one in printed(page, simulated=False)]
-
-
-@pytest.mark.parametrize(("page", "row", "source"), SOON)
+@pytest.mark.parametrize(("page", "row", "source"), list(printed()))
 def test_verdict_on_a_printed_number(page, row, source):
-    judge(page, row, source)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("page", machines.PAGES)
-def test_verdicts_on_numbers_of_long_simulations(page):
-    for row, source in printed(page, simulated=True):
-        judge(page, row, source)
-
-
-def judge(page, row, source):
-    """Whether a number computed now has the verdict of the table."""
     found = now(page, row.id)
     ours = found[row[1:3]].ours
     if row.verdict == verdicts.NEVER:

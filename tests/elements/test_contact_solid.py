@@ -224,15 +224,6 @@ def test_calculix_under_a_line_load(name):
     assert on_file is None or math.isclose(float(row["theirs"]), float(on_file["theirs"]), rel_tol=1e-4)
 
 
-@needs_ccx
-@pytest.mark.slow
-def test_calculix_in_contact():
-    name = "spur, healthy"
-    row = outsider.contact_row(name, {"per_width": 1.0})
-    print(f"{name}: {100 * outsider.apart(row):+.2f} %")
-    assert abs(outsider.apart(row)) < outsider.ASKED
-
-
 def test_nodes_of_modified_flanks_lie_on_them():
     """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
     pair = pair_of(15.0)
