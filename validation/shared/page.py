@@ -1,10 +1,15 @@
 """A page: the question of a reader as its title, the answer in a sentence, then sections of Markdown."""
 
+import re
+import textwrap
+from itertools import groupby
 from pathlib import Path
 
 from gearfe.files import written
 
 from .places import PAGES
+
+WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
 QUESTIONS = {  # by page, as they stand in the list of pages
     "truth": "Does gearfe find what others published or computed?",
@@ -31,8 +36,14 @@ def text(name, answer, *sections):
     """A page as Markdown; sections are lines."""
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
-        lines += ["", *section]
+        lines += ["", *filled(section)]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def filled(lines):
+    """Lines with their paragraphs, which begin with a letter or with emphasis, broken anew."""
+    for prose, group in groupby(lines, lambda line: bool(re.match(r"[\w`*]", line)) and not re.match(r"\d+\. ", line)):
+        yield from textwrap.wrap(" ".join(group), 120, **WRAP) if prose else group
 
 
 def write(name, *parts):
