@@ -27,7 +27,8 @@ TIMED = ("speed", "readme")  # they print seconds of the clock; other pages prin
 PARTS = {
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
 }  # each a job of its own
-ROWS = ("detection", "dynamics", "hard", "sample", "three")  # parts of these pages: beginnings of rows to compute anew
+ROWS = ("detection", "dynamics", "hard", "herringbone", "holes", "map", "sample", "speed", "sweeps", "three")
+# parts of these pages: beginnings of rows to compute anew, or all
 SECONDS = places.TABLES / "seconds.csv"  # of the last run of everything
 
 
