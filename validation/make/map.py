@@ -14,7 +14,7 @@ from ..shared.places import PAGES
 from . import formulations
 
 PICTURE = PAGES / "map.png"
-PAIRS = 2000
+PAIRS = 1000
 # corners of the map: tooth numbers, pressure angle, shift, bore, load, crack
 CORNERS = product(((12, 12), (80, 120)), (17.5, 25.0), ((0.5, 0.2), (0.0, -0.2)), (0.2, 0.9))
 SPLITS = {
