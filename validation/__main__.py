@@ -1,15 +1,12 @@
 """``python -m validation PAGE``: rebuild a validation page; without PAGE: all of them."""
 
 import argparse
-import csv
 import importlib
-import resource
+import os
 import subprocess
 import sys
-import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
 
-from .shared import places
+from .shared import renew, slow, state
 
 PAGES = {
     "machines": "every printed number of the four machines beside ours, with verdicts",
@@ -24,7 +21,6 @@ PAGES = {
     "measured": "measured gearboxes of others, as far as their numbers are public",
     "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
     "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
-    "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
     "shortcomings": "what gearfe falls short of: the expected failures of its tests",
     "speed": "seconds against error of every method",
     "before_after": "seconds, memory and errors beside those of an earlier commit, in one run",
@@ -52,117 +48,89 @@ PAGES = {
 }
 
 LONG_RUNS = ("pairs_three", "herringbone", "outsider_three", "outlines")  # pages whose finite elements --reference computes
-LONG = {
-    "sample": "a new sample of random pairs",
-    "sample_three": "brute-force finite elements of whole gears",
-    "herringbone_scan": "an hour of energy models, where it is not kept",
-    "slow": "runs the slow tests",
-    "map": "thousands of gears",
-    "before_after": "needs the repository's history",
-    "sweeps": "ten thousand cases, where they are not kept",
-    "three": "brute-force finite elements of whole gears",
-    "speed_three": "brute-force finite elements of whole gears",
-}  # left out of "everything": minutes to an hour each
-TIMED = ("speed", "readme")  # they print seconds of the clock; other pages print CPU seconds, which hardly depend on company
 PARTS = {
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
 }  # each a job of its own
 ROWS = ("dynamics", "hard_dynamics")  # pages whose rows are kept: parts are beginnings of those computed anew
-SECONDS = places.TABLES / "seconds.csv"  # of the last run of everything
 
 
 def main():
-    """Run the page asked for, or all of them."""
-    parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild the validation pages.")
-    parser.add_argument("page", nargs="?", choices=list(PAGES), metavar="PAGE", help=f"default: all but {', '.join(LONG)}")
+    """Do what is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild validation pages; see what is old.")
+    parser.add_argument("page", nargs="?", choices=[*PAGES, "slow", "renew"], metavar="PAGE", help="a page, slow or renew")
+    parts = "of machines: pages; of pages with rows on file: beginnings of those to compute anew; of slow: test files"
+    parser.add_argument("parts", nargs="*", metavar="PART", help=parts)
+    parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they take")
     parser.add_argument(
-        "parts",
-        nargs="*",
-        metavar="PART",
-        help="of slow: only these test files; of machines: only these pages; of dynamics, hard_dynamics: rows to compute anew",
+        "--stale", action="store_true", help="list what was computed by other code, and bring first lines up to date"
     )
-    parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they took")
     parser.add_argument(
-        "--reference", action="store_true", help="compute the three-dimensional finite elements that are not on file (resumable)"
+        "--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if something is old for longer"
     )
+    parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
+    parser.add_argument("--reference", action="store_true", help="compute the finite elements that are not on file (resumable)")
     arguments = parser.parse_args()
     if arguments.parts and arguments.page not in ("slow", *PARTS, *ROWS):
-        parser.error(f"only slow, machines, {', '.join(ROWS)} can be made in part; {arguments.page} is made as a whole")
-    if arguments.list:
+        parser.error(f"only slow, {', '.join([*PARTS, *ROWS])} can be made in part; {arguments.page} is made as a whole")
+    if arguments.stale:
+        sys.exit(stale(arguments.age))
+    if arguments.page == "renew":
+        failed = renew.renew(jobs(), arguments.minutes)
+        sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
+    if arguments.list or arguments.page is None:
         print(listed())
     elif arguments.reference:
-        for name in [arguments.page] if arguments.page else LONG_RUNS:
-            importlib.import_module(f"validation.make.{name}").reference()
-    elif arguments.page is None:
-        sys.exit(everything())
+        importlib.import_module(f"validation.make.{arguments.page}").reference()
     else:
-        started = time.perf_counter()
-        made = importlib.import_module(f"validation.make.{arguments.page}")
-        made.run(arguments.parts) if arguments.parts else made.run()
-        print(f"{' '.join([arguments.page, *arguments.parts])}: {time.perf_counter() - started:.0f} s, {_cpu():.1f} s of CPU")
+        compute(arguments.page, arguments.parts)
+
+
+def jobs():
+    """Pages, and parts of pages that are computed by themselves."""
+    return [job for page in PAGES for job in ([f"{page} {part}" for part in PARTS[page]] if page in PARTS else [page])]
 
 
 def listed():
-    """Pages, CPU seconds of the last run of everything, and what is on them."""
-    took = known_seconds()
-    cost = {page: f"{sum(took.get(job, 0.0) for job in jobs_of(page)):.0f} s" for page in PAGES if took}
-    cost |= dict.fromkeys(LONG, "long")
-    return "\n".join(f"{page:14s} {cost.get(page, ''):>6s}  {about}" for page, about in PAGES.items())
+    """Pages, CPU seconds of the last run of each, and what is on them."""
+    found = renew.jobs(jobs())
+    return "\n".join(f"{page:14s} {renew.cost([j for j in found if j.words[0] == page]):>10s}  {PAGES[page]}" for page in PAGES)
 
 
-def jobs_of(page):
-    """What is run for a page: the page, or each of its parts."""
-    return [f"{page} {part}" for part in PARTS[page]] if page in PARTS else [page]
+def stale(age):
+    """Print what is old; with an age, a text to fail with if something is for too long, or if a page claims to be newer than it is."""
+    found = renew.jobs(jobs())
+    print("\n".join(renew.report(found)))
+    if age is None:
+        print("\n".join(f"{page}.md: first line brought up to date" for page in state.stamp()))
+        return None
+    late, wrong = renew.too_old(found, age), state.stamp(write=False)
+    out = (
+        [f"old for more than {age} days: {', '.join(sorted({j.words[0] for j in late}))}: python -m validation renew"]
+        if late
+        else []
+    )
+    out += [f"first lines of {', '.join(wrong)} are not up to date: python -m validation --stale"] if wrong else []
+    return "\n".join(out) or None
 
 
-def known_seconds():
-    """CPU seconds of jobs in the last run of everything."""
-    if not SECONDS.is_file():
-        return {}
-    with SECONDS.open(encoding="utf-8", newline="") as file:
-        return {row["job"]: float(row["CPU seconds"]) for row in csv.DictReader(file)}
-
-
-def everything():
-    """Rebuild all pages but the long ones, each in a fresh process as alone; returns the number of jobs that failed.
-
-    Pages that print seconds of the clock run one at a time, at the end, the others two at a time, the longest first.
-    """
-    took = known_seconds()
-    jobs = [job for page in PAGES if page not in LONG for job in jobs_of(page)]
-    wanted = sorted(jobs, key=lambda job: -took.get(job, 0.0))
-    started, failed, new, waiting = time.perf_counter(), [], {}, set(wanted)
-    for workers, pages in ((2, [p for p in wanted if p not in TIMED]), (1, [p for p in wanted if p in TIMED])):
-        with ThreadPoolExecutor(workers) as pool:
-            for job in as_completed([pool.submit(_alone, page) for page in pages]):
-                page, code, told = job.result()
-                waiting.remove(page)
-                if code:
-                    failed.append(page)
-                    print("\n".join(told[-15:]))
-                else:
-                    new[page] = float(told[-1].split(", ")[-1].split()[0])
-                last = "FAILED" if code else "; ".join([*[line for line in told if line.startswith("wrote")][-1:], told[-1]])
-                left = sum(took.get(p, 0.0) / (1 if p in TIMED else 2) for p in waiting)
-                at = f"{time.perf_counter() - started:.0f} s" + (f", about {left:.0f} s left" if took else "")
-                print(f"[{len(wanted) - len(waiting)}/{len(wanted)}, {at}] {last}", flush=True)
-    with SECONDS.open("w", encoding="utf-8", newline="") as file:
-        rows = [(page, f"{seconds:.1f}") for page, seconds in ({p: took[p] for p in wanted if p in took} | new).items()]
-        csv.writer(file, lineterminator="\n").writerows([("job", "CPU seconds"), *sorted(rows)])
-    print(f"{len(wanted)} jobs in {time.perf_counter() - started:.0f} s" + (f"; failed: {', '.join(failed)}" if failed else ""))
-    print("left out: " + "; ".join(f"{page} ({why})" for page, why in LONG.items()))
-    return len(failed)
-
-
-def _alone(page):
-    """Name, exit code and printed lines of a page or a part of one."""
-    done = subprocess.run([sys.executable, "-m", "validation", *page.split()], capture_output=True, text=True, check=False)
-    return page, done.returncode, (done.stderr + done.stdout).splitlines()
-
-
-def _cpu():
-    """CPU seconds of this process and of those it waited for."""
-    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+def compute(page, parts):
+    """Compute a page, or parts of one, in this process, and record what with."""
+    if page in ("slow", *PARTS) and len(parts) != 1:
+        for part in parts or (slow.files() if page == "slow" else PARTS[page]):
+            subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
+        return
+    os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
+    state.watch()
+    if page == "slow":
+        slow.run(parts[0])
+    else:
+        state.running.append(page)
+        made = importlib.import_module(f"validation.make.{page}")
+        made.run(parts) if parts else made.run()
+        if len(state.running) == 1:  # no rows that are kept, and recorded, one by one
+            state.ended(page, " ".join(parts), state.cpu())
+    state.stamp()
+    print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 
 
 if __name__ == "__main__":
