@@ -7,51 +7,18 @@ import subprocess
 import sys
 
 from .shared import renew, slow, state
+from .shared.page import QUESTIONS
 
-PAGES = {
-    "machines": "every printed number of the four machines beside ours, with verdicts",
-    "herringbone_scan": "article S4: which readings of what it does not print bear its table (resumable)",
-    "herringbone": "article S4: ten rows of stiffness against finite elements, and what moves them",
-    "sample": "finite elements against the energy model, and both error estimates, on random pairs (resumable)",
-    "sample_three": "the same in three dimensions: narrow and wide gears, rings, cracks (resumable)",
-    "cracks": "crack reductions and their conventions",
-    "assumptions": "what the assumptions of the scenes do to the stiffness",
-    "outlines": "gaps and stiffness of random pairs against whole outlines pressed together (--reference: resumable)",
-    "truth": "independent values of others, and CalculiX, beside ours",
-    "measured": "measured gearboxes of others, as far as their numbers are public",
-    "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
-    "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
-    "shortcomings": "what gearfe falls short of: the expected failures of its tests",
-    "speed": "seconds against error of every method",
-    "before_after": "seconds, memory and errors beside those of an earlier commit, in one run",
-    "threads": "threads of the caller: bits, crashes, gears solved twice; seconds with threads of the linear algebra",
-    "formulations": "closed forms on known pairs, and what each ingredient changes",
-    "map": "errors of the closed forms over thousands of gear pairs",
-    "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",
-    "dataset": "a classifier trained on a simulated data set, and what it finds by severity",
-    "hard": "hard cases, each with its outcome",
-    "three": "three dimensions: energy model against hexahedra of the whole gear",
-    "pairs_three": "stiffness of pairs in three dimensions against hexahedra of both gears (long: --reference)",
-    "outsider_three": "three dimensions against CalculiX: whole gears in contact and under line loads (--reference)",
-    "holed_cracks": "pits cut out of cracked teeth: the ten rows of S4 with holes (resumable)",
-    "holes": "pits as real holes: volume cut, and what the missing material does to k",
-    "pictures": "stress pictures of every scene and damage case",
-    "hard_three": "hard cases in three dimensions, each with its outcome",
-    "speed_three": "seconds and memory against error in three dimensions",
-    "cost_three": "cost of the energy model in three dimensions over teeth, width, helix angle, order and phases",
-    "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
-    "dynamics": "integrators: seconds against error, all machines at their own steps (resumable)",
-    "hard_dynamics": "hard cases of the dynamics, each with its outcome (resumable)",
-    "own_model": "the example of a curve exported by MATLAB",
-    "readme": "the table and the program output in the README",
-    "tutorials": "what the scripts of the documentation print, for their test",
+PAGES = QUESTIONS | {
+    "own_model": "(a file: the example of a curve exported by MATLAB)",
+    "readme": "(a file: the table and the program output in the README)",
+    "tutorials": "(files: what the scripts of the documentation print, for their test)",
 }
 
-LONG_RUNS = ("pairs_three", "herringbone", "outsider_three", "outlines")  # pages whose finite elements --reference computes
 PARTS = {
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
 }  # each a job of its own
-ROWS = ("dynamics", "hard_dynamics")  # pages whose rows are kept: parts are beginnings of those computed anew
+ROWS = ("detection", "dynamics", "hard", "sample", "three")  # parts of these pages: beginnings of rows to compute anew
 
 
 def main():

@@ -13,12 +13,11 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.files import written
-from gearfe.pictures.sweep_plots import plot_states
 
 from ..shared import machine, sweep_trials, sweeps_page
 from ..shared.places import PAGES, TABLES
 
-PAGE, KEPT, PICTURE = PAGES / "sweeps.md", TABLES / "sweeps.json", PAGES / "sweeps_tolerances.png"
+PAGE, KEPT = PAGES / "sweeps.md", TABLES / "sweeps.json"
 GRID = sweep_trials.BASE | {  # 10 000 cases
     "title": "crack level x angle x load x bore",
     "options": {"method": "ritz", "phases": 32},
@@ -30,64 +29,6 @@ GRID = sweep_trials.BASE | {  # 10 000 cases
     },
 }
 NEW = GRID | {"vary": {"crack.cracked.level": {"from": 0.05, "to": 0.55, "count": 128}}}  # every case another cracked gear
-STATES = {"healthy": "healthy", "10 % crack": "ten", "30 % crack": "thirty"}
-TOLERANCES = {
-    "title": "cracks among manufacturing scatter",
-    "scene": "planetary_pitting",
-    "pair": "sun_planet",
-    "seed": 3,
-    "crack": [{"case": "ten", "gear": "sun", "level": 0.1}, {"case": "thirty", "gear": "sun", "level": 0.3}],
-    "flank": {"sun": {"gear": "sun", "pair": "sun_planet"}, "planet": {"gear": "planet", "pair": "sun_planet"}},
-    "options": {"method": "ritz", "phases": 32, "span": "tooth"},
-    "vary": {"case": list(STATES.values())},
-    "sample": {
-        "method": "sobol",
-        "count": 128,
-        "of": {
-            "gear.sun.x": {"normal": [-0.02, 0.005], "within": [-0.035, -0.005]},
-            "gear.planet.x": {"normal": [-0.02, 0.005], "within": [-0.035, -0.005]},
-            "flank.sun.slope_um": {"normal": [0.0, 3.0], "within": [-6.0, 6.0]},
-            "flank.planet.slope_um": {"normal": [0.0, 3.0], "within": [-6.0, 6.0]},
-            "gear.sun.r_bore_mm": {"uniform": [7.39, 7.41]},
-            "gear.sun.b_mm": {"uniform": [19.9, 20.1]},
-            "material.20CrMnTi.E_MPa": {"normal": [207e3, 2e3]},
-            "pair.sun_planet.force_N": {"normal": [2000.0, 40.0]},
-        },
-    },
-}
-INDICES = TOLERANCES | {"case": "healthy", "vary": {}, "sample": TOLERANCES["sample"] | {"method": "saltelli", "count": 32}}
-
-
-def tolerances():
-    """Bands and told-apart chances of the worked example; draws its picture."""
-    with tempfile.TemporaryDirectory() as name:
-        runs = gf.sweep(TOLERANCES, Path(name) / "runs", workers=1)
-        table = runs.table(where={"status": "done"})
-        curves, means, out = {}, {}, {"cases": len(table), "states": {}}
-        by_draw = {case: own.set_index("draw") for case, own in table.groupby("case")}
-        # the same number of phases in all curves: the engagement's length varies little with the shifts
-        for state, case in STATES.items():
-            found = gf.curve_bands(runs, "k", where={"case": case})
-            curves[state] = (found["phase"].to_numpy(), found["k"].to_numpy() / 1e6)
-            means[state] = by_draw[case]["k_mean"].to_numpy() / 1e6
-        rng = np.random.default_rng(1)
-        healthy = by_draw["healthy"]
-        for state, case in STATES.items():
-            own = by_draw[case]
-            loss = 1 - own["k_mean"] / healthy["k_mean"].reindex(own.index)
-            row = {"mean": float(own["k_mean"].mean()), "spread": float(own["k_mean"].std() / own["k_mean"].mean())}
-            row |= {"loss": float(loss.mean()), "loss_spread": float(loss.std())}
-            row |= {name: gf.told_apart(healthy[name], own[name]) for name in ("k_mean", "k_min", "te_peak_to_peak")}
-            for noise in (0.001, 0.003, 0.01):  # of each of two measurements of one machine
-                quiet, hurt = (rng.normal(0, noise * 2**0.5, (200, len(own))) for _ in range(2))
-                row[f"own {noise}"] = gf.told_apart(quiet.ravel(), (loss.to_numpy() + hurt).ravel())
-            out["states"][state] = row
-        plot_states(curves, means, PICTURE, labels=("mesh phase", "k [N/um]", "mean k [N/um]"))
-        indices = gf.sweep(INDICES, Path(name) / "indices", workers=1)
-        found = gf.sobol_indices(indices, "k_mean")
-        out["indices"] = {key: [float(v) for v in row] for key, row in zip(found.index, found.to_numpy(), strict=True)}
-        out["indices_cases"] = len(indices)
-    return out
 
 
 def new_cracks():
@@ -117,7 +58,7 @@ def grid():
 
 
 PARTS = {
-    "new_cracks": new_cracks, "tolerances": tolerances, "grid": grid, "kills": sweep_trials.kills,
+    "new_cracks": new_cracks, "grid": grid, "kills": sweep_trials.kills,
     "refusals": sweep_trials.refusals, "cluster": sweep_trials.cluster,
 }  # fmt: skip
 

@@ -5,7 +5,7 @@ def page(kept):
     """The page, of the parts on file."""
     sections = {
         "grid": cost, "new_cracks": new_text, "kills": kills_text, "refusals": refusals_text, "cluster": cluster_text,
-        "estimate": million, "tolerances": tolerances_text,
+        "estimate": million,
     }  # fmt: skip
     needed = {"estimate": ("grid", "cluster")}
     lines = ["# Thousands of cases", "", "Made by `python -m validation sweeps`; each part is kept in `tables/sweeps.json`.", ""]
@@ -140,62 +140,3 @@ def million(grid, cluster):
         "(`block = 512`) divide",
         "the cost by 16 and lose more at a kill; where cases take seconds (three dimensions, vibration) computing decides.",
     ]
-
-
-def tolerances_text(found):
-    """The worked example."""
-    states = found["states"]
-    noises = (0.001, 0.003, 0.01)
-    lines = [
-        "## How sure can a 10 % crack be told from manufacturing scatter?",
-        "",
-        f"{found['cases']} cases: 128 draws of a sun-planet pair within tolerances, each healthy, with a",
-        "crack of level 0.1 and of 0.3",
-        "(of the tooth's thickness; 0.5 reaches the centre-line) in the sun. What is drawn, independently:",
-        "profile shifts of both gears",
-        "(standard deviation 0.005 modules, that is 10 um), profile slopes of both (3 um, cut at 6 um), bore",
-        "and face width of the sun",
-        "(+- 0.01 mm, +- 0.1 mm), the modulus of the sun's steel (1 %), the load (2 %). They are assumptions",
-        "of a usual quality, not",
-        "measured on a lot. `ritz`, 32 phases, the engagement of the damaged tooth.",
-        "",
-        "![bands of stiffness and histograms of its mean](sweeps_tolerances.png)",
-        "",
-        "*Bands hold nine of ten machines.* Chance that a cracked machine drawn at random has the lower",
-        "stiffness (the larger",
-        "transmission error) than a healthy one drawn at random; 50 % is a coin:",
-        "",
-        "| state | mean k | scatter | loss of mean k by the crack | by mean k | by least k | by te peak-to-peak |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for state, row in states.items():
-        loss = "" if state == "healthy" else f"{100 * row['loss']:.2f} +- {100 * row['loss_spread']:.2f} %"
-        chances = (1 - row["k_mean"], 1 - row["k_min"], row["te_peak_to_peak"])
-        told = " | ".join("" if state == "healthy" else f"{100 * one:.0f} %" for one in chances)
-        lines.append(f"| {state} | {row['mean'] / 1e6:.1f} N/um | {100 * row['spread']:.1f} % | {loss} | {told} |")
-    lines += [
-        "",
-        "With a record of the same machine when it was healthy, scatter of manufacture falls out, and what",
-        "is left is that of two",
-        "measurements, each with an independent normal error of mean k:",
-        "",
-        "| state | " + " | ".join(f"error {100 * noise:g} %" for noise in noises) + " |",
-        "|---" * (1 + len(noises)) + "|",
-        *(
-            f"| {state} | " + " | ".join(f"{100 * row[f'own {noise}']:.1f} %" for noise in noises) + " |"
-            for state, row in states.items()
-            if state != "healthy"
-        ),
-        "",
-        "Where the scatter of the healthy pair's mean k comes from: Sobol indices of",
-        f"{found['indices_cases']} further cases (first order,",
-        "95 % interval by bootstrap; total). Indices of so small a sample are rough: intervals that reach",
-        "below zero say no more than",
-        "'small'.",
-        "",
-        "| drawn | first order | 95 % | total | 95 % |",
-        "|---|---|---|---|---|",
-    ]
-    for name, (first, low, high, total, bottom, top) in sorted(found["indices"].items(), key=lambda item: -item[1][3]):
-        lines.append(f"| `{name}` | {first:.2f} | {low:.2f} to {high:.2f} | {total:.2f} | {bottom:.2f} to {top:.2f} |")
-    return lines

@@ -1,0 +1,58 @@
+"""A page: the question of a reader as its title, the answer in a sentence, then sections of Markdown."""
+
+import re
+import textwrap
+from itertools import groupby
+from pathlib import Path
+
+from gearfe.files import written
+
+from .places import PAGES
+
+WRAP = {"break_long_words": False, "break_on_hyphens": False}
+
+QUESTIONS = {  # by page, as they stand in the list of pages
+    "truth": "Does gearfe find what others published or computed?",
+    "outlines": "Is the contact of teeth right, beside whole outlines pressed together?",
+    "sample": "Do the error estimates cover, on pairs that nobody chose?",
+    "three": "Is the stiffness in three dimensions right?",
+    "flanks": "Are modified flanks right?",
+    "holes": "What do pits change beyond the contact they take away?",
+    "hard": "What happens in extreme cases?",
+    "map": "How wrong are closed forms, and where may they be used?",
+    "assumptions": "What do values that articles leave out do to the stiffness?",
+    "speed": "What does each method cost, and how wrong is it?",
+    "sweeps": "Can I run thousands of cases, in processes and in threads?",
+    "detection": "How small a crack can be told from the scatter of machines?",
+    "dynamics": "Are simulated vibrations integrated correctly, and how fast?",
+    "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
+    "machines": "Which printed numbers of four machines are reproduced?",
+    "measured": "Does gearfe find what others measured?",
+    "pictures": "What do the damaged teeth of the scenes look like under load?",
+}
+
+
+def text(name, answer, *sections):
+    """A page as Markdown; sections are lines."""
+    lines = [f"# {QUESTIONS[name]}", "", answer]
+    for section in sections:
+        lines += ["", *filled(section)]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def filled(lines):
+    """Lines with their paragraphs, which begin with a letter or with emphasis, broken anew."""
+    for prose, group in groupby(lines, lambda line: bool(re.match(r"[\w`*]", line)) and not re.match(r"\d+\. ", line)):
+        yield from textwrap.wrap(" ".join(group), 120, **WRAP) if prose else group
+
+
+def write(name, *parts):
+    """Write ``pages/NAME.md`` of the arguments of `text`."""
+    with written(PAGES / f"{name}.md") as target:
+        Path(target).write_text(text(name, *parts), encoding="utf-8")
+    print(f"wrote {name}.md")
+
+
+def anew(parts):
+    """Beginnings of rows to compute anew, as of `kept_rows.kept`, of the words of the command line: ``all`` is every row."""
+    return ("",) if "all" in parts else tuple(parts)
