@@ -43,7 +43,8 @@ def text(name, answer, *sections):
 def filled(lines):
     """Lines with their paragraphs, which begin with a letter or with emphasis, broken anew."""
     for prose, group in groupby(lines, lambda line: bool(re.match(r"[\w`*]", line)) and not re.match(r"\d+\. ", line)):
-        yield from textwrap.wrap(" ".join(group), 120, **WRAP) if prose else group
+        own = list(group)
+        yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
 
 
 def write(name, *parts):
