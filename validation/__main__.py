@@ -1,4 +1,4 @@
-"""``python -m validation PAGE``: rebuild a validation page; without PAGE: all of them."""
+"""``python -m validation PAGE``: rebuild a validation page; ``--stale``: what is old; ``renew``: compute that again."""
 
 import argparse
 import importlib
@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-from .shared import renew, slow, state
+from .shared import places, renew, slow, state
 from .shared.page import QUESTIONS
 
 PAGES = QUESTIONS | {
@@ -15,87 +15,96 @@ PAGES = QUESTIONS | {
     "tutorials": "(files: what the scripts of the documentation print, for their test)",
 }
 
-PARTS = {
+PARTS = {  # each a job of its own
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
-}  # each a job of its own
+}
 ROWS = ("detection", "dynamics", "hard", "sample", "three")  # parts of these pages: beginnings of rows to compute anew
+CONTINUED = {  # tables that a job continues where they lie; it is recorded, and renewed, without them
+    "sample": ("sample.csv",),
+    "sample --reference": ("sample_three.jsonl",),
+    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
+    "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
+    "flanks": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
+    "holes": ("holed_cracks.csv",),
+    "sweeps": ("sweeps.json",),
+}
 
 
 def main():
     """Do what is asked for."""
     parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild validation pages; see what is old.")
     parser.add_argument("page", nargs="?", choices=[*PAGES, "slow", "renew"], metavar="PAGE", help="a page, slow or renew")
-    parts = "of machines: pages; of pages with rows on file: beginnings of those to compute anew; of slow: test files"
+    parts = "of pages that keep rows: beginnings of those to compute anew, or all; of machines and renew: pages; of slow: files"
     parser.add_argument("parts", nargs="*", metavar="PART", help=parts)
     parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they take")
-    parser.add_argument(
-        "--stale", action="store_true", help="list what was computed by other code, and bring first lines up to date"
-    )
-    parser.add_argument(
-        "--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if something is old for longer"
-    )
+    parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
+    parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
     parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
-    parser.add_argument("--reference", action="store_true", help="compute the finite elements that are not on file (resumable)")
+    parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file (resumable)")
     arguments = parser.parse_args()
-    if arguments.parts and arguments.page not in ("slow", *PARTS, *ROWS):
-        parser.error(f"only slow, {', '.join([*PARTS, *ROWS])} can be made in part; {arguments.page} is made as a whole")
+    page, parts = arguments.page, arguments.parts
+    if parts and page not in ("slow", "renew", *PARTS, *ROWS):
+        parser.error(f"only slow, renew, {', '.join([*PARTS, *ROWS])} take parts; {page} is made as a whole")
     if arguments.stale:
         sys.exit(stale(arguments.age))
-    if arguments.page == "renew":
-        failed = renew.renew(jobs(), arguments.minutes)
+    elif page == "renew":
+        wanted = [job for job in found() if not parts or job.words[0] in parts]
+        failed = renew.renew(wanted, arguments.minutes, CONTINUED)
         sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
-    if arguments.list or arguments.page is None:
+    elif arguments.list or page is None:
         print(listed())
-    elif arguments.reference:
-        importlib.import_module(f"validation.make.{arguments.page}").reference()
+    elif page in ("slow", *PARTS) and len(parts) != 1:
+        for part in parts or (slow.files() if page == "slow" else PARTS[page]):
+            subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
     else:
-        compute(arguments.page, arguments.parts)
+        compute(page, ["--reference"] if arguments.reference else parts)
 
 
-def jobs():
-    """Pages, and parts of pages that are computed by themselves."""
-    return [job for page in PAGES for job in ([f"{page} {part}" for part in PARTS[page]] if page in PARTS else [page])]
+def found():
+    """All jobs: pages or parts of them, rows that are kept one by one, independent values, slow tests."""
+    pages = [f"{page} {part}".strip() for page in PAGES for part in PARTS.get(page, ("",))]
+    return renew.jobs([*pages, *(job for job in CONTINUED if job.endswith("--reference"))], ROWS)
 
 
 def listed():
     """Pages, CPU seconds of the last run of each, and what is on them."""
-    found = renew.jobs(jobs())
-    return "\n".join(f"{page:14s} {renew.cost([j for j in found if j.words[0] == page]):>10s}  {PAGES[page]}" for page in PAGES)
+    jobs = found()
+    return "\n".join(f"{page:14s} {PAGES[page]} {renew.cost([j for j in jobs if j.words[0] == page])}" for page in PAGES)
 
 
 def stale(age):
-    """Print what is old; with an age, a text to fail with if something is for too long, or if a page claims to be newer than it is."""
-    found = renew.jobs(jobs())
-    print("\n".join(renew.report(found)))
+    """Print what is old; with an age, the text of a failure: what is old for longer, pages that say another number; else None."""
+    jobs = found()
+    print("\n".join(renew.report(jobs)))
     if age is None:
         print("\n".join(f"{page}.md: first line brought up to date" for page in state.stamp()))
         return None
-    late, wrong = renew.too_old(found, age), state.stamp(write=False)
-    out = (
-        [f"old for more than {age} days: {', '.join(sorted({j.words[0] for j in late}))}: python -m validation renew"]
-        if late
-        else []
-    )
-    out += [f"first lines of {', '.join(wrong)} are not up to date: python -m validation --stale"] if wrong else []
+    late = sorted({" ".join(job.words[:1]) for job in renew.too_old(jobs, age)})
+    wrong, out = state.stamp(write=False), []
+    if late:
+        out.append(f"old for more than {age} days, see python -m validation renew: {', '.join(late)}")
+    if wrong:
+        out.append(f"first lines that python -m validation --stale brings up to date: {', '.join(wrong)}")
     return "\n".join(out) or None
 
 
 def compute(page, parts):
-    """Compute a page, or parts of one, in this process, and record what with."""
-    if page in ("slow", *PARTS) and len(parts) != 1:
-        for part in parts or (slow.files() if page == "slow" else PARTS[page]):
-            subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
-        return
+    """Compute a page, parts of one or its independent values in this process, and record what with."""
     os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
     state.watch()
     if page == "slow":
         slow.run(parts[0])
     else:
-        state.running.append(page)
+        job = " ".join([page, *parts]) if page in PARTS or parts == ["--reference"] else page
+        begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
+        state.running.append(job)
         made = importlib.import_module(f"validation.make.{page}")
-        made.run(parts) if parts else made.run()
-        if len(state.running) == 1:  # no rows that are kept, and recorded, one by one
-            state.ended(page, " ".join(parts), state.cpu())
+        if parts == ["--reference"]:
+            made.reference()
+        else:
+            made.run(parts) if parts else made.run()
+        if not begun:
+            state.ended(job, state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 

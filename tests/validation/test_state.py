@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -42,8 +43,12 @@ def project(tmp_path):
         (tmp_path / folder / "__init__.py").touch()
     shutil.copytree(home / "shared", tmp_path / "validation" / "shared", ignore=shutil.ignore_patterns("arbiter", "__pycache__"))
     for name in ("__init__.py", "__main__.py"):
-        text = (home / name).read_text().replace("PAGES = {", "PAGES = {'cracks': '', 'dynamics': ''}\n_ = {", 1)
-        (tmp_path / "validation" / name).write_text(text)
+        shutil.copy(home / name, tmp_path / "validation")
+    text = re.sub(
+        "PAGES = QUESTIONS.*?\n}", "PAGES = {'cracks': '', 'dynamics': ''}", (home / "__main__.py").read_text(), flags=re.S
+    )
+    text = re.sub("CONTINUED = {.*?\n}", "CONTINUED = {'cracks': ('cracks.csv',)}", text, flags=re.S)
+    (tmp_path / "validation/__main__.py").write_text(text)
     for name, text in {
         "gearfe/used.py": MODULE,
         "gearfe/idle.py": MODULE,

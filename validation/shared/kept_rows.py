@@ -27,14 +27,12 @@ def kept(name, key, make, again=()):
     `again`: beginnings of the keys of rows that are made anew.
     """
     known, started = stored(name), state.cpu()
-    state.running += [key] if state.running else []
+    state.running += [f"{name}.jsonl"] if state.running else []
     if key in known and not any(key.startswith(part) for part in again):
         return known[key]
     known[key] = {"row": key} | make()
     TABLES.mkdir(exist_ok=True)
     state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in known.values()))
-    if state.running:
-        page = state.running[0]
-        state.record(f"{page} {key}", state.cpu() - started, 1, page, name)
+    state.kept(name, key, state.cpu() - started)
     print(f"{name}: {key}", flush=True)
     return known[key]

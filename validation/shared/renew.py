@@ -1,5 +1,6 @@
 """What is old, how long it takes, and computing it again within a given time."""
 
+import math
 import os
 import shutil
 import signal
@@ -15,6 +16,8 @@ from typing import NamedTuple
 
 from . import places, slow, state
 
+AT_ONCE = 60.0  # CPU seconds of rows that one process computes, so that a stop loses little
+
 
 class Job(NamedTuple):
     """What `python -m validation` computes at once."""
@@ -25,43 +28,46 @@ class Job(NamedTuple):
     date: str  # empty: never computed
     seconds: float | None  # of the processor; None: unknown
     days: int | None = None  # since when it is old
+    row: bool = False  # whether it is one of the rows that a page computes by their names
 
 
-def jobs(pages):
-    """All jobs: those of the state, and the pages and files of slow tests that are not in it.
+def jobs(wanted, rows):
+    """All jobs: those of the state that are still wanted, and what is wanted and not in it.
 
     Parameters
     ----------
-    pages : iterable of str
-        Pages and, with a space between, parts of pages that are computed by themselves.
+    wanted : iterable of str
+        Pages, and parts of pages that are computed by themselves, with a space between.
+    rows : iterable of str
+        Pages that compute some of their rows by their names.
     """
-    lines, told = state.read()
-    out = {}
+    (lines, told), out = state.read(), {}
+    wanted = [*wanted, *(f"slow {file}" for file in slow.files())]
     for (name, _), line in lines.items():
-        words = tuple(name.split(" ", 1))
-        if not _known(words, pages):
+        page, _, part = name.partition(" ")
+        if name not in wanted and page not in wanted:
             continue
+        words = (page, part) if part and (name in wanted or page in rows) else (page,)
         old = not state.present(line, told)
-        one = Job(words, line["rows"], old, line["date"], line.get("cpu"), days_old(line, told) if old else 0)
+        one = Job(
+            words,
+            line["rows"],
+            old,
+            line["date"],
+            line.get("cpu"),
+            days_old(line, told) if old else 0,
+            len(words) > 1 and name not in wanted,
+        )
         out[words] = _both(out[words], one) if words in out else one
-    there = {name.split(" ", 1)[0] for name, _ in lines} | {name for name, _ in lines}
-    wanted = [*pages, *(f"slow {file}" for file in slow.files())]
-    missing = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
-    return [*out.values(), *(Job(words, 1, True, "", None) for words in missing)]
-
-
-def _known(words, pages):
-    """Whether a job of the state still exists: its page, or its part, or its file of slow tests."""
-    if words[0] == "slow":
-        return words[1] in slow.files()
-    return words[0] in pages or " ".join(words) in pages
+    there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows and words[1:] != ("--reference",)}
+    return [*out.values(), *(Job(tuple(name.split(" ", 1)), 1, True, "", None) for name in wanted if name not in there)]
 
 
 def _both(one, two):
     """Rows of the same name in two tables of a page are computed together."""
     days = None if None in (one.days, two.days) else max(one.days, two.days)
     seconds = None if None in (one.seconds, two.seconds) else one.seconds + two.seconds
-    return Job(one.words, one.rows + two.rows, one.old or two.old, min(one.date, two.date), seconds, days)
+    return Job(one.words, one.rows + two.rows, one.old or two.old, min(one.date, two.date), seconds, days, one.row)
 
 
 def days_old(line, told):
@@ -111,36 +117,52 @@ def too_old(found, most):
     return [one for one in found if one.old and (one.days is None or one.days > most)]
 
 
-def renew(pages, minutes):
-    """Compute the oldest jobs again, those of earlier code first, as many as fit; the names of those that failed.
+def renew(found, minutes, continued):
+    """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
     A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is stopped
     or fails leaves nothing behind: a job writes beside the pages, and its files are moved there, each whole, the state last.
+
+    Parameters
+    ----------
+    found : list of Job
+    minutes : float
+        Of the clock.
+    continued : dict of str to tuple of str
+        By job: tables that it would continue where they lie; it is given none of them.
     """
     end, failed = time.monotonic() + 60 * minutes, []
-    for job in sorted(jobs(pages), key=lambda one: (not one.old, one.seconds is None, one.date, one.words)):
-        left = end - time.monotonic()
+    waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
+    while waiting:
+        job, left = waiting.pop(0), end - time.monotonic()
         if left <= 0 or (job.seconds or 0.0) > left:
             continue
-        code, told = alone(job.words, left)
+        words, cost_of = list(job.words), job.seconds
+        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0] and cost_of is not None:
+            cost_of += waiting[0].seconds or math.inf
+            if cost_of > min(left, AT_ONCE):
+                break
+            words.append(waiting.pop(0).words[1])
+        code, told = alone(words, left, continued.get(" ".join(words), ()))
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
-        print(f"{' '.join(job.words)}: {outcome}", flush=True)
+        print(f"{', '.join(words)}: {outcome}", flush=True)
         if code:
             print("\n".join(told[-15:]), flush=True)
-            failed.append(" ".join(job.words))
+            failed.append(", ".join(words))
     state.stamp()
     return failed
 
 
-def alone(words, seconds):
+def alone(words, seconds, without=()):
     """Exit code (None: stopped) and printed lines of a job in a process of its own; what it wrote is kept if it ended well."""
     with tempfile.TemporaryDirectory(prefix=".pages.", dir=places.HOME) as folder:
         beside = Path(folder) / "pages"
         shutil.copytree(places.PAGES, beside)
-        own = os.environ | {"GEARFE_PAGES": str(beside)}
+        for name in without:
+            (beside / "tables" / name).unlink(missing_ok=True)
         command = [sys.executable, "-m", "validation", *words]
-        out = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True, "start_new_session": True}
-        with subprocess.Popen(command, cwd=places.ROOT, env=own, **out) as process:
+        own = {"cwd": places.ROOT, "env": os.environ | {"GEARFE_PAGES": str(beside)}, "start_new_session": True}
+        with subprocess.Popen(command, **own, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
             try:
                 told = process.communicate(timeout=seconds)[0]
             except BaseException as error:

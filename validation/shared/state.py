@@ -33,16 +33,18 @@ ASIDE = {  # they name, find, keep and write: no number depends on them
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
-opened = set()  # files that this process opened since `watch`; "python" if it started one
-running = []  # the page that this process computes, then the rows of it that `kept_rows` was asked for; empty in tests
+opened, wrote = set(), set()  # files that this process opened or wrote since `watch`; among the first "python" if it started one
+running, spent = [], []  # the job that this process computes, then its tables of kept rows (empty in tests); CPU seconds of rows
 
 
 def watch():
     """Note from now on what this process opens and whether it starts Python."""
 
     def note(event, words):
-        if event in ("open", "os.rename"):
-            opened.add(str(words[event == "os.rename"]))
+        if event == "open":
+            (wrote if set(words[1] or "") & set("wax+") else opened).add(str(words[0]))
+        elif event == "os.rename":
+            wrote.add(str(words[1]))
         elif event == "subprocess.Popen" and "python" in Path(str(words[0])).name:
             opened.add("python")
 
@@ -195,17 +197,29 @@ def present(line, told):
     return "code" in line and line["code"] == digest(files_of(line, told))
 
 
-def ended(page, part, seconds):
-    """Record a page or a part of one that was computed as a whole: its rows are those of the tables it wrote, else of its Markdown."""
-    there = [path for path in map(Path, opened) if path.is_relative_to(places.PAGES) and path.is_file()]
+def kept(table, key, seconds):
+    """Record a row of a table of rows that are kept one by one, if this process computes a page."""
+    page, _, part = running[0].partition(" ") if running else ("", "", "")
+    if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
+        record(running[0], seconds, 1, page, f"{table} {key}")
+    elif page:
+        record(f"{page} {key}", seconds, 1, page, table)
+    spent.append(seconds)
+
+
+def ended(job, seconds):
+    """Record what a job computed as a whole: rows of the tables it wrote, but for those kept one by one; else of its Markdown."""
+    page, _, part = job.partition(" ")
+    there = {path for path in map(Path, wrote) if path.parent == places.TABLES and path.is_file()}
+    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.name not in (*running, "state.jsonl")]
+    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
     shown = part if (places.PAGES / f"{part}.md").is_file() else page
     text = places.PAGES / f"{shown}.md"
-    tables = [path for path in there if path.parent == places.TABLES and path.suffix in (".csv", ".jsonl")]
-    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
-    if not rows and text.is_file():
+    if not rows and len(running) == 1 and text.is_file():
         lines = text.read_text(encoding="utf-8").splitlines()
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
-    record(f"{page} {part}".strip(), seconds, max(rows, 1), shown if text.is_file() else "")
+    if rows or len(running) == 1:
+        record(job, seconds - sum(spent), max(rows, 1), shown if text.is_file() else "")
 
 
 def first_line(page, jobs, told):
