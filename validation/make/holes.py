@@ -1,5 +1,4 @@
-"""The page `holes`: pits cut out of teeth, healthy and cracked, and what the missing material changes that lost contact does "
-"not."""
+"""The page `holes`: pits cut out of teeth, healthy and cracked, and what that changes beyond lost contact."""
 
 import numpy as np
 
