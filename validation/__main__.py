@@ -15,18 +15,17 @@ PAGES = QUESTIONS | {
     "tutorials": "(files: what the scripts of the documentation print, for their test)",
 }
 
-PARTS = {  # each a job of its own
-    "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
+PARTS = {  # what is computed at once, where that is not the page
+    "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
+    **dict.fromkeys(("herringbone", "sample", "three"), ("all",)),
 }
-ROWS = ("detection", "dynamics", "hard", "sample", "three")  # parts of these pages: beginnings of rows to compute anew
-CONTINUED = {  # tables that a job continues where they lie; it is recorded, and renewed, without them
-    "sample": ("sample.csv",),
-    "sample --reference": ("sample_three.jsonl",),
-    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
-    "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
+ROWS = ("detection", "dynamics", "hard", "holes", "sample", "three")  # parts are beginnings of the rows to compute anew
+CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
-    "holes": ("holed_cracks.csv",),
+    "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
+    "sample --reference": ("sample_three.jsonl",),
     "sweeps": ("sweeps.json",),
+    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
 }
 
 
@@ -35,6 +34,7 @@ def main():
     parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild validation pages; see what is old.")
     parser.add_argument("page", nargs="?", choices=[*PAGES, "slow", "renew"], metavar="PAGE", help="a page, slow or renew")
     parts = "of pages that keep rows: beginnings of those to compute anew, or all; of machines and renew: pages; of slow: files"
+    takes = ("slow", "renew", *PARTS, *ROWS)
     parser.add_argument("parts", nargs="*", metavar="PART", help=parts)
     parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they take")
     parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
@@ -43,8 +43,8 @@ def main():
     parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file (resumable)")
     arguments = parser.parse_args()
     page, parts = arguments.page, arguments.parts
-    if parts and page not in ("slow", "renew", *PARTS, *ROWS):
-        parser.error(f"only slow, renew, {', '.join([*PARTS, *ROWS])} take parts; {page} is made as a whole")
+    if parts and page not in takes:
+        parser.error(f"only {', '.join(sorted(set(takes)))} take parts; {page} is made as a whole")
     if arguments.stale:
         sys.exit(stale(arguments.age))
     elif page == "renew":
@@ -53,17 +53,22 @@ def main():
         sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
     elif arguments.list or page is None:
         print(listed())
-    elif page in ("slow", *PARTS) and len(parts) != 1:
+    elif page in ("slow", "machines") and len(parts) != 1:
         for part in parts or (slow.files() if page == "slow" else PARTS[page]):
             subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
     else:
         compute(page, ["--reference"] if arguments.reference else parts)
 
 
-def found():
-    """All jobs: pages or parts of them, rows that are kept one by one, independent values, slow tests."""
+def whole():
+    """What is computed as a whole: pages or parts of them, and independent values."""
     pages = [f"{page} {part}".strip() for page in PAGES for part in PARTS.get(page, ("",))]
-    return renew.jobs([*pages, *(job for job in CONTINUED if job.endswith("--reference"))], ROWS)
+    return [*pages, *(job for job in CONTINUED if job.endswith("--reference"))]
+
+
+def found():
+    """All jobs: with the rows that are kept one by one and the slow tests."""
+    return renew.jobs(whole(), ROWS)
 
 
 def listed():
@@ -95,7 +100,7 @@ def compute(page, parts):
     if page == "slow":
         slow.run(parts[0])
     else:
-        job = " ".join([page, *parts]) if page in PARTS or parts == ["--reference"] else page
+        job = " ".join([page, *parts])
         begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
         state.running.append(job)
         made = importlib.import_module(f"validation.make.{page}")
@@ -103,7 +108,7 @@ def compute(page, parts):
             made.reference()
         else:
             made.run(parts) if parts else made.run()
-        if not begun:
+        if job in whole() and not begun:
             state.ended(job, state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")

@@ -43,9 +43,10 @@ def jobs(wanted, rows):
     """
     (lines, told), out = state.read(), {}
     wanted = [*wanted, *(f"slow {file}" for file in slow.files())]
+    pages = {name.partition(" ")[0] for name in wanted} - {"slow"}
     for (name, _), line in lines.items():
         page, _, part = name.partition(" ")
-        if name not in wanted and page not in wanted:
+        if name not in wanted and page not in pages:
             continue
         words = (page, part) if part and (name in wanted or page in rows) else (page,)
         old = not state.present(line, told)
@@ -59,7 +60,7 @@ def jobs(wanted, rows):
             len(words) > 1 and name not in wanted,
         )
         out[words] = _both(out[words], one) if words in out else one
-    there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows and words[1:] != ("--reference",)}
+    there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows}
     return [*out.values(), *(Job(tuple(name.split(" ", 1)), 1, True, "", None) for name in wanted if name not in there)]
 
 
