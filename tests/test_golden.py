@@ -89,7 +89,7 @@ def test_every_assumption_says_what_depends_on_it(name):
 
 
 def test_every_page_can_be_asked_for():
-    assert set(pages.LONG) | set(pages.TIMED) < set(pages.PAGES)
+    assert set(pages.PARTS) | set(pages.ROWS) | {job.split()[0] for job in pages.CONTINUED} < set(pages.PAGES)
     for page in pages.PAGES:
         assert (places.HOME / "make" / f"{page}.py").is_file(), page
 

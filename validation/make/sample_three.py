@@ -14,7 +14,6 @@ from gearfe.contact.solid import STEP, pair_stiffness3d
 from gearfe.energy.ritz.solid import axial_degree
 from geometry.damage.crack import crack_path
 
-from ..shared import code
 from ..shared.kept_rows import kept, stored
 
 TABLE, OURS = "sample_three", "sample_three_ritz3d"
@@ -95,8 +94,7 @@ def brute(kind, seed):
     """What is kept of the hexahedra and the finer solution: k and estimates at each phase; why not, if a method refuses."""
     case, run = case_of(kind, seed)
     pair, damage, phases = case[0], run["damage"], run["phases"]
-    out = {"kind": kind, "pair": named(pair, damage), "load": case[1] / pair.gear_1.b}
-    out |= {"code": code.fingerprint(), "phase": phases.tolist()}
+    out = {"kind": kind, "pair": named(pair, damage), "load": case[1] / pair.gear_1.b, "phase": phases.tolist()}
     try:
         fine, fine_seconds = timed(lambda: finest(*case, damage, phases))
         found, seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
@@ -110,12 +108,11 @@ def brute(kind, seed):
 def ours(kind, seed):
     """What is kept of `ritz3d`."""
     case, run = case_of(kind, seed)
-    out = {"code": code.fingerprint()}
     try:
         found, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
     except RuntimeError as error:
-        return out | {"failed": str(error)}
-    return out | {"k": found.k.tolist(), "error": found.error.tolist(), "seconds": round(seconds, 1)}
+        return {"failed": str(error)}
+    return {"k": found.k.tolist(), "error": found.error.tolist(), "seconds": round(seconds, 1)}
 
 
 def timed(work):

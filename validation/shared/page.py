@@ -3,11 +3,8 @@
 import re
 import textwrap
 from itertools import groupby
-from pathlib import Path
-
-from gearfe.files import written
-
 from .places import PAGES
+from .state import replace
 
 WRAP = {"break_long_words": False, "break_on_hyphens": False}
 
@@ -49,8 +46,7 @@ def filled(lines):
 
 def write(name, *parts):
     """Write ``pages/NAME.md`` of the arguments of `text`."""
-    with written(PAGES / f"{name}.md") as target:
-        Path(target).write_text(text(name, *parts), encoding="utf-8")
+    replace(PAGES / f"{name}.md", text(name, *parts))
     print(f"wrote {name}.md")
 
 

@@ -1,0 +1,249 @@
+"""What every row was computed with: `pages/tables/state.jsonl`, one line of JSON for each job.
+
+A job is what is computed together: a page, a part of one, a row that is kept by itself, the slow tests of a file. Its line says
+the commit, the day, the CPU seconds, the number of rows and, by their keys, the machine with its libraries and the files: all
+modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is their
+digest: without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own is held
+to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+"""
+
+import ast
+import fcntl
+import hashlib
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+import tomllib
+from contextlib import contextmanager
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+
+from . import machine, places
+
+CODE = ("geometry", "gearfe", "validation", "tests")
+LIBRARIES = ("numpy", "scipy", "gmsh", "scikit-fem", "vtk")
+DATA = (".toml", ".csv", ".npz")
+KEEPERS = ("__init__", "kept_rows", "machine", "page", "places", "renew", "slow", "state", "table_rows")
+ASIDE = {  # they name, find, keep and write: no number depends on them
+    *("geometry/__init__.py", "gearfe/__init__.py", "validation/__init__.py", "validation/__main__.py"),
+    *(f"validation/shared/{name}.py" for name in KEEPERS),
+}
+SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
+opened, wrote = set(), set()  # files that this process opened or wrote since `watch`; among the first "python" if it started one
+running, spent = [], []  # the job that this process computes, then its tables of kept rows (empty in tests); CPU seconds of rows
+
+
+def watch():
+    """Note from now on what this process opens and whether it starts Python."""
+
+    def note(event, words):
+        if event == "open":
+            (wrote if set(words[1] or "") & set("wax+") else opened).add(str(words[0]))
+        elif event == "os.rename":
+            wrote.add(str(words[1]))
+        elif event == "subprocess.Popen" and "python" in Path(str(words[0])).name:
+            opened.add("python")
+
+    sys.addaudithook(note)
+
+
+def cpu():
+    """CPU seconds of this process and of those it waited for."""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+
+
+def used():
+    """Files that decide what this process has computed, as paths below the root."""
+    paths = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
+    paths |= {path for path in opened if path.endswith(DATA)}
+    if "python" in opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
+        paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
+    below = {Path(path).resolve() for path in paths if path}
+    names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
+    own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.")
+    return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
+
+
+def digest(names):
+    """Ten hexadecimal digits of what the files mean."""
+    return hashlib.sha256("\n".join(f"{name} {meaning(places.ROOT / name)}" for name in sorted(names)).encode()).hexdigest()[:10]
+
+
+@cache
+def meaning(path):
+    """Digest of a file: of the syntax tree of a module without docstrings, of the values of a TOML file, else of its bytes."""
+    if not path.is_file():
+        return "missing"
+    text = path.read_bytes()
+    if path.suffix == ".py":
+        words = []
+        _spell(ast.parse(text), words)
+        text = " ".join(words).encode()
+    elif path.suffix == ".toml":
+        text = repr(tomllib.loads(text.decode())).encode()
+    return hashlib.sha256(text).hexdigest()
+
+
+def _spell(node, words):
+    """Append a syntax tree; unlike `ast.dump` the same in all versions of Python. A text that stands alone is a docstring."""
+    words.append(type(node).__name__)
+    for name in node._fields:
+        value = getattr(node, name, None)
+        if value is None or value == [] or name in SILENT:
+            continue
+        words.append(name)
+        for one in value if isinstance(value, list) else [value]:
+            if not isinstance(one, ast.AST):
+                words.append(repr(one))
+            elif not (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant)):
+                _spell(one, words)
+    words.append(")")
+
+
+def git(*words):
+    """What git prints; nothing outside a repository or where it knows no answer."""
+    try:
+        return subprocess.run(["git", *words], cwd=places.ROOT, capture_output=True, text=True, check=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def commit():
+    """Short name of the commit, with a plus if modules differ from it; empty outside a repository."""
+    head = git("rev-parse", "--short=7", "HEAD")
+    return head + ("+" if head and git("status", "--porcelain", "--", *CODE, ":!validation/pages") else "")
+
+
+def read(folder=None):
+    """Of the tables or those of another folder: lines of jobs by job and table, and what their keys stand for. A merge may leave two lines of a job: the later day counts."""
+    jobs, told = {}, {}
+    path = (folder or places.TABLES) / "state.jsonl"
+    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
+        one = json.loads(line)
+        if "key" in one:
+            told[one.pop("key")] = one
+        elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
+            jobs[one["job"], one["table"]] = one
+    return jobs, told
+
+
+def replace(path, text):
+    """Write a file so that it is whole at every moment; `gearfe.files.written` would load numpy for it."""
+    beside = path.with_name(f".{path.name}.{os.getpid()}")
+    beside.write_text(text, encoding="utf-8")
+    os.replace(beside, path)
+
+
+@contextmanager
+def changed():
+    """Jobs and keys, to be changed: written when the block ends, whole; processes wait for each other."""
+    places.TABLES.mkdir(exist_ok=True)
+    lock = os.open(places.TABLES, os.O_RDONLY)
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        jobs, told = read()
+        yield jobs, told
+        asked = {one[name] for one in jobs.values() for name in ("files", "on") if name in one}
+        lines = [json.dumps(jobs[job]) for job in sorted(jobs)]
+        lines += [json.dumps({"key": key} | told[key]) for key in sorted(asked)]
+        replace(places.TABLES / "state.jsonl", "\n".join([*lines, ""]))
+    finally:
+        os.close(lock)
+
+
+def record(job, seconds, rows, page, table="", **more):
+    """Write the line of a job that has just ended in this process.
+
+    Parameters
+    ----------
+    job : str
+        The page and its part: what `python -m validation` is given to compute it again.
+    seconds : float
+        Of the processor.
+    rows : int
+        How many it computed.
+    page : str
+        Stem of the Markdown that shows them; empty if none does.
+    table : str
+        Where rows are kept one by one: of two tables of a page with the same row, each has its line.
+    **more
+        Anything else to be told.
+    """
+    names, known = used(), {name: version(name) for name in LIBRARIES}
+    folded = {}
+    for name in names:
+        folder, _, stem = name.rpartition("/")
+        folded[folder] = f"{folded.get(folder, '')} {stem.removesuffix('.py')}".strip()
+    facts = {"files": {"files": folded}, "on": {"machine": machine.describe(), "libraries": known}}
+    keys = {name: hashlib.sha256(json.dumps(fact).encode()).hexdigest()[:8] for name, fact in facts.items()}
+    line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1), "date": time.strftime("%Y-%m-%d")}
+    with changed() as (jobs, told):
+        jobs[job, table] = line | {"commit": commit(), "code": digest(names)} | keys | more
+        told.update({keys[name]: fact for name, fact in facts.items()})
+
+
+def files_of(line, told):
+    """Paths below the root of the files behind a line, none if unknown."""
+    folded = told[line["files"]]["files"] if "files" in line else {}
+    return [f"{folder}/{stem}{'' if '.' in stem else '.py'}" for folder, stems in folded.items() for stem in stems.split()]
+
+
+def present(line, told):
+    """Whether a line is of the code as it is now; not if it does not say of which it is."""
+    return "code" in line and line["code"] == digest(files_of(line, told))
+
+
+def kept(table, key, seconds):
+    """Record a row of a table of rows that are kept one by one, if this process computes a page."""
+    page, _, part = running[0].partition(" ") if running else ("", "", "")
+    if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
+        record(running[0], seconds, 1, page, f"{table} {key}")
+    elif page:
+        record(f"{page} {key}", seconds, 1, page, table)
+    spent.append(seconds)
+
+
+def ended(job, seconds):
+    """Record what a job computed as a whole: rows of the tables it wrote, but for those kept one by one; else of its Markdown."""
+    page, _, part = job.partition(" ")
+    there = {path for path in map(Path, wrote) if path.parent == places.TABLES and path.is_file()}
+    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.name not in (*running, "state.jsonl")]
+    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
+    shown = part if (places.PAGES / f"{part}.md").is_file() else page
+    text = places.PAGES / f"{shown}.md"
+    if not rows and len(running) == 1 and text.is_file():
+        lines = text.read_text(encoding="utf-8").splitlines()
+        rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
+    if rows or len(running) == 1:
+        record(job, seconds - sum(spent), max(rows, 1), shown if text.is_file() else "")
+
+
+def first_line(page, jobs, told):
+    """How many rows of a page are of the present code."""
+    own = [line for line in jobs.values() if line["page"] == page]
+    return (
+        f"{sum(one['rows'] for one in own if present(one, told))} of {sum(one['rows'] for one in own)} rows on the present code"
+    )
+
+
+def without_first_line(page):
+    """A page as its maker wrote it."""
+    text = (places.PAGES / f"{page}.md").read_text(encoding="utf-8")
+    return text.partition("\n\n")[2] if "rows on the present code" in text.partition("\n")[0] else text
+
+
+def stamp(*, write=True):
+    """Bring the first lines of all pages up to date; the names of those that said something else."""
+    jobs, told = read()
+    out = []
+    for page in sorted({line["page"] for line in jobs.values() if (places.PAGES / f"{line['page']}.md").is_file()}):
+        path, line = places.PAGES / f"{page}.md", first_line(page, jobs, told)
+        if path.read_text(encoding="utf-8").partition("\n")[0] != line:
+            out.append(page)
+            if write:
+                replace(path, f"{line}\n\n{without_first_line(page)}")
+    return out
