@@ -74,7 +74,8 @@ def _both(one, two):
 def days_old(line, told):
     """Days between the first commit after that of a line that touched one of its files and the present one.
 
-    Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history: since
+    Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history:
+    since
     the day of the line itself.
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
@@ -121,7 +122,8 @@ def too_old(found, most):
 def renew(found, minutes, continued):
     """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
-    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is stopped
+    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
+    stopped
     or fails leaves nothing behind: a job writes beside the pages, and its files are moved there, each whole, the state last.
 
     Parameters
