@@ -38,8 +38,8 @@ def text(name, answer, *sections):
 
 
 def filled(lines):
-    """Lines with their paragraphs, which begin with a letter or with emphasis, broken anew."""
-    for prose, group in groupby(lines, lambda line: bool(re.match(r"[\w`*]", line)) and not re.match(r"\d+\. ", line)):
+    """Lines with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
+    for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. )[^|#!\s-]", line) is not None):
         own = list(group)
         yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
 
