@@ -102,14 +102,14 @@ def compute(page, parts):
     else:
         job = " ".join([page, *parts])
         begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
-        state.running.append(job)
+        state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
         if parts == ["--reference"]:
             made.reference()
         else:
             made.run(parts) if parts else made.run()
         if job in whole() and not begun:
-            state.ended(job, state.cpu())
+            state.ended(state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 

@@ -1,6 +1,5 @@
 """What is old, how long it takes, and computing it again within a given time."""
 
-import math
 import os
 import shutil
 import signal
@@ -16,7 +15,7 @@ from typing import NamedTuple
 
 from . import places, slow, state
 
-AT_ONCE = 60.0  # CPU seconds of rows that one process computes, so that a stop loses little
+AT_ONCE, A_ROW = 60.0, 5.0  # CPU seconds of rows that one process computes, so that a stop loses little; of one of unknown cost
 
 
 class Job(NamedTuple):
@@ -74,8 +73,8 @@ def _both(one, two):
 def days_old(line, told):
     """Days between the first commit after that of a line that touched one of its files and the present one.
 
-    Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history: since
-    the day of the line itself.
+    Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history:
+    since the day of the line itself.
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
     return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"])).days
@@ -121,8 +120,8 @@ def too_old(found, most):
 def renew(found, minutes, continued):
     """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
-    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is stopped
-    or fails leaves nothing behind: a job writes beside the pages, and its files are moved there, each whole, the state last.
+    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
+    stopped or fails leaves nothing behind: a job writes beside the pages; its files are moved there, each whole, the state last.
 
     Parameters
     ----------
@@ -138,10 +137,10 @@ def renew(found, minutes, continued):
         job, left = waiting.pop(0), end - time.monotonic()
         if left <= 0 or (job.seconds or 0.0) > left:
             continue
-        words, cost_of = list(job.words), job.seconds
-        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0] and cost_of is not None:
-            cost_of += waiting[0].seconds or math.inf
-            if cost_of > min(left, AT_ONCE):
+        words, load = list(job.words), job.seconds or A_ROW
+        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0]:
+            load += waiting[0].seconds or A_ROW
+            if load > min(left, AT_ONCE):
                 break
             words.append(waiting.pop(0).words[1])
         code, told = alone(words, left, continued.get(" ".join(words), ()))

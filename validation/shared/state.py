@@ -2,15 +2,16 @@
 
 A job is what is computed together: a page, a part of one, a row that is kept by itself, the slow tests of a file. Its line says
 the commit, the day, the CPU seconds, the number of rows and, by their keys, the machine with its libraries and the files: all
-modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is their
-digest: without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own is held
-to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is
+their digest, without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own
+is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
 """
 
 import ast
 import fcntl
 import hashlib
 import json
+import math
 import os
 import resource
 import subprocess
@@ -21,6 +22,7 @@ from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 
 from . import machine, places
 
@@ -33,8 +35,14 @@ ASIDE = {  # they name, find, keep and write: no number depends on them
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
-opened, wrote = set(), set()  # files that this process opened or wrote since `watch`; among the first "python" if it started one
-running, spent = [], []  # the job that this process computes, then its tables of kept rows (empty in tests); CPU seconds of rows
+run = SimpleNamespace(  # what this process computes
+    job="",  # page and part; empty in tests, where nothing is recorded
+    started=math.inf,  # when `watch` was called; since then:
+    opened=set(),  # files opened, and "python" if one was started
+    wrote=set(),  # files written
+    tables=set(),  # tables of rows that are kept one by one
+    seconds=0.0,  # of the processor for such rows
+)
 
 
 def watch():
@@ -42,12 +50,13 @@ def watch():
 
     def note(event, words):
         if event == "open":
-            (wrote if set(words[1] or "") & set("wax+") else opened).add(str(words[0]))
+            (run.wrote if set(words[1] or "") & set("wax+") else run.opened).add(str(words[0]))
         elif event == "os.rename":
-            wrote.add(str(words[1]))
+            run.wrote.add(str(words[1]))
         elif event == "subprocess.Popen" and "python" in Path(str(words[0])).name:
-            opened.add("python")
+            run.opened.add("python")
 
+    run.started = time.time()
     sys.addaudithook(note)
 
 
@@ -59,8 +68,8 @@ def cpu():
 def used():
     """Files that decide what this process has computed, as paths below the root."""
     paths = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
-    paths |= {path for path in opened if path.endswith(DATA)}
-    if "python" in opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
+    paths |= {path for path in run.opened if path.endswith(DATA)}
+    if "python" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
         paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
     below = {Path(path).resolve() for path in paths if path}
     names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
@@ -119,7 +128,10 @@ def commit():
 
 
 def read(folder=None):
-    """Of the tables or those of another folder: lines of jobs by job and table, and what their keys stand for. A merge may leave two lines of a job: the later day counts."""
+    """Lines of jobs by job and table, and what their keys stand for; `folder`: other than the tables.
+
+    A merge may leave two lines of a job: the later day counts.
+    """
     jobs, told = {}, {}
     path = (folder or places.TABLES) / "state.jsonl"
     for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
@@ -174,6 +186,9 @@ def record(job, seconds, rows, page, table="", **more):
         Anything else to be told.
     """
     names, known = used(), {name: version(name) for name in LIBRARIES}
+    late = [name for name in names if (places.ROOT / name).stat().st_mtime > run.started]
+    if late:
+        raise RuntimeError(f"{', '.join(late)} changed while {job} was computed: compute it again")
     folded = {}
     for name in names:
         folder, _, stem = name.rpartition("/")
@@ -199,27 +214,27 @@ def present(line, told):
 
 def kept(table, key, seconds):
     """Record a row of a table of rows that are kept one by one, if this process computes a page."""
-    page, _, part = running[0].partition(" ") if running else ("", "", "")
+    page, _, part = run.job.partition(" ")
     if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
-        record(running[0], seconds, 1, page, f"{table} {key}")
+        record(run.job, seconds, 1, page, f"{table} {key}")
     elif page:
         record(f"{page} {key}", seconds, 1, page, table)
-    spent.append(seconds)
+    run.seconds += seconds
 
 
-def ended(job, seconds):
-    """Record what a job computed as a whole: rows of the tables it wrote, but for those kept one by one; else of its Markdown."""
-    page, _, part = job.partition(" ")
-    there = {path for path in map(Path, wrote) if path.parent == places.TABLES and path.is_file()}
-    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.name not in (*running, "state.jsonl")]
+def ended(seconds):
+    """Record what this process computed as a whole: rows of the tables it wrote, but for those kept, else of its Markdown."""
+    page, _, part = run.job.partition(" ")
+    there = {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
+    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
     rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
     shown = part if (places.PAGES / f"{part}.md").is_file() else page
     text = places.PAGES / f"{shown}.md"
-    if not rows and len(running) == 1 and text.is_file():
+    if not rows and not run.tables and text.is_file():
         lines = text.read_text(encoding="utf-8").splitlines()
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
-    if rows or len(running) == 1:
-        record(job, seconds - sum(spent), max(rows, 1), shown if text.is_file() else "")
+    if rows or not run.tables:
+        record(run.job, seconds - run.seconds, max(rows, 1), shown if text.is_file() else "")
 
 
 def first_line(page, jobs, told):
