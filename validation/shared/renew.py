@@ -131,11 +131,12 @@ def renew(found, minutes, continued):
     continued : dict of str to tuple of str
         By job: tables that it would continue where they lie; it is given none of them.
     """
-    end, failed = time.monotonic() + 60 * minutes, []
+    end, failed, longer = time.monotonic() + 60 * minutes, [], []
     waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
     while waiting:
         job, left = waiting.pop(0), end - time.monotonic()
         if left <= 0 or (job.seconds or 0.0) > left:
+            longer.append(job)
             continue
         words, load = list(job.words), job.seconds or A_ROW
         while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0]:
@@ -149,6 +150,8 @@ def renew(found, minutes, continued):
         if code:
             print("\n".join(told[-15:]), flush=True)
             failed.append(", ".join(words))
+    if any(job.old for job in longer):
+        print(f"old, and left for another time: {cost([job for job in longer if job.old])}")
     state.stamp()
     return failed
 

@@ -98,7 +98,7 @@ def meaning(path):
 
 
 def _spell(node, words):
-    """Append a syntax tree; unlike `ast.dump` the same in all versions of Python. A text that stands alone is a docstring."""
+    """Append a syntax tree without docstrings, unlike `ast.dump` the same in all versions of Python."""
     words.append(type(node).__name__)
     for name in node._fields:
         value = getattr(node, name, None)
@@ -108,9 +108,16 @@ def _spell(node, words):
         for one in value if isinstance(value, list) else [value]:
             if not isinstance(one, ast.AST):
                 words.append(repr(one))
-            elif not (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant)):
+            elif not _says_nothing(node, one):
                 _spell(one, words)
     words.append(")")
+
+
+def _says_nothing(node, part):
+    """Whether a part is a constant that stands alone, as docstrings do, or nothing in an f-string, which Python 3.12.1 adds."""
+    if isinstance(part, ast.Expr):
+        return isinstance(part.value, ast.Constant)
+    return isinstance(node, ast.JoinedStr) and isinstance(part, ast.Constant) and part.value == ""
 
 
 def git(*words):
