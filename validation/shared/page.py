@@ -22,7 +22,7 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "speed": "What does each method cost, and how wrong is it?",
     "sweeps": "Can I run thousands of cases, in processes and in threads?",
     "detection": "How small a crack can be told from the scatter of machines?",
-    "dynamics": "Are simulated vibrations integrated correctly, and how fast?",
+    "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
     "machines": "Which printed numbers of four machines are reproduced?",
     "measured": "Does gearfe find what others measured?",
