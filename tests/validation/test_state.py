@@ -198,3 +198,13 @@ def test_of_two_lines_of_a_job_the_later_counts(monkeypatch, tmp_path):
 
 def test_first_lines_of_pages_agree_with_the_state():
     assert state.stamp(write=False) == [], "run python -m validation --stale"
+
+
+def test_every_row_that_is_kept_has_its_line_in_the_state():
+    """A line of a row that is gone is deleted by hand; a row without one is computed anew."""
+    jobs, _ = state.read()
+    lines = {
+        (table.partition(" ")[0], table.partition(" ")[2] or job.partition(" ")[2]) for job, table in jobs if "jsonl" in table
+    }
+    kept = {path.name: path.read_text().splitlines() for path in places.TABLES.glob("*.jsonl") if path.stem != "state"}
+    assert lines == {(name, json.loads(row)["row"]) for name, rows in kept.items() for row in rows}

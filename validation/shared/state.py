@@ -137,14 +137,17 @@ def commit():
 def read(folder=None):
     """Lines of jobs by job and table, and what their keys stand for; `folder`: other than the tables.
 
-    A merge may leave two lines of a job: the later day counts.
+    A merge may leave two lines of a job: the later day counts. A line whose table is no longer there says nothing.
     """
     jobs, told = {}, {}
-    path = (folder or places.TABLES) / "state.jsonl"
+    folder = folder or places.TABLES
+    path = folder / "state.jsonl"
     for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
         one = json.loads(line)
         if "key" in one:
             told[one.pop("key")] = one
+        elif one["table"] and not (folder / one["table"].partition(" ")[0]).is_file():
+            continue
         elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
             jobs[one["job"], one["table"]] = one
     return jobs, told
@@ -223,9 +226,9 @@ def kept(table, key, seconds):
     """Record a row of a table of rows that are kept one by one, if this process computes a page."""
     page, _, part = run.job.partition(" ")
     if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
-        record(run.job, seconds, 1, page, f"{table} {key}")
+        record(run.job, seconds, 1, page, f"{table}.jsonl {key}")
     elif page:
-        record(f"{page} {key}", seconds, 1, page, table)
+        record(f"{page} {key}", seconds, 1, page, f"{table}.jsonl")
     run.seconds += seconds
 
 
@@ -242,6 +245,9 @@ def ended(seconds):
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
     if rows or not run.tables:
         record(run.job, seconds - run.seconds, max(rows, 1), shown if text.is_file() else "")
+    else:  # all of it is kept row by row
+        with changed() as (jobs, _):
+            jobs.pop((run.job, ""), None)
 
 
 def first_line(page, jobs, told):
