@@ -26,7 +26,7 @@ class Job(NamedTuple):
     old: bool
     date: str  # empty: never computed
     seconds: float | None  # of the processor; None: unknown
-    days: int | None = None  # since when it is old
+    days: int | None = None  # since when it is old; None: unknown, and longer than any age
     row: bool = False  # whether it is one of the rows that a page computes by their names
 
 
@@ -60,7 +60,8 @@ def jobs(wanted, rows):
         )
         out[words] = _both(out[words], one) if words in out else one
     there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows}
-    return [*out.values(), *(Job(tuple(name.split(" ", 1)), 1, True, "", None) for name in wanted if name not in there)]
+    never = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
+    return [*out.values(), *(Job(words, 1, True, "", None, _days_there(*words)) for words in never)]
 
 
 def _both(one, two):
@@ -78,6 +79,12 @@ def days_old(line, told):
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
     return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"])).days
+
+
+def _days_there(page, part=""):
+    """Days since a page or a file of slow tests was added; None if that is not known."""
+    added = state.git("log", "--diff-filter=A", "--format=%cs", "--", part if page == "slow" else f"validation/make/{page}.py")
+    return (date.fromisoformat(_head()) - date.fromisoformat(added.split()[-1])).days if added else None
 
 
 @cache
@@ -113,7 +120,7 @@ def cost(found):
 
 
 def too_old(found, most):
-    """What is old for longer than `most` days, or was never computed."""
+    """What is old for longer than `most` days; what was never computed is as old as it is there."""
     return [one for one in found if one.old and (one.days is None or one.days > most)]
 
 
@@ -146,10 +153,11 @@ def renew(found, minutes, continued):
             words.append(waiting.pop(0).words[1])
         code, told = alone(words, left, continued.get(" ".join(words), ()))
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
-        print(f"{', '.join(words)}: {outcome}", flush=True)
+        name = " ".join(words) if len(words) < 3 else f"{words[0]}, {len(words) - 1} rows"
+        print(f"{name}: {outcome}", flush=True)
         if code:
             print("\n".join(told[-15:]), flush=True)
-            failed.append(", ".join(words))
+            failed.append(name)
     if any(job.old for job in longer):
         print(f"old, and left for another time: {cost([job for job in longer if job.old])}")
     state.stamp()
