@@ -71,7 +71,7 @@ def used():
     paths |= {path for path in run.opened if path.endswith(DATA)}
     if "python" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
         paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
-    below = {Path(path).resolve() for path in paths if path}
+    below = {Path(path).resolve() for path in paths if Path(path).is_file()}
     names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
     own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.")
     return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
@@ -253,9 +253,8 @@ def ended(seconds):
 def first_line(page, jobs, told):
     """How many rows of a page are of the present code."""
     own = [line for line in jobs.values() if line["page"] == page]
-    return (
-        f"{sum(one['rows'] for one in own if present(one, told))} of {sum(one['rows'] for one in own)} rows on the present code"
-    )
+    now = sum(line["rows"] for line in own if present(line, told))
+    return f"{now} of {sum(line['rows'] for line in own)} rows on the present code"
 
 
 def without_first_line(page):
