@@ -19,7 +19,7 @@ PARTS = {  # what is computed at once, where that is not the page
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
     **dict.fromkeys(("herringbone", "sample", "three"), ("all",)),
 }
-ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts are beginnings of the rows to compute anew
+ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
     "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
@@ -101,14 +101,14 @@ def compute(page, parts):
     else:
         job = " ".join([page, *parts])
         begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
-        state.running.append(job)
+        state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
         if parts == ["--reference"]:
             made.reference()
         else:
             made.run(parts) if parts else made.run()
         if job in whole() and not begun:
-            state.ended(job, state.cpu())
+            state.ended(state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 

@@ -27,7 +27,7 @@ def kept(name, key, make, again=()):
     `again`: beginnings of the keys of rows that are made anew.
     """
     known, started = stored(name), state.cpu()
-    state.running += [f"{name}.jsonl"] if state.running else []
+    state.run.tables.add(name)
     if key in known and not any(key.startswith(part) for part in again):
         return known[key]
     known[key] = {"row": key} | make()

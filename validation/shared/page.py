@@ -3,6 +3,7 @@
 import re
 import textwrap
 from itertools import groupby
+
 from .places import PAGES
 from .state import replace
 

@@ -1,6 +1,5 @@
 """What is old, how long it takes, and computing it again within a given time."""
 
-import math
 import os
 import shutil
 import signal
@@ -16,7 +15,7 @@ from typing import NamedTuple
 
 from . import places, slow, state
 
-AT_ONCE = 60.0  # CPU seconds of rows that one process computes, so that a stop loses little
+AT_ONCE, A_ROW = 60.0, 5.0  # CPU seconds of rows that one process computes, so that a stop loses little; of one of unknown cost
 
 
 class Job(NamedTuple):
@@ -27,7 +26,7 @@ class Job(NamedTuple):
     old: bool
     date: str  # empty: never computed
     seconds: float | None  # of the processor; None: unknown
-    days: int | None = None  # since when it is old
+    days: int | None = None  # since when it is old; None: unknown, and longer than any age
     row: bool = False  # whether it is one of the rows that a page computes by their names
 
 
@@ -61,7 +60,8 @@ def jobs(wanted, rows):
         )
         out[words] = _both(out[words], one) if words in out else one
     there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows}
-    return [*out.values(), *(Job(tuple(name.split(" ", 1)), 1, True, "", None) for name in wanted if name not in there)]
+    never = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
+    return [*out.values(), *(Job(words, 1, True, "", None, _days_there(*words)) for words in never)]
 
 
 def _both(one, two):
@@ -75,11 +75,16 @@ def days_old(line, told):
     """Days between the first commit after that of a line that touched one of its files and the present one.
 
     Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history:
-    since
-    the day of the line itself.
+    since the day of the line itself.
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
     return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"])).days
+
+
+def _days_there(page, part=""):
+    """Days since a page or a file of slow tests was added; None if that is not known."""
+    added = state.git("log", "--diff-filter=A", "--format=%cs", "--", part if page == "slow" else f"validation/make/{page}.py")
+    return (date.fromisoformat(_head()) - date.fromisoformat(added.split()[-1])).days if added else None
 
 
 @cache
@@ -115,7 +120,7 @@ def cost(found):
 
 
 def too_old(found, most):
-    """What is old for longer than `most` days, or was never computed."""
+    """What is old for longer than `most` days; what was never computed is as old as it is there."""
     return [one for one in found if one.old and (one.days is None or one.days > most)]
 
 
@@ -123,8 +128,7 @@ def renew(found, minutes, continued):
     """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
     A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
-    stopped
-    or fails leaves nothing behind: a job writes beside the pages, and its files are moved there, each whole, the state last.
+    stopped or fails leaves nothing behind: a job writes beside the pages; its files are moved there, each whole, the state last.
 
     Parameters
     ----------
@@ -134,24 +138,28 @@ def renew(found, minutes, continued):
     continued : dict of str to tuple of str
         By job: tables that it would continue where they lie; it is given none of them.
     """
-    end, failed = time.monotonic() + 60 * minutes, []
+    end, failed, longer = time.monotonic() + 60 * minutes, [], []
     waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
     while waiting:
         job, left = waiting.pop(0), end - time.monotonic()
         if left <= 0 or (job.seconds or 0.0) > left:
+            longer.append(job)
             continue
-        words, cost_of = list(job.words), job.seconds
-        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0] and cost_of is not None:
-            cost_of += waiting[0].seconds or math.inf
-            if cost_of > min(left, AT_ONCE):
+        words, load = list(job.words), job.seconds or A_ROW
+        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0]:
+            load += waiting[0].seconds or A_ROW
+            if load > min(left, AT_ONCE):
                 break
             words.append(waiting.pop(0).words[1])
         code, told = alone(words, left, continued.get(" ".join(words), ()))
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
-        print(f"{', '.join(words)}: {outcome}", flush=True)
+        name = " ".join(words) if len(words) < 3 else f"{words[0]}, {len(words) - 1} rows"
+        print(f"{name}: {outcome}", flush=True)
         if code:
             print("\n".join(told[-15:]), flush=True)
-            failed.append(", ".join(words))
+            failed.append(name)
+    if any(job.old for job in longer):
+        print(f"old, and left for another time: {cost([job for job in longer if job.old])}")
     state.stamp()
     return failed
 

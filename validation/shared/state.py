@@ -2,15 +2,16 @@
 
 A job is what is computed together: a page, a part of one, a row that is kept by itself, the slow tests of a file. Its line says
 the commit, the day, the CPU seconds, the number of rows and, by their keys, the machine with its libraries and the files: all
-modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is their
-digest: without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own is held
-to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is
+their digest, without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own
+is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
 """
 
 import ast
 import fcntl
 import hashlib
 import json
+import math
 import os
 import resource
 import subprocess
@@ -21,6 +22,7 @@ from contextlib import contextmanager
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import SimpleNamespace
 
 from . import machine, places
 
@@ -33,8 +35,14 @@ ASIDE = {  # they name, find, keep and write: no number depends on them
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
-opened, wrote = set(), set()  # files that this process opened or wrote since `watch`; among the first "python" if it started one
-running, spent = [], []  # the job that this process computes, then its tables of kept rows (empty in tests); CPU seconds of rows
+run = SimpleNamespace(  # what this process computes
+    job="",  # page and part; empty in tests, where nothing is recorded
+    started=math.inf,  # when `watch` was called; since then:
+    opened=set(),  # files opened, and "python" if one was started
+    wrote=set(),  # files written
+    tables=set(),  # tables of rows that are kept one by one
+    seconds=0.0,  # of the processor for such rows
+)
 
 
 def watch():
@@ -42,12 +50,13 @@ def watch():
 
     def note(event, words):
         if event == "open":
-            (wrote if set(words[1] or "") & set("wax+") else opened).add(str(words[0]))
+            (run.wrote if set(words[1] or "") & set("wax+") else run.opened).add(str(words[0]))
         elif event == "os.rename":
-            wrote.add(str(words[1]))
+            run.wrote.add(str(words[1]))
         elif event == "subprocess.Popen" and "python" in Path(str(words[0])).name:
-            opened.add("python")
+            run.opened.add("python")
 
+    run.started = time.time()
     sys.addaudithook(note)
 
 
@@ -59,10 +68,10 @@ def cpu():
 def used():
     """Files that decide what this process has computed, as paths below the root."""
     paths = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
-    paths |= {path for path in opened if path.endswith(DATA)}
-    if "python" in opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
+    paths |= {path for path in run.opened if path.endswith(DATA)}
+    if "python" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
         paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
-    below = {Path(path).resolve() for path in paths if path}
+    below = {Path(path).resolve() for path in paths if Path(path).is_file()}
     names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
     own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.")
     return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
@@ -89,7 +98,7 @@ def meaning(path):
 
 
 def _spell(node, words):
-    """Append a syntax tree; unlike `ast.dump` the same in all versions of Python. A text that stands alone is a docstring."""
+    """Append a syntax tree without docstrings, unlike `ast.dump` the same in all versions of Python."""
     words.append(type(node).__name__)
     for name in node._fields:
         value = getattr(node, name, None)
@@ -99,9 +108,16 @@ def _spell(node, words):
         for one in value if isinstance(value, list) else [value]:
             if not isinstance(one, ast.AST):
                 words.append(repr(one))
-            elif not (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant)):
+            elif not _says_nothing(node, one):
                 _spell(one, words)
     words.append(")")
+
+
+def _says_nothing(node, part):
+    """Whether a part is a constant that stands alone, as docstrings do, or nothing in an f-string, which Python 3.12.1 adds."""
+    if isinstance(part, ast.Expr):
+        return isinstance(part.value, ast.Constant)
+    return isinstance(node, ast.JoinedStr) and isinstance(part, ast.Constant) and part.value == ""
 
 
 def git(*words):
@@ -119,13 +135,19 @@ def commit():
 
 
 def read(folder=None):
-    """Of the tables or those of another folder: lines of jobs by job and table, and what their keys stand for. A merge may leave two lines of a job: the later day counts."""
+    """Lines of jobs by job and table, and what their keys stand for; `folder`: other than the tables.
+
+    A merge may leave two lines of a job: the later day counts. A line whose table is no longer there says nothing.
+    """
     jobs, told = {}, {}
-    path = (folder or places.TABLES) / "state.jsonl"
+    folder = folder or places.TABLES
+    path = folder / "state.jsonl"
     for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else ():
         one = json.loads(line)
         if "key" in one:
             told[one.pop("key")] = one
+        elif one["table"] and not (folder / one["table"].partition(" ")[0]).is_file():
+            continue
         elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
             jobs[one["job"], one["table"]] = one
     return jobs, told
@@ -174,6 +196,9 @@ def record(job, seconds, rows, page, table="", **more):
         Anything else to be told.
     """
     names, known = used(), {name: version(name) for name in LIBRARIES}
+    late = [name for name in names if (places.ROOT / name).stat().st_mtime > run.started]
+    if late:
+        raise RuntimeError(f"{', '.join(late)} changed while {job} was computed: compute it again")
     folded = {}
     for name in names:
         folder, _, stem = name.rpartition("/")
@@ -199,35 +224,37 @@ def present(line, told):
 
 def kept(table, key, seconds):
     """Record a row of a table of rows that are kept one by one, if this process computes a page."""
-    page, _, part = running[0].partition(" ") if running else ("", "", "")
+    page, _, part = run.job.partition(" ")
     if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
-        record(running[0], seconds, 1, page, f"{table} {key}")
+        record(run.job, seconds, 1, page, f"{table}.jsonl {key}")
     elif page:
-        record(f"{page} {key}", seconds, 1, page, table)
-    spent.append(seconds)
+        record(f"{page} {key}", seconds, 1, page, f"{table}.jsonl")
+    run.seconds += seconds
 
 
-def ended(job, seconds):
-    """Record what a job computed as a whole: rows of the tables it wrote, but for those kept one by one; else of its Markdown."""
-    page, _, part = job.partition(" ")
-    there = {path for path in map(Path, wrote) if path.parent == places.TABLES and path.is_file()}
-    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.name not in (*running, "state.jsonl")]
+def ended(seconds):
+    """Record what this process computed as a whole: rows of the tables it wrote, but for those kept, else of its Markdown."""
+    page, _, part = run.job.partition(" ")
+    there = {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
+    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
     rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
     shown = part if (places.PAGES / f"{part}.md").is_file() else page
     text = places.PAGES / f"{shown}.md"
-    if not rows and len(running) == 1 and text.is_file():
+    if not rows and not run.tables and text.is_file():
         lines = text.read_text(encoding="utf-8").splitlines()
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
-    if rows or len(running) == 1:
-        record(job, seconds - sum(spent), max(rows, 1), shown if text.is_file() else "")
+    if rows or not run.tables:
+        record(run.job, seconds - run.seconds, max(rows, 1), shown if text.is_file() else "")
+    else:  # all of it is kept row by row
+        with changed() as (jobs, _):
+            jobs.pop((run.job, ""), None)
 
 
 def first_line(page, jobs, told):
     """How many rows of a page are of the present code."""
     own = [line for line in jobs.values() if line["page"] == page]
-    return (
-        f"{sum(one['rows'] for one in own if present(one, told))} of {sum(one['rows'] for one in own)} rows on the present code"
-    )
+    now = sum(line["rows"] for line in own if present(line, told))
+    return f"{now} of {sum(line['rows'] for line in own)} rows on the present code"
 
 
 def without_first_line(page):
