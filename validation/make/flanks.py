@@ -137,16 +137,17 @@ def text():
         "themselves too stiff."
     )
     how = [
-        "`python -m validation flanks` makes this page from `tables/flanks_*.csv` and new solves of gearfe; rows of CalculiX",
-        "and of",
-        "the hexahedra that are not on file are computed first. Shared with CalculiX: the shapes of the flanks and where they",
+        "`python -m validation flanks` makes this page from `tables/flanks_*.csv` and new solves of gearfe; `... flanks",
+        "--reference`",
+        "computes rows of CalculiX and of hexahedra that are not on file. Shared with CalculiX: the shapes of the flanks and",
+        "where they",
         "stand.",
     ]
     return answer, how, lines, flanks_wide.text(), flanks_three.text()
 
 
-def run():
-    """Compute the rows that are not on file, if CalculiX is installed, and write table and page."""
+def reference():
+    """Compute the rows of CalculiX, if it is installed, and of hexahedra that are not on file."""
     rows = read()
     for case in CASES:
         if case in rows or not shutil.which("ccx"):
@@ -154,8 +155,12 @@ def run():
         rows[case] = calculix(case)
         _write(rows)
         print(f"  CalculiX, {case}: {rows[case][1]:.4f} N/mm", flush=True)
-    flanks_wide.run()
-    flanks_three.run()
+    flanks_wide.reference()
+    flanks_three.reference()
+
+
+def run():
+    """Write the page: new solves of gearfe beside what is on file."""
     page.write("flanks", *text())
 
 

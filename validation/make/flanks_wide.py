@@ -56,7 +56,7 @@ def read():
         return {int(row["seed"]): row for row in csv.DictReader(file)}
 
 
-def run():
+def reference():
     """Compute the rows that are not on file."""
     rows = read()
     for seed in SEEDS:
