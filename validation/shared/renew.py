@@ -48,6 +48,8 @@ def jobs(wanted, rows):
         if name not in wanted and page not in pages:
             continue
         words = (page, part) if part and (name in wanted or page in rows) else (page,)
+        if part.startswith("--reference "):
+            words = (page, *part.split(" ", 1))
         old = not state.present(line, told)
         one = Job(
             words,
@@ -59,7 +61,7 @@ def jobs(wanted, rows):
             len(words) > 1 and name not in wanted,
         )
         out[words] = _both(out[words], one) if words in out else one
-    there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows}
+    there = {" ".join(words) for words in out} | {" ".join(words[:-1]) for words in out if words[0] in rows}
     never = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
     return [*out.values(), *(Job(words, 1, True, "", None, _days_there(*words)) for words in never)]
 
@@ -146,14 +148,14 @@ def renew(found, minutes, continued):
             longer.append(job)
             continue
         words, load = list(job.words), job.seconds or A_ROW
-        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0]:
+        while job.row and waiting and waiting[0].row and waiting[0].words[:-1] == job.words[:-1]:
             load += waiting[0].seconds or A_ROW
             if load > min(left, AT_ONCE):
                 break
-            words.append(waiting.pop(0).words[1])
+            words.append(waiting.pop(0).words[-1])
         code, told = alone(words, left, continued.get(" ".join(words), ()))
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
-        name = " ".join(words) if len(words) < 3 else f"{words[0]}, {len(words) - 1} rows"
+        name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
         print(f"{name}: {outcome}", flush=True)
         if code:
             print("\n".join(told[-15:]), flush=True)

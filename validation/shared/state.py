@@ -146,7 +146,7 @@ def read(folder=None):
         one = json.loads(line)
         if "key" in one:
             told[one.pop("key")] = one
-        elif one["table"] and not (folder / one["table"].partition(" ")[0]).is_file():
+        elif one["table"] and not (folder / one["table"]).is_file():
             continue
         elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
             jobs[one["job"], one["table"]] = one
@@ -225,10 +225,9 @@ def present(line, told):
 def kept(table, key, seconds):
     """Record a row of a table of rows that are kept one by one, if this process computes a page."""
     page, _, part = run.job.partition(" ")
-    if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
-        record(run.job, seconds, 1, page, f"{table}.jsonl {key}")
-    elif page:
-        record(f"{page} {key}", seconds, 1, page, f"{table}.jsonl")
+    if page:
+        job = f"{run.job} {key}" if part == "--reference" else f"{page} {key}"
+        record(job, seconds, 1, page, f"{table}.jsonl")
     run.seconds += seconds
 
 
