@@ -21,7 +21,7 @@ PARTS = {  # what is computed at once, where that is not the page
 }
 ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
-    "flanks": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
+    "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
     "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
     "sample --reference": ("sample_three.jsonl",),
     "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),

@@ -82,6 +82,12 @@ def pitted(known):
     return out
 
 
+def pits_apart():
+    """Largest difference in what lost contact does to k, on the finest mesh of each case with pits."""
+    finer = {name: found for (name, _), found in pitted(stored()).items()}
+    return max(abs((1 + found["ritz3d"]) / (1 + found["lost"]) - 1) for found in finer.values())
+
+
 def verdict(known):
     """What is shown within what is asked for, and what is not, in the page's first lines."""
     away = {name: apart(row) for name, row in finest(known).items()}

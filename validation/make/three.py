@@ -13,7 +13,8 @@ def answer():
     """The first line."""
     (contact, line), (mean, phase) = outsider_three.worst(), pairs_three.worst()
     return (
-        f"`ritz3d` is within {100 * contact:.2f} % of CalculiX in contact and {100 * line:.2f} % under line loads, and within "
+        f"`ritz3d` is within {100 * contact:.2f} % of CalculiX in contact ({100 * outsider_three.pits_apart():.2f} % in what pits"
+        f" take as lost contact) and {100 * line:.2f} % under line loads, and within "
         f"{100 * mean:.2f} % of hexahedra of both gears in the mean over an engagement, {100 * phase:.2f} % at a phase."
     )
 

@@ -35,7 +35,7 @@ def text(name, answer, *sections):
     lines = [f"# {QUESTIONS[name]}", "", answer]
     for section in sections:
         lines += ["", *filled(section)]
-    return "\n".join(lines).rstrip() + "\n"
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines).rstrip()) + "\n"
 
 
 def filled(lines):
