@@ -40,7 +40,7 @@ def main():
     parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
     parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
     parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file, or PART anew")
-    arguments = parser.parse_args()
+    arguments = parser.parse_intermixed_args()
     page, parts = arguments.page, arguments.parts
     if parts and page not in takes:
         parser.error(f"only {', '.join(sorted(set(takes)))} take parts; {page} is made as a whole")

@@ -192,12 +192,12 @@ def alone(words, seconds, without=()):
 
 def move(source, target):
     """Replace each file that differs, whole, and last the lines of the state that do."""
+    lines, told = state.read(source / "tables")
     for path in source.rglob("*"):
         place = target / path.relative_to(source)
         if path.is_file() and path.name != "state.jsonl" and (not place.is_file() or path.read_bytes() != place.read_bytes()):
             place.parent.mkdir(parents=True, exist_ok=True)
             os.replace(path, place)
-    lines, told = state.read(source / "tables")
     with state.changed() as (known, known_told):
         known_told |= told
         known |= {job: line for job, line in lines.items() if line["date"] >= known.get(job, line)["date"]}
