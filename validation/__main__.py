@@ -100,16 +100,17 @@ def compute(page, parts, reference):
         slow.run(parts[0])
     else:
         job = f"{page} --reference" if reference else " ".join([page, *parts])
-        begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
+        tables = [places.TABLES / name for name in CONTINUED.get(job, ())]
+        begun = [table for table in tables if table.is_file()]
         state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
         if reference:
-            for name in begun if parts else ():
-                kept_rows.forget(name.removesuffix(".jsonl"), parts)
+            for table in begun if parts else ():
+                kept_rows.forget(table.stem, parts)
             made.reference()
         else:
             made.run(parts) if parts else made.run()
-        if job in whole() and not begun:
+        if job in whole() and not begun and all(table.is_file() for table in tables):
             state.ended(state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
