@@ -149,7 +149,7 @@ def test_age_counts_only_what_is_old(project):
     for words in (["cracks"], ["dynamics"], ["dynamics", "--reference"]):
         told(project, *words)
     path = project / "validation/pages/tables/state.jsonl"
-    path.write_text(path.read_text().replace(time.strftime("%Y-%m-%d"), "2020-01-01"))
+    path.write_text(path.read_text().replace(time.strftime("%Y-%m-%d", time.gmtime()), "2020-01-01"))
     told(project, "--stale", "--age", "30")
     (project / "gearfe/used.py").write_text(MODULE.replace("1", "2"))
     late = told(project, "--stale", "--age", "30", code=1).partition("old for more than")[2]

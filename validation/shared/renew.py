@@ -80,7 +80,7 @@ def days_old(line, told):
     since the day of the line itself.
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
-    return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"])).days
+    return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"][:10])).days
 
 
 def _days_there(page, part=""):
@@ -105,7 +105,7 @@ def report(found):
     for page in sorted({one.words[0] for one in old}):
         own = [one for one in old if one.words[0] == page]
         rows = sum(one.rows for one in found if one.words[0] == page)
-        dates = sorted(one.date for one in own if one.date)
+        dates = sorted(one.date[:10] for one in own if one.date)
         never = sum(not one.date for one in own)
         text = f"{page:24s} {sum(one.rows for one in own):5d} of {rows:5d} rows old, {cost(own)}"
         text += f", of {dates[0]}{f' to {dates[-1]}' if dates[-1] != dates[0] else ''}" if dates else ""

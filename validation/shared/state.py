@@ -137,7 +137,7 @@ def commit():
 def read(folder=None):
     """Lines of jobs by job and table, and what their keys stand for; `folder`: other than the tables.
 
-    A merge may leave two lines of a job: the later day counts. A line whose table is no longer there says nothing.
+    A merge may leave two lines of a job: the later counts. A line whose table is no longer there says nothing.
     """
     jobs, told = {}, {}
     folder = folder or places.TABLES
@@ -205,7 +205,8 @@ def record(job, seconds, rows, page, table="", **more):
         folded[folder] = f"{folded.get(folder, '')} {stem.removesuffix('.py')}".strip()
     facts = {"files": {"files": folded}, "on": {"machine": machine.describe(), "libraries": known}}
     keys = {name: hashlib.sha256(json.dumps(fact).encode()).hexdigest()[:8] for name, fact in facts.items()}
-    line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1), "date": time.strftime("%Y-%m-%d")}
+    line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1)}
+    line["date"] = time.strftime("%Y-%m-%d %H:%M", time.gmtime())
     with changed() as (jobs, told):
         jobs[job, table] = line | {"commit": commit(), "code": digest(names)} | keys | more
         told.update({keys[name]: fact for name, fact in facts.items()})
