@@ -12,6 +12,7 @@ All work is done in a copy of the repository; files here stay as they are. Each 
 import argparse
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -68,7 +69,7 @@ class Mutant:
     def tests(self):
         """The test named, or the files and folders of tests; those of the file's room when none are."""
         if self.test:
-            return [self.test] if "::" in self.test else self.test.split()
+            return re.split(r" (?=(?:tests|gearfe|geometry)/)", self.test)
         top, *_ = Path(self.file).with_suffix("").parts
         inside = self.file.removeprefix(f"{top}/").split("/")
         folder = f"tests/geometry/{inside[0]}" if top == "geometry" else f"tests/{inside[0]}"
