@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.stiffness.estimate import estimate
 
 
 def random_case(seed):
@@ -71,6 +72,17 @@ def covered(seed, pair, force, damage):
 @pytest.mark.slow
 def test_error_estimate_covers_the_true_error_in_a_case():
     assert [covered(*case) for case in admissible([1])] == [True]
+
+
+def test_the_estimate_by_hand():
+    """Both solves differ at a fixed phase alone, to either side, a sixteenth of a pitch before the phase 0 across the cycle's end.
+
+    The differences add up where they are near; the mean is that of the first solve, over one pitch.
+    """
+    coarse = np.zeros((2, 2 + 16))
+    coarse[:, -1] = 3.0, -4.0
+    found = estimate(np.array([0.0, 0.5]), True, np.zeros(2 + 16), coarse)
+    np.testing.assert_allclose(found, [3.0 + 4.0 + 3.0 / 16, 3.0 / 16], rtol=1e-12)
 
 
 @pytest.mark.parametrize("damage", [None, {"pinion": [gf.Crack(level=0.4)]}])
