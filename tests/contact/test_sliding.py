@@ -39,5 +39,10 @@ def test_contacts_slide_to_where_both_flanks_yield_less(changes):
 
 def test_faces_that_overlap_anywhere_are_closing():
     slight = -0.5 * OVERLAP
-    for opening, closes in (([1.0, 0.5, 0.1], False), ([1.0, 0.5, -0.1], True), ([-1.0, -0.5, -0.1], True), ([1.0, slight], False)):
+    for opening, closes in (
+        ([1.0, 0.5, 0.1], False),
+        ([1.0, 0.5, -0.1], True),
+        ([-1.0, -0.5, -0.1], True),
+        ([1.0, slight], False),
+    ):
         assert _closing(np.array([opening])).tolist() == [closes]
