@@ -1,6 +1,6 @@
 """Mutation score: every listed one-line mutant of the code dies by the ordinary test named for it.
 
-`tests/mutants.toml` lists, for each file, the fragment of a line, what a slip would make of it, and the test that must fail then::
+`tests/mutants.toml` lists, for each file, the fragment of a line, what a slip makes of it, and the test that must fail then::
 
     python -m tests.mutants                        # all of them; exit code 1 if one survives
     python -m tests.mutants gearfe/contact         # those of files whose names start so

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.end_faces import edge_factor, mirrored_patches
-from gearfe.flexibility.halfspace import hat_distance, half_space, modes, pair_kernel
+from gearfe.flexibility.halfspace import half_space, hat_distance, modes, pair_kernel
 from gearfe.flexibility.hertz import half_plane
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}

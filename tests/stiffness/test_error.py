@@ -75,7 +75,7 @@ def test_error_estimate_covers_the_true_error_in_a_case():
 
 
 def test_the_estimate_by_hand():
-    """Both solves differ at a fixed phase alone, to either side, a sixteenth of a pitch before the phase 0 across the cycle's end.
+    """Both solves differ at a fixed phase alone, to either side, a sixteenth of a pitch before phase 0, over the cycle's end.
 
     The differences add up where they are near; the mean is that of the first solve, over one pitch.
     """
