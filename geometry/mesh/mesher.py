@@ -103,7 +103,7 @@ def triangulate(loops, chains, ring, free=()):
     return points, place[triangles].T
 
 
-def quadrangulate(points, lines, surfaces, algorithm=8):
+def quadrangulate(points, lines, surfaces, algorithm):
     """Quads between given nodes: every line keeps its three, in between gmsh adds what it needs.
 
     `algorithm` is that of gmsh's triangles before they are joined. Raises RuntimeError if some are left.
