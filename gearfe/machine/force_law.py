@@ -20,6 +20,7 @@ from ..stiffness.curve import StiffnessCurve, joined
 from ..stiffness.solve import mesh_stiffness
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
+TINY = 1e-30  # depth [m]: a mesh just touching
 BETWEEN = 7  # phases solved besides between two where a pair comes in or leaves, at any of the loads
 
 
@@ -31,15 +32,15 @@ class Secant:
     ----------
     start, width : float
         Phase of the first row and distance of the rows.
-    step : float
-        Distance of the columns [m]; the first is at depth 0.
+    deepest : float
+        Depth of the last column [m]; that of column j of n + 1 is ``deepest (j / n)**2``, closer together where loads are light.
     k : ndarray, shape (rows, columns)
         [N/m]. Beyond the last column the force goes on with its slope.
     """
 
     start: float
     width: float
-    step: float
+    deepest: float
     k: NDArray[np.float64]
 
     @property
@@ -50,32 +51,36 @@ class Secant:
     def __call__(self, phase: ArrayLike, depth: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Secant stiffness [N/m] at phases from `start` to `end` and depths [m], and its derivative by the depth [N/m2]."""
         row = np.clip((np.asarray(phase, dtype=float) - self.start) / self.width, 0.0, len(self.k) - 1)
-        at = np.maximum(np.asarray(depth, dtype=float), 0.0) / self.step
-        last = self.k.shape[1] - 1
+        last, depth = self.k.shape[1] - 1, np.maximum(np.asarray(depth, dtype=float), 0.0)
+        at = last * np.sqrt(depth / self.deepest)
         i, j = np.minimum(row.astype(np.int64), len(self.k) - 2), np.minimum(at.astype(np.int64), last - 1)
         u = row - i
         left = self.k[i, j] + u * (self.k[i + 1, j] - self.k[i, j])
         right = self.k[i, j + 1] + u * (self.k[i + 1, j + 1] - self.k[i, j + 1])
-        inside = left + (at - j) * (right - left)
-        far = np.maximum(at, last)
-        force = right * last + (right * last - left * (last - 1)) * (far - last)  # over the step
-        beyond = at > last
-        rise = np.where(beyond, (right - left) * last * (last - 1) / far**2, right - left) / self.step
-        return np.where(beyond, force / far, inside), rise
+        before = (1 - 1 / last) ** 2  # depth of the last column but one, over that of the last
+        slope = (right - left * before) / (1 - before)
+        far, beyond = np.maximum(depth, self.deepest), at > last
+        outside = slope + (right - slope) * self.deepest / far
+        rise = np.where(beyond, (slope - right) * self.deepest / far**2, (right - left) * at / (2 * np.maximum(depth, TINY)))
+        return np.where(beyond, outside, left + (at - j) * (right - left)), rise
 
     @property
     def mean(self) -> "Secant":
         """Its mean over the rows: what the mesh is on average at each depth."""
         rows = self.k[:-1].mean(axis=0)
-        return Secant(0.0, 1.0, self.step, np.stack([rows, rows]))
+        return Secant(0.0, 1.0, self.deepest, np.stack([rows, rows]))
+
+    @property
+    def depths(self) -> NDArray[np.float64]:
+        """Depth of each column [m]."""
+        return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant") -> "Secant":
         """What it is beyond a `healthy` cycle, zero one row beyond either end."""
         phase = self.start + self.width * np.arange(len(self.k))
-        depth = self.step * np.arange(self.k.shape[1])
-        change = self.k - healthy((phase % 1.0)[:, None], depth)[0]
-        none = np.zeros((1, depth.size))
-        return Secant(self.start - self.width, self.width, self.step, np.concatenate([none, change, none]))
+        change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]
+        none = np.zeros((1, self.k.shape[1]))
+        return Secant(self.start - self.width, self.width, self.deepest, np.concatenate([none, change, none]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +156,9 @@ class ForceLaw:
             If they do not belong together: other phases, a load twice, a deflection that falls as the load rises.
         """
         if not all(isinstance(one, StiffnessCurve) and "force_N" in one.meta for one in curves):
-            raise ValueError("a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])")
+            raise ValueError(
+                "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
+            )
         curves = sorted(curves, key=lambda one: float(one.meta["force_N"]))
         if any(one.phase.shape != curves[0].phase.shape or not np.allclose(one.phase, curves[0].phase) for one in curves):
             raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
@@ -185,9 +192,8 @@ class ForceLaw:
 
     def at(self, force: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Phases of the table, and the secant stiffness [N/m] under a constant `force` [N] there."""
-        k, step = self.secant.k, self.secant.step
-        column = np.arange(k.shape[1])
-        depth = np.array([np.interp(force, row * column * step, column * step) for row in k])
+        k, depths = self.secant.k, self.secant.depths
+        depth = np.array([np.interp(force, row * depths, depths) for row in k])
         phase = self.secant.start + self.secant.width * np.arange(len(k))
         found = self.secant(phase, depth)[0]
         return (phase[:-1], found[:-1]) if self.periodic else (phase, found)
@@ -195,17 +201,18 @@ class ForceLaw:
 
 def _table(law):
     """`Secant` of a law: at each phase over depth, then over phase by monotone cubics (F. N. Fritsch, J. Butland, 1984)."""
-    depth = law.depth.max() * np.arange(COLUMNS) / (COLUMNS - 1)
+    deepest = float(law.depth.max())
+    depth = deepest * np.linspace(0.0, 1.0, COLUMNS) ** 2
     k = np.array([_secant(*one, law.load, depth) for one in zip(law.depth, law.tangent, law.pairs, strict=True)])
     phase = law.phase
     if not law.periodic:
         rows = max(2, round((phase[-1] - phase[0]) * ROWS) + 1)
         at = np.linspace(phase[0], phase[-1], rows)
-        return Secant(float(phase[0]), float(at[1] - at[0]), float(depth[1]), PchipInterpolator(phase, k, axis=0)(at))
+        return Secant(float(phase[0]), float(at[1] - at[0]), deepest, PchipInterpolator(phase, k, axis=0)(at))
     near = min(3, phase.size)
     phase = np.concatenate([phase[-near:] - 1, phase, phase[:near] + 1])
     k = np.concatenate([k[-near:], k, k[:near]])
-    return Secant(0.0, 1 / ROWS, float(depth[1]), PchipInterpolator(phase, k, axis=0)(np.arange(ROWS + 1) / ROWS))
+    return Secant(0.0, 1 / ROWS, deepest, PchipInterpolator(phase, k, axis=0)(np.arange(ROWS + 1) / ROWS))
 
 
 def _secant(deep, tangent, pairs, load, depth):
@@ -227,7 +234,7 @@ def force_law(
     material: Material | tuple[Material, Material],
     *,
     force: float | None = None,
-    phases: int = 64,
+    phases: int = 128,
     span: str = "cycle",
     **options: Any,
 ) -> ForceLaw:
@@ -237,7 +244,8 @@ def force_law(
     ----------
     pair : GearPair
     forces : sequence of float
-        Loads along the line of action [N]; six to eight, each twice the one before, up to the largest that the mesh will see.
+        Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives accelerations
+        within about 1 % of those of ever more loads, each twice the one before within 3 %.
     material : Material or (Material, Material)
     force : float, optional
         The load at which the mesh works on average, see `ForceLaw`; default: that in the middle.

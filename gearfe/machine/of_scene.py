@@ -27,7 +27,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
 }
-LOADS = (0.0625, 0.125, 0.25, 0.5, 1.0, 2.0)  # of the meshes' own forces, of laws of force
+LOADS = (0.0625, 0.25, 0.5, 1.0, 2.0)  # of the meshes' own forces, of laws of force
 ROUGH = 8  # phases of the curves that tell these forces
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 

@@ -19,7 +19,7 @@ class Flat(NamedTuple):
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `gearfe.machine.speed.Speed`, none
     at a constant speed.
     `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth, the
-    place, rows and columns of its table and one over the distance of columns [1/m], no rows where it has no law.
+    place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
     """
 
     cells: np.ndarray
@@ -96,7 +96,7 @@ def _laid_out(laws):
             places[id(one.k)] = end
             parts.append(one.k.ravel())
             end += one.k.size
-        shape.append((places[id(one.k)], *one.k.shape, 1 / one.step))
+        shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
     return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)
 
 
@@ -110,7 +110,7 @@ def _twins(one, two):
     tables = [(one.cycle, two.cycle), *((a[2], b[2]) for a, b in pairs)]
     alike = all((a.start, a.width) == (b.start, b.width) and np.array_equal(a.cells, b.cells) for a, b in tables)
     same = len(one.laws) == len(two.laws) and all(
-        a is b or (a.step == b.step and np.array_equal(a.k, b.k)) for a, b in zip(one.laws, two.laws, strict=True)
+        a is b or (a.deepest == b.deepest and np.array_equal(a.k, b.k)) for a, b in zip(one.laws, two.laws, strict=True)
     )
     return same and alike and all(a[:2] == b[:2] for a, b in pairs)
 

@@ -85,13 +85,16 @@ def _paced(pace, t):
 def secant(table, shape, which, row, depth):
     """Stiffness from the table `which` at a row, and at a depth [m]; as `gearfe.machine.force_law.Secant`."""
     columns, last = int(shape[which, 2]), int(shape[which, 2]) - 1
-    i, at = min(int(row), int(shape[which, 1]) - 2), depth * shape[which, 3]
+    over = depth * shape[which, 3]  # of the deepest
+    i, at = min(int(row), int(shape[which, 1]) - 2), last * np.sqrt(over)
     j, u = min(int(at), last - 1), row - i
     place = int(shape[which, 0]) + i * columns + j
     left = table[place] + u * (table[place + columns] - table[place])
     right = table[place + 1] + u * (table[place + columns + 1] - table[place + 1])
     if at > last:
-        return (right * last + (right * last - left * (last - 1)) * (at - last)) / at
+        before = (1 - 1 / last) ** 2
+        slope = (right - left * before) / (1 - before)
+        return slope + (right - slope) / over
     return left + (at - j) * (right - left)
 
 
