@@ -18,8 +18,8 @@ class Flat(NamedTuple):
     each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `gearfe.machine.speed.Speed`, none
     at a constant speed.
-    `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth, the
-    place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
+    `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,
+    the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
     """
 
     cells: np.ndarray
@@ -152,7 +152,7 @@ def stiffness_at(machine, flat, t, x):
             continue
         healthy, *hurt = mesh.laws
         k[..., i], bend[..., i] = healthy(phase[..., i] % 1.0, deep[..., i])
-        for (z, first, change), one in zip(mesh.changes, hurt, strict=True):
+        for (z, first, _), one in zip(mesh.changes, hurt, strict=True):
             own = phase[..., i] - first - one.start
             own = own - z * np.floor(own / z) + one.start
             more = one(own, deep[..., i])

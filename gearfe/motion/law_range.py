@@ -32,8 +32,8 @@ def compared(response):
             told["other"].append(f"{mesh.name} {mean:.4g} N on average, its stiffness is that of {stated:.4g} N")
     if told["above"]:
         warnings.warn(
-            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law goes on with its tangent: give it larger "
-            "loads (gf.force_law, or loads= of gf.build_machine)",
+            f"forces above the loads solved: {'; '.join(told['above'])}. Beyond them a law goes on with its tangent: give it "
+            "larger loads (gf.force_law, or loads= of gf.build_machine)",
             stacklevel=4,
         )
     found = [*told["above"], *told["other"]]
