@@ -184,7 +184,7 @@ def test_random_pairs_against_refined_fe():
 @pytest.mark.slow
 def test_many_random_pairs_against_refined_fe():
     """Seeds 0 to 39 were looked at while mesh sizes and the estimate were chosen; these are others."""
-    away, everywhere, inside = against_fe(range(1000, 1200), 24)
-    print(f"away from tip corners at most {away.max():.2e}, everywhere {everywhere.max():.2e}; {inside.sum()} of 24 inside")
+    away, everywhere, inside = against_fe(range(1000, 1200), 8)
+    print(f"away from tip corners at most {away.max():.2e}, everywhere {everywhere.max():.2e}; {inside.sum()} of 8 inside")
     assert away.max() < 2e-3
-    assert inside.mean() >= 0.95
+    assert inside.all()
