@@ -112,8 +112,6 @@ def test_finite_elements_on_file_are_of_the_scene_as_it_is():
     [
         ("sun_planet", "published"),
         ("planet_ring", "textbook"),
-        pytest.param("sun_planet", "textbook", marks=pytest.mark.slow),
-        pytest.param("planet_ring", "published", marks=pytest.mark.slow),
     ],
 )
 def test_closed_forms_of_the_ten_rows(pair, method):
@@ -126,7 +124,6 @@ def test_closed_forms_of_the_ten_rows(pair, method):
             assert_allclose([found.mean, found.largest], [float(row["mean [N/m]"]), float(row["max [N/m]"])], rtol=1e-4)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
 def test_energy_model_of_the_ten_rows(pair):
     """Healthy, recomputed; and below 3 % of the finite elements in all rows, in mean and maximum."""

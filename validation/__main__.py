@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 
-from .shared import places, renew, slow, state
+from .shared import kept_rows, places, renew, slow, state
 from .shared.page import QUESTIONS
 
 PAGES = QUESTIONS | {
@@ -39,8 +39,8 @@ def main():
     parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
     parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
     parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
-    parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file (resumable)")
-    arguments = parser.parse_args()
+    parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file, or PART anew")
+    arguments = parser.parse_intermixed_args()
     page, parts = arguments.page, arguments.parts
     if parts and page not in takes:
         parser.error(f"only {', '.join(sorted(set(takes)))} take parts; {page} is made as a whole")
@@ -56,7 +56,7 @@ def main():
         for part in parts or (slow.files() if page == "slow" else PARTS[page]):
             subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
     else:
-        compute(page, ["--reference"] if arguments.reference else parts)
+        compute(page, parts, arguments.reference)
 
 
 def whole():
@@ -92,22 +92,25 @@ def stale(age):
     return "\n".join(out) or None
 
 
-def compute(page, parts):
+def compute(page, parts, reference):
     """Compute a page, parts of one or its independent values in this process, and record what with."""
     os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
     state.watch()
     if page == "slow":
         slow.run(parts[0])
     else:
-        job = " ".join([page, *parts])
-        begun = [name for name in CONTINUED.get(job, ()) if (places.TABLES / name).is_file()]
+        job = f"{page} --reference" if reference else " ".join([page, *parts])
+        tables = [places.TABLES / name for name in CONTINUED.get(job, ())]
+        begun = [table for table in tables if table.is_file()]
         state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
-        if parts == ["--reference"]:
+        if reference:
+            for table in begun if parts else ():
+                kept_rows.forget(table.stem, parts)
             made.reference()
         else:
             made.run(parts) if parts else made.run()
-        if job in whole() and not begun:
+        if job in whole() and not begun and all(table.is_file() for table in tables):
             state.ended(state.cpu())
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")

@@ -33,6 +33,7 @@ def run(parts=()):
 """
 KEPT = "from validation.shared.kept_rows import kept\n\n\ndef run(parts=()):\n"
 KEPT += "    for name in ('one', 'two'):\n        print(kept('dynamics_rows', name, lambda: {'value': 1}, parts))\n"
+KEPT += "\n\ndef reference():\n    for name in ('three', 'four'):\n        kept('dynamics_far', name, lambda: {'value': 1})\n"
 
 
 @pytest.fixture
@@ -47,7 +48,12 @@ def project(tmp_path):
     text = re.sub(
         "PAGES = QUESTIONS.*?\n}", "PAGES = {'cracks': '', 'dynamics': ''}", (home / "__main__.py").read_text(), flags=re.S
     )
-    text = re.sub("CONTINUED = {.*?\n}", "CONTINUED = {'cracks': ('cracks.csv',)}", text, flags=re.S)
+    text = re.sub(
+        "CONTINUED = {.*?\n}",
+        "CONTINUED = {'cracks': ('cracks.csv',), 'dynamics --reference': ('dynamics_far.jsonl',)}",
+        text,
+        flags=re.S,
+    )
     (tmp_path / "validation/__main__.py").write_text(text)
     for name, text in {
         "gearfe/used.py": MODULE,
@@ -126,20 +132,24 @@ def test_a_page_that_was_never_computed_is_old(project):
 
 def test_rows_that_are_kept_are_recorded_one_by_one(project):
     told(project, "dynamics")
+    told(project, "dynamics", "--reference")
     (project / "validation/make/dynamics.py").write_text(KEPT.replace("'value': 1", "'value': 2"))
-    assert "2 of     2 rows old" in told(project, "--stale")
+    assert "4 of     4 rows old" in told(project, "--stale")
     told(project, "dynamics", "two")
-    assert "1 of     2 rows old" in told(project, "--stale")
-    told(project, "renew", "--minutes", "1")
-    lines = (project / "validation/pages/tables/dynamics_rows.jsonl").read_text().splitlines()
-    assert [json.loads(line)["value"] for line in lines] == [2, 2]
+    told(project, "dynamics", "--reference", "four")
+    assert "2 of     4 rows old" in told(project, "--stale")
+    told(project, "renew", "dynamics", "--minutes", "1")
+    assert "dynamics" not in told(project, "--stale")
+    for name in ("rows", "far"):
+        lines = (project / f"validation/pages/tables/dynamics_{name}.jsonl").read_text().splitlines()
+        assert [json.loads(line)["value"] for line in lines] == [2, 2]
 
 
 def test_age_counts_only_what_is_old(project):
-    told(project, "cracks")
-    told(project, "dynamics")
+    for words in (["cracks"], ["dynamics"], ["dynamics", "--reference"]):
+        told(project, *words)
     path = project / "validation/pages/tables/state.jsonl"
-    path.write_text(path.read_text().replace(time.strftime("%Y-%m-%d"), "2020-01-01"))
+    path.write_text(path.read_text().replace(time.strftime("%Y-%m-%d", time.gmtime()), "2020-01-01"))
     told(project, "--stale", "--age", "30")
     (project / "gearfe/used.py").write_text(MODULE.replace("1", "2"))
     late = told(project, "--stale", "--age", "30", code=1).partition("old for more than")[2]
@@ -203,8 +213,6 @@ def test_first_lines_of_pages_agree_with_the_state():
 def test_every_row_that_is_kept_has_its_line_in_the_state():
     """A line of a row that is gone is deleted by hand; a row without one is computed anew."""
     jobs, _ = state.read()
-    lines = {
-        (table.partition(" ")[0], table.partition(" ")[2] or job.partition(" ")[2]) for job, table in jobs if "jsonl" in table
-    }
+    lines = {(table, job.partition(" ")[2].removeprefix("--reference ")) for job, table in jobs if table.endswith(".jsonl")}
     kept = {path.name: path.read_text().splitlines() for path in places.TABLES.glob("*.jsonl") if path.stem != "state"}
     assert lines == {(name, json.loads(row)["row"]) for name, rows in kept.items() for row in rows}

@@ -86,7 +86,8 @@ def text():
         f"`ritz` against `fe` on {len(away)} random pairs: tip relief (linear to parabolic), crowning and slope on both gears,",
         "24 phases each: largest difference of the transmission error over the mean deflection. "
         f"Median {np.median(list(away.values())):.3f} %, largest {away[worst]:.3f} % (seed {worst}).",
-        f"Seeds {min(away)} to {max(away)}, made by `pytest -m slow -k random_modified tests/stiffness/test_flanks.py`",
+        f"Seeds {min(away)} to {max(away)} of `seeded_pair` in `tests/stiffness/test_flanks.py`;",
+        "a slow test there repeats the furthest apart",
         "([tables/flanks_fe.csv](tables/flanks_fe.csv)).",
         "",
         "## Along the width",

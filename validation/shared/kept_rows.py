@@ -21,6 +21,12 @@ def check(parts, *names):
         raise ValueError(f"no row begins with {', '.join(lost)}; there are: {'; '.join(known)}")
 
 
+def forget(name, parts):
+    """Take rows whose keys begin with one of `parts` out of a table, so that they are missing."""
+    left = [row for key, row in stored(name).items() if not key.startswith(tuple(parts))]
+    state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in left))
+
+
 def kept(name, key, make, again=()):
     """Row `key` of table `name`: the one on file, or ``make()``, a dict, which is then put on file.
 

@@ -48,6 +48,8 @@ def jobs(wanted, rows):
         if name not in wanted and page not in pages:
             continue
         words = (page, part) if part and (name in wanted or page in rows) else (page,)
+        if part.startswith("--reference "):
+            words = (page, *part.split(" ", 1))
         old = not state.present(line, told)
         one = Job(
             words,
@@ -59,7 +61,7 @@ def jobs(wanted, rows):
             len(words) > 1 and name not in wanted,
         )
         out[words] = _both(out[words], one) if words in out else one
-    there = {" ".join(words) for words in out} | {words[0] for words in out if words[0] in rows}
+    there = {" ".join(words) for words in out} | {" ".join(words[:-1]) for words in out if words[0] in rows}
     never = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
     return [*out.values(), *(Job(words, 1, True, "", None, _days_there(*words)) for words in never)]
 
@@ -78,7 +80,7 @@ def days_old(line, told):
     since the day of the line itself.
     """
     since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
-    return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"])).days
+    return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"][:10])).days
 
 
 def _days_there(page, part=""):
@@ -103,7 +105,7 @@ def report(found):
     for page in sorted({one.words[0] for one in old}):
         own = [one for one in old if one.words[0] == page]
         rows = sum(one.rows for one in found if one.words[0] == page)
-        dates = sorted(one.date for one in own if one.date)
+        dates = sorted(one.date[:10] for one in own if one.date)
         never = sum(not one.date for one in own)
         text = f"{page:24s} {sum(one.rows for one in own):5d} of {rows:5d} rows old, {cost(own)}"
         text += f", of {dates[0]}{f' to {dates[-1]}' if dates[-1] != dates[0] else ''}" if dates else ""
@@ -146,14 +148,14 @@ def renew(found, minutes, continued):
             longer.append(job)
             continue
         words, load = list(job.words), job.seconds or A_ROW
-        while job.row and waiting and waiting[0].row and waiting[0].words[0] == words[0]:
+        while job.row and waiting and waiting[0].row and waiting[0].words[:-1] == job.words[:-1]:
             load += waiting[0].seconds or A_ROW
             if load > min(left, AT_ONCE):
                 break
-            words.append(waiting.pop(0).words[1])
+            words.append(waiting.pop(0).words[-1])
         code, told = alone(words, left, continued.get(" ".join(words), ()))
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
-        name = " ".join(words) if len(words) < 3 else f"{words[0]}, {len(words) - 1} rows"
+        name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
         print(f"{name}: {outcome}", flush=True)
         if code:
             print("\n".join(told[-15:]), flush=True)
@@ -190,12 +192,12 @@ def alone(words, seconds, without=()):
 
 def move(source, target):
     """Replace each file that differs, whole, and last the lines of the state that do."""
+    lines, told = state.read(source / "tables")
     for path in source.rglob("*"):
         place = target / path.relative_to(source)
         if path.is_file() and path.name != "state.jsonl" and (not place.is_file() or path.read_bytes() != place.read_bytes()):
             place.parent.mkdir(parents=True, exist_ok=True)
             os.replace(path, place)
-    lines, told = state.read(source / "tables")
     with state.changed() as (known, known_told):
         known_told |= told
         known |= {job: line for job, line in lines.items() if line["date"] >= known.get(job, line)["date"]}

@@ -137,7 +137,7 @@ def commit():
 def read(folder=None):
     """Lines of jobs by job and table, and what their keys stand for; `folder`: other than the tables.
 
-    A merge may leave two lines of a job: the later day counts. A line whose table is no longer there says nothing.
+    A merge may leave two lines of a job: the later counts. A line whose table is no longer there says nothing.
     """
     jobs, told = {}, {}
     folder = folder or places.TABLES
@@ -146,7 +146,7 @@ def read(folder=None):
         one = json.loads(line)
         if "key" in one:
             told[one.pop("key")] = one
-        elif one["table"] and not (folder / one["table"].partition(" ")[0]).is_file():
+        elif one["table"] and not (folder / one["table"]).is_file():
             continue
         elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
             jobs[one["job"], one["table"]] = one
@@ -205,7 +205,8 @@ def record(job, seconds, rows, page, table="", **more):
         folded[folder] = f"{folded.get(folder, '')} {stem.removesuffix('.py')}".strip()
     facts = {"files": {"files": folded}, "on": {"machine": machine.describe(), "libraries": known}}
     keys = {name: hashlib.sha256(json.dumps(fact).encode()).hexdigest()[:8] for name, fact in facts.items()}
-    line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1), "date": time.strftime("%Y-%m-%d")}
+    line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1)}
+    line["date"] = time.strftime("%Y-%m-%d %H:%M", time.gmtime())
     with changed() as (jobs, told):
         jobs[job, table] = line | {"commit": commit(), "code": digest(names)} | keys | more
         told.update({keys[name]: fact for name, fact in facts.items()})
@@ -225,10 +226,9 @@ def present(line, told):
 def kept(table, key, seconds):
     """Record a row of a table of rows that are kept one by one, if this process computes a page."""
     page, _, part = run.job.partition(" ")
-    if part == "--reference":  # all of them at once, as they lie apart from what gearfe says beside them
-        record(run.job, seconds, 1, page, f"{table}.jsonl {key}")
-    elif page:
-        record(f"{page} {key}", seconds, 1, page, f"{table}.jsonl")
+    if page:
+        job = f"{run.job} {key}" if part == "--reference" else f"{page} {key}"
+        record(job, seconds, 1, page, f"{table}.jsonl")
     run.seconds += seconds
 
 
