@@ -140,6 +140,7 @@ def renew(found, minutes, continued):
     continued : dict of str to tuple of str
         By job: tables that it would continue where they lie; it is given none of them.
     """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # so that it ends its job, too
     end, failed, longer = time.monotonic() + 60 * minutes, [], []
     waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
     while waiting:
