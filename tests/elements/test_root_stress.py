@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.elements.line_load import contact_line
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -24,6 +25,15 @@ def mean(found, b):
     """Over the width, end values carried to the faces."""
     z, stress = np.concatenate([[0.0], found.z, [b]]), found.stress[[0, *range(found.z.size), -1]]
     return np.trapezoid(stress, z) / b
+
+
+@pytest.mark.parametrize("degrees", [-25.0, 0.0, 15.0])
+def test_the_load_stands_where_the_turned_section_has_the_line_of_action(degrees):
+    """At a height the section is turned by twist_rate z, and each turn moves a contact by r_b times as much."""
+    gear = gear_of(8.0, degrees)
+    roll = contact_line(gear, RADIUS)
+    assert math.hypot(roll(4.0), gear.r_b) == pytest.approx(RADIUS, rel=1e-12)
+    assert roll(8.0) - roll(0.0) == pytest.approx(gear.r_b * gear.twist_rate * 8.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from gearfe.energy.ritz.bent import bent
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.solved import solved_gears
-from geometry.damage.front import Front
+from geometry.damage.front import Front, deepest, shallowest
 from geometry.mesh.quads import quad_section
 from geometry.mesh.sector import sector
 from geometry.mesh.solid import follow_front
@@ -189,3 +189,11 @@ def test_a_crack_that_the_load_closes_hardly_matters():
         lost[method] = 1 - cracked.k / healthy.k
     assert_allclose(lost["ritz3d"], lost["ritz"], atol=0.003)
     assert lost["ritz3d"].max() > 0.005, "faces slide on each other"
+
+
+@pytest.mark.parametrize(("ends", "least"), [((0.5, 1.0), 0.5), ((0.8, 0.4), 0.5), ((0.2, 0.6, 0.2), 1 / 3)])
+@pytest.mark.parametrize("rounded", [False, True])
+def test_the_shallowest_place_is_a_part_of_the_deepest(ends, least, rounded):
+    """Depths at the ends, and half-way, are those given, rounded or not."""
+    crack = gf.Crack(level=0.5, ends=ends, rounded=rounded)
+    assert_allclose([deepest(crack), shallowest(crack)], [max(ends), least], rtol=1e-12)

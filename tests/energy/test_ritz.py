@@ -53,7 +53,7 @@ def test_flamant_moves_the_surface_by_the_logarithm(side):
 @pytest.mark.parametrize("cracks", [(), (gf.Crack(level=0.4),), (gf.Crack(level=0.7, turning=True),)], ids=str)
 def test_area_of_the_sector_is_that_of_the_profile(gear, cracks):
     made = sector(gear, cracks)
-    area = np.linalg.det(jacobians(made.points, made.triangles, made.edge_bulges(), 6).transpose(0, 3, 1, 2))
+    area = np.linalg.det(jacobians(made.points, made.triangles, made.edge_bulges, 6).transpose(0, 3, 1, 2))
     radius, angle = outline(gear, 4000)
     radius = np.concatenate([[gear.r_a], radius, [gear.r_f]])
     angle = np.concatenate([[0.0], angle, [math.pi / gear.z]])

@@ -85,3 +85,13 @@ def test_same_tooth_twice_is_refused():
     roll = outline.stations(gear, 0.5)
     with pytest.raises(ValueError, match="not distinct"):
         section_mesh.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)
+
+
+def test_edges_are_as_long_as_asked_where_they_are_fine():
+    """0.1 from 4 to 6, no longer than 1 anywhere, and from one to the next no more than a quarter of an edge longer."""
+    steps = np.diff(places := outline.spaced(0.0, 10.0, 1.0, [(4.0, 6.0, 0.1)]))
+    inside = (places[:-1] >= 4) & (places[1:] <= 6)
+    assert_allclose(steps[inside], 0.1, rtol=0.05)
+    assert inside.sum() in (19, 20)
+    assert steps.max() < 1.05
+    assert (np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]) < 1.3).all()
