@@ -63,23 +63,7 @@ def test_a_thin_gear_is_in_plane_stress():
 @pytest.mark.slow
 def test_the_middle_of_a_wide_gear_is_in_plane_strain():
     plane = gf.root_stress(gear_of(60.0), RADIUS, LOAD, STEEL, half_width=HALF)
-    away = [
-        abs(np.interp(b / 2, found.z, found.stress) / plane - 1)
-        for b, found in ((b, solved(b, refine=0.5)) for b in (10.0, 60.0))
-    ]
-    print(f"middle against plane strain: b/m 5 {100 * away[0]:.2f} %, b/m 30 {100 * away[1]:.2f} %")
-    assert away[1] < 0.01
-
-
-@pytest.mark.slow
-def test_opposite_hands_are_mirror_images():
-    one, other = (solved(6.0, degrees, refine=0.5) for degrees in (15.0, -15.0))
-    np.testing.assert_allclose(np.interp(6.0 - other.z, one.z, one.stress), other.stress, rtol=0.01)
-    print(f"helical 15 degrees, b/m 3: largest {one.largest:.1f} MPa at z = {one.height:.2f} mm of 6")
-
-
-@pytest.mark.slow
-def test_refining_changes_little():
-    values = [solved(6.0, 15.0, refine).largest for refine in (0.5, 0.7, 1.0)]
-    print("largest at refine 0.5, 0.7, 1:", *(f"{v:.2f}" for v in values))
-    assert abs(values[2] / values[1] - 1) < 0.005
+    found = solved(60.0, refine=0.5)
+    away = abs(np.interp(30.0, found.z, found.stress) / plane - 1)
+    print(f"middle against plane strain at b/m 30: {100 * away:.2f} %")
+    assert away < 0.01

@@ -80,7 +80,6 @@ def test_a_tilting_shaft_is_the_misalignment_it_makes():
     assert_allclose(found.cells[0].load, cells.load, atol=1e-5 * cells.load.max())
 
 
-@pytest.mark.slow
 def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
     right = gf.Shaft(segments=[(80, 30)], bearings=(30, 80), gear=10, material=STEEL, torque=80)
     one, two = (
@@ -112,7 +111,6 @@ def test_reactions_of_a_helical_gear_do_the_work_of_its_load():
         assert_allclose(found.supports, work / force, rtol=1e-9)
 
 
-@pytest.mark.slow
 def test_herringbone_halves_share_a_hub():
     """Mirrored halves cancel each other's axial force, so that an axial spring and one that tilts change nothing."""
     pair = helical(1, b=12.0)

@@ -1,4 +1,7 @@
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -61,9 +64,17 @@ def test_session_is_closed_after_an_error():
     assert not gmsh.isInitialized()
 
 
-def test_missing_gmsh_names_the_packages(monkeypatch):
-    import sys
+@pytest.mark.skipif(os.name != "posix", reason="no signals to keep")
+def test_a_closed_pipe_is_an_error_after_a_session_as_before():
+    """gmsh takes back that Python ignores SIGPIPE: a killed worker of a sweep then ended the whole program without a word."""
+    code = "import os; from geometry.mesh import mesher\nwith mesher.gmsh_session():\n    pass\n"
+    code += "one, two = os.pipe(); os.close(one); os.write(two, b'x')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "BrokenPipeError" in done.stderr
 
+
+def test_missing_gmsh_names_the_packages(monkeypatch):
     monkeypatch.setitem(sys.modules, "gmsh", None)
     with pytest.raises(RuntimeError, match="libglu1-mesa"), mesher.gmsh_session():
         pass
