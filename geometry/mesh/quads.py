@@ -19,16 +19,8 @@ from .outline import spaced
 # edge lengths in modules: loaded flanks, their tip corner, their fillets, other fillets, teeth beside them, all others,
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
-ATTEMPTS = (
-    (1.0, 8),
-    (1.0, 5),
-    (1.07, 8),
-    (1.07, 5),
-    (1.15, 8),
-    (1.24, 5),
-    (1.4, 8),
-    (1.6, 8),
-)  # finer, algorithm: gmsh may leave triangles
+ATTEMPTS = tuple((finer, algorithm) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in (5, 6))
+# finer, gmsh's algorithm: it may leave triangles, or fold quads; algorithm 8 gives one section now this mesh, now that
 GROWTH = 0.4  # of the edge length per length, away from fine places
 BELOW = 2  # of the pieces of half a tooth: the one below the flank
 

@@ -67,7 +67,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     numbers, count, chain = numbering(sector, order)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     edge = _unknowns(np.append(sides, chain(sector.held)))
-    bulges = sector.edge_bulges()
+    bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio))
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))

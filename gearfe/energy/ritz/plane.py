@@ -71,7 +71,7 @@ def _healthy(gear, material, _, neighbours, state, order, refine, cache):
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
     near, own = _own_tooth(gear, influence[0, 0])
-    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns)
+    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, basis=_basis(gear))
 
 
 def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
@@ -97,7 +97,7 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t].T) for t in teeth}, between, stiffness)
     unknowns = sum(p.unknowns for p in panels.values())
-    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam)
+    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, _basis(gear))
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
@@ -156,8 +156,12 @@ def _carry(places):
 @keeping(64)
 def _knots(gear):
     """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
-    places = np.linspace(-1, 1, KNOTS)
-    return _arcs(gear, places), _carry(places)
+    return _arcs(gear, np.linspace(-1, 1, KNOTS)), _between()
+
+
+@keeping(1)
+def _between():
+    return _carry(np.linspace(-1, 1, KNOTS))
 
 
 def _spline(gear, influence):
@@ -165,7 +169,13 @@ def _spline(gear, influence):
     return RectBivariateSpline(arcs, arcs, matrix @ influence @ matrix.T)
 
 
+@keeping(64)
+def _basis(gear):
+    """Spline from values at the loads to those at an arc: what a tooth's S(s, s') is carried by."""
+    return CubicSpline(*_knots(gear))
+
+
 def _own_tooth(gear, influence):
-    """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads."""
+    """Spline S(s, s) of a tooth, and S(s, s') between its loads, from the smooth influence between these."""
     arcs, matrix = _knots(gear)
-    return CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, influence, matrix)), _spline(gear, (influence + influence.T) / 2)
+    return CubicSpline(arcs, ((matrix @ influence) * matrix).sum(axis=1)), (influence + influence.T) / 2
