@@ -153,10 +153,11 @@ def stiffness_at(machine, flat, t, x):
         healthy, *hurt = mesh.laws
         k[..., i], bend[..., i] = healthy(phase[..., i] % 1.0, deep[..., i])
         for (z, first, _), one in zip(mesh.changes, hurt, strict=True):
-            own = phase[..., i] - first - one.start
-            own = own - z * np.floor(own / z) + one.start
+            start, end = one.start + one.width, one.end - one.width
+            own = phase[..., i] - first - start
+            own = own - z * np.floor(own / z) + start
             more = one(own, deep[..., i])
-            inside = own < one.end
+            inside = own < end
             k[..., i] += np.where(inside, more[0], 0.0)
             bend[..., i] += np.where(inside, more[1], 0.0)
     return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0), phase

@@ -86,11 +86,12 @@ def secant(table, shape, which, row, depth):
     """Stiffness from the table `which` at a row, and at a depth [m]; as `gearfe.machine.force_law.Secant`."""
     columns, last = int(shape[which, 2]), int(shape[which, 2]) - 1
     over = depth * shape[which, 3]  # of the deepest
-    i, at = min(int(row), int(shape[which, 1]) - 2), last * np.sqrt(over)
-    j, u = min(int(at), last - 1), row - i
-    place = int(shape[which, 0]) + i * columns + j
-    left = table[place] + u * (table[place + columns] - table[place])
-    right = table[place + 1] + u * (table[place + columns + 1] - table[place + 1])
+    i, at = min(max(int(row + 0.5), 1), int(shape[which, 1]) - 2), last * np.sqrt(over)
+    j, u = min(int(at), last - 1), row + 0.5 - i
+    here = int(shape[which, 0]) + i * columns + j
+    a, b, c, low, high = (1 - u) * (1 - u) / 2, 0.5 + u * (1 - u), u * u / 2, here - columns, here + columns
+    left = a * table[low] + b * table[here] + c * table[high]
+    right = a * table[low + 1] + b * table[here + 1] + c * table[high + 1]
     if at > last:
         before = (1 - 1 / last) ** 2
         slope = (right - left * before) / (1 - before)
@@ -123,7 +124,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
                 phase = phases[i] + frequency[i] * turned
                 now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
                 if lawful:
-                    now[row, at + i] = (phase - np.floor(phase)) * (shape[i, 1] - 1) if shape[i, 1] > 0 else -1.0
+                    now[row, at + i] = 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3) if shape[i, 1] > 0 else -1.0
         for j in range(changes):
             i = change_mesh[j]
             if twin[i] == i:
@@ -134,7 +135,7 @@ def lookup(flat, now, first, last, origin, h, low, share):
             if lawful:
                 z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
                 own = (own - z * np.floor(own / z)) / change[j, 3]
-                now[row, at + m + j] = own if own < shape[m + j, 1] - 1 else -1.0
+                now[row, at + m + j] = own + 1 if own < shape[m + j, 1] - 3 else -1.0
         for i in range(m):
             now[row, i] = now[row, twin[i]]
             if lawful:

@@ -16,7 +16,7 @@ from .propagator import default_step, is_bent
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
 HALVINGS = 6
-SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four; where local halving rules, or kinks do
+SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
 PROBES = 50_000  # times at which that is looked at
 TURNS = ("theta", "tilt_x", "tilt_y")
@@ -194,7 +194,7 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False):
     runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
     cost = max(runs[1].stats["seconds"] - runs[0].stats["seconds"], 0.0) / length
     *coarse, fine = runs
-    more = ROUGH if rough or any(mesh.laws for mesh in machine.meshes) else SMOOTH  # kinks where pairs come in
+    more = ROUGH if rough else SMOOTH
     error = more * max(max(difference(one, fine)) for one in coarse)
     acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
     return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)
