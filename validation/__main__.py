@@ -22,6 +22,7 @@ PARTS = {  # what is computed at once, where that is not the page
 ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
+    "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
     "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
     "sample --reference": ("sample_three.jsonl",),
     "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
@@ -111,7 +112,7 @@ def compute(page, parts, reference):
         else:
             made.run(parts) if parts else made.run()
         if job in whole() and not begun and all(table.is_file() for table in tables):
-            state.ended(state.cpu())
+            state.ended(state.cpu(), tables)
     state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 

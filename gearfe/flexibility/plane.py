@@ -124,7 +124,8 @@ class Flexibility:
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
         members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
-        near, far = {}, {}  # contacts by the spline that holds for them: teeth that are alike have one
+        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by the spline that holds for them: teeth that are alike have one
+        far: dict[Any, NDArray[np.bool_]] = {}
         for tooth, on in members.items():
             spline = self.near_of(tooth)
             near[spline] = near.get(spline, False) | on

@@ -67,7 +67,7 @@ def run():
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
     parts.append(outlines_three.section())
     answer = (
-        f"Of {off.size} phases in which corners, joints and fillets come near, {' and '.join(answers)} differ from whole "
+        f"At {off.size} phases at which tooth pairs off the path come near, {' and '.join(answers)} differ from whole "
         "outlines "
         "pressed together by an arbiter that shares none of gearfe's contact."
     )

@@ -40,7 +40,7 @@ def text(name, answer, *sections):
 
 def filled(lines):
     """Lines with their paragraphs, which are neither tables, lists, headings nor pictures, broken anew."""
-    for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. )[^|#!\s-]", line) is not None):
+    for prose, group in groupby(lines, lambda line: re.match(r"(?!\d+\. |- )[^|#!\s]", line) is not None):
         own = list(group)
         yield from textwrap.wrap(" ".join(own), 120, **WRAP) if prose else own
 

@@ -138,13 +138,16 @@ def renew(found, minutes, continued):
     minutes : float
         Of the clock.
     continued : dict of str to tuple of str
-        By job: tables that it would continue where they lie; it is given none of them.
+        By job: tables that it would continue where they lie; it is given none of them. One that lies elsewhere than other
+        tables is left alone: delete it by hand to compute it again.
     """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # so that it ends its job, too
     end, failed, longer = time.monotonic() + 60 * minutes, [], []
     waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
     while waiting:
         job, left = waiting.pop(0), end - time.monotonic()
-        if left <= 0 or (job.seconds or 0.0) > left:
+        without = continued.get(" ".join(job.words), ())
+        if left <= 0 or (job.seconds or 0.0) > left or any(Path(name).is_absolute() for name in without):
             longer.append(job)
             continue
         words, load = list(job.words), job.seconds or A_ROW
@@ -153,7 +156,7 @@ def renew(found, minutes, continued):
             if load > min(left, AT_ONCE):
                 break
             words.append(waiting.pop(0).words[-1])
-        code, told = alone(words, left, continued.get(" ".join(words), ()))
+        code, told = alone(words, left, without)
         outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
         name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
         print(f"{name}: {outcome}", flush=True)

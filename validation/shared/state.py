@@ -71,7 +71,7 @@ def used():
     paths |= {path for path in run.opened if path.endswith(DATA)}
     if "python" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
         paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
-    below = {Path(path).resolve() for path in paths if Path(path).is_file()}
+    below = {Path(path).resolve() for path in paths - run.wrote if Path(path).is_file()}
     names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
     own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.")
     return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
@@ -232,12 +232,15 @@ def kept(table, key, seconds):
     run.seconds += seconds
 
 
-def ended(seconds):
-    """Record what this process computed as a whole: rows of the tables it wrote, but for those kept, else of its Markdown."""
+def ended(seconds, tables=()):
+    """Record what this process computed as a whole.
+
+    Its rows are those of `tables`, else those of the tables that it wrote, but for rows kept one by one, else of its Markdown.
+    """
     page, _, part = run.job.partition(" ")
-    there = {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
-    tables = [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
-    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
+    there = tables or {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
+    whole = [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
+    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in whole)
     shown = part if (places.PAGES / f"{part}.md").is_file() else page
     text = places.PAGES / f"{shown}.md"
     if not rows and not run.tables and text.is_file():
