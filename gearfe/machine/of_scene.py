@@ -27,15 +27,14 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
 }
-LOADS = (0.0625, 0.25, 0.5, 1.0, 2.0)  # of the meshes' own forces, of laws of force
 ROUGH = 8  # phases of the curves that tell these forces
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
 
 def build_machine(
-    scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto", loads: Sequence[float] = LOADS
+    scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto", loads: Sequence[float] = (1.0,)
 ) -> Machine:
-    """Machine of a scene for `gearfe.simulate`, with laws of force of its pairs that cover the loads of its meshes.
+    """Machine of a scene for `gearfe.simulate`, with the contact of its pairs solved under the loads that its meshes have.
 
     Parameters
     ----------
@@ -50,7 +49,9 @@ def build_machine(
     loads : sequence of float
         Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
         load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
-        load alone, ``(1.0,)`` of the meshes' own.
+        load alone, by default of the meshes' own. Several make laws of force (`gearfe.machine.force_law.ForceLaw`), for loads
+        that change and for resonances: ``(1 / 16, 1 / 4, 1 / 2, 1, 2)``. Their mesh forces bend where pairs come in, with
+        harmonics far above the mesh frequency: keep a high rate of output, or they fold into a spectrum.
 
     Returns
     -------
