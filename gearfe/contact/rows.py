@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geometry.kept import keeping
 from geometry.pair.contacts import TIP, approach
 from geometry.tooth.profile import arc_at, roll_at_arc
-from geometry.tooth.side import on_fillet
+from geometry.tooth.side import on_fillet, side
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
@@ -143,33 +143,45 @@ def _host(one):
 def _on_side(contact, wanted, host):
     """Rows along the side of one gear."""
     found, pair = contact.found, contact.pair
-    gear = (pair.gear_1, pair.gear_2)[host]
+    gear, mate = (pair.gear_1, pair.gear_2)[:: 1 if host == 0 else -1]
     knots = [_placed(contact, one, host) for one in wanted]
     count = [own.shape[1] for own in knots]
     at = np.repeat([one.phase for one in wanted], count), np.repeat([one.column for one in wanted], count)
     roll = roll_at_arc(gear, np.concatenate([own.mean(axis=0) for own in knots]))
     own = {"flanks": contact.flanks, "order": found.order[at[1]], "driver": host == 0}
-    gap, met, *arms = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
+    gap, met, *directions = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
+    arms, out = directions[:2], directions[2:]
     rate = (arms[0] + arms[1]) / 2
     sense = 1 if host == 0 else -1
-    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate])
-    out, ends = [], np.cumsum([0, *count])
+    forces = [_parts(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
+    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate, *np.concatenate(forces)])
+    rows, ends = [], np.cumsum([0, *count])
     for one, hats, first, last in zip(wanted, knots, ends[:-1], ends[1:], strict=True):
         there = np.isfinite(gap[first:last])
-        *places, gaps, turn_1, turn_2, slow = values[:, first:last][:, there]
+        *places, gaps, turn_1, turn_2, slow = values[:6, first:last][:, there]
+        parts = values[6:, first:last][:, there].reshape(2, 2, -1) / slow
         order, log = int(found.order[one.column]), np.log(gear.m_n)  # local is what happens within about a module
         kernel = (
             _kernel(contact, one, host)[np.ix_(there, there)] if _alone(one) else hat_logarithm(hats[:, there], hats[:, there])
         )
         influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
-        bodies = zip(contact.flexibility, contact.coefficients, places, (turn_1, turn_2), (order, -order), strict=True)
-        for flexible, coefficient, own, turn, tooth in bodies:
-            influence = influence + np.outer(turn, turn) * (flexible.within(own, tooth) - coefficient * log)
+        bodies = zip(contact.flexibility, contact.coefficients, places, parts, (turn_1, turn_2), (order, -order), strict=True)
+        for flexible, coefficient, own, force, turn, tooth in bodies:
+            influence = influence + flexible.towards(own, tooth, force, turn, coefficient * log)
         tips = [n for n in _numbers(one) if n in TIP]
         fillet = on_fillet(pair.gear_1, places[0]) if 2 in tips else np.zeros(gaps.size, dtype=bool)
         fillet = fillet | on_fillet(pair.gear_2, places[1]) if 1 in tips else fillet
-        out.append(Row(*places, gaps, influence, turn_1, turn_2, fillet))
-    return out
+        rows.append(Row(*places, gaps, influence, turn_1, turn_2, fillet))
+    return rows
+
+
+def _parts(gear, roll, arm, out):
+    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
+    radius = side(gear, roll)[0]
+    across = np.minimum(gear.r_b / radius, 1.0)
+    inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
+    round_ = arm * gear.r_b / radius
+    return np.array([round_ * across + out * inside, out * across - round_ * inside])
 
 
 def _alone(one):

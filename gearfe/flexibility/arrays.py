@@ -26,6 +26,7 @@ def plane_arrays(found: Flexibility) -> dict[str, NDArray]:
     for at, spline in (surfaces | {f"own/{tooth}": spline for tooth, spline in found.own.items()}).items():
         x, y = spline.get_knots()
         out |= {f"{at}/x": x, f"{at}/y": y, f"{at}/c": spline.get_coeffs()}
+    out |= {f"leans/{tooth}/b": value for tooth, value in found.leans.items()}
     if found.seam is not None:
         out |= {"seam/influence": found.seam.influence, "seam/stiffness": found.seam.stiffness}
         for tooth, spline in found.seam.opening.items():
@@ -45,6 +46,8 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     near = {tooth: _curve(part) for (tooth,), part in tree.parts("near", 1)}
     far = {key: _surface(part) for key, part in tree.parts("far", 2)}
     own = {tooth: _surface(part) for (tooth,), part in tree.parts("own", 1)}
+    leans = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("leans", 1)}
+    _check(all(value.shape == (2, 2) for value in leans.values()), "leaning loads")
     seam = None
     if tree.has("seam"):
         opening = {tooth: _curve(part) for (tooth,), part in tree.parts("seam/opening", 1)}
@@ -55,7 +58,8 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     limits = tuple(tree.take("limits", 1))
     _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == own.keys(), "teeth")
     healthy, fine = tree.healthy(gear, plane_from), float(tree.take("fine", 0))
-    return _all_used(Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam), arrays, plane_arrays)
+    found = Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam, leans)
+    return _all_used(found, arrays, plane_arrays)
 
 
 def solid_arrays(found: Flexibility3D) -> dict[str, NDArray]:

@@ -1,7 +1,8 @@
 """`Flexibility`: what a gear gives to its contacts, wherever it came from."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,29 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
+
+
+TILT = 0.2  # of the two loads at each end of a flank that tell how a tooth yields across the normal [rad]
+
+
+def leaning(normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
+    """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
+
+    With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
+
+    Parameters
+    ----------
+    normal, ahead, back : ndarray, shape (n,)
+        Under loads along the involute's normal n, and tilted towards t and away from it [mm per N/mm].
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        S_nt and S_tt [mm per N/mm].
+    """
+    plain, plus, minus = (np.asarray(values, dtype=float) for values in (normal, ahead, back))
+    across = (plus - minus) / (2 * math.sin(2 * TILT))
+    return np.stack([across, ((plus + minus) / 2 - plain * math.cos(TILT) ** 2) / math.sin(TILT) ** 2], axis=-1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +94,9 @@ class Flexibility:
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     seam : SeamFaces or None
         The cracks; the splines above then are those with the cracks glued shut.
+    leans : dict of int to ndarray, shape (2, 2)
+        Of each solved tooth, at both `limits`, what `leaning` gives: t is the tangent away from the gear's centre. Without it a
+        tooth yields to loads off its normal by their torque.
     """
 
     gear: Gear
@@ -81,6 +108,7 @@ class Flexibility:
     dofs: int = 0
     healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
+    leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
 
     def near_of(self, tooth: int) -> Any:
         """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
@@ -104,6 +132,34 @@ class Flexibility:
             slope = spline(rising, rising, dx=1)[np.ix_(back, back)] * depth[:, None]
             out = out + slope + slope.T
         return out
+
+    def towards(
+        self, roll: NDArray[np.float64], tooth: int, force: NDArray[np.float64], torque: NDArray[np.float64], local: float
+    ) -> NDArray[np.float64]:
+        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+
+        Parameters
+        ----------
+        roll : ndarray, shape (n,)
+        tooth : int
+        force : ndarray, shape (2, n)
+            Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
+        torque : ndarray, shape (n,)
+            Its torque over that of a unit load along the normal.
+        local : float
+            Taken from S(s, s') as well, for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is
+            local.
+        """
+        leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
+        if leans is None:
+            return np.outer(torque, torque) * (self.within(roll, tooth) - local)
+        low, high = self.limits
+        part = np.clip((arc_at(self.gear, roll) - low) / (high - low), 0.0, 1.0)[:, None]
+        across, along = ((1 - part) * leans[0] + part * leans[1]).T
+        (normal, tangent), along = force, (along[:, None] + along) / 2
+        mixed = np.outer(normal * across, tangent)
+        straight = np.outer(normal, normal) * (self.within(roll, tooth) - local)
+        return straight + mixed + mixed.T + np.outer(tangent, tangent) * (along - local)
 
     def _whole(self):
         return self if self.healthy is None else self.healthy

@@ -17,7 +17,7 @@ from geometry.kept import keeping
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
-from ...flexibility.plane import Flexibility, SeamFaces
+from ...flexibility.plane import TILT, Flexibility, SeamFaces, leaning
 from ...flexibility.solved import solved_gears
 from .join import join
 from .panel import panel
@@ -70,8 +70,8 @@ def _healthy(gear, material, _, neighbours, state, order, refine, cache):
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
-    near, own = _own_tooth(gear, influence[0, 0])
-    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns)
+    near, own, leans = _own_tooth(gear, influence[0, 0])
+    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, leans={0: leans})
 
 
 def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
@@ -86,25 +86,30 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
     influence, opening = join(gear, panels, one)
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, own, far = {}, {}, {}
+    near, own, far, leans = {}, {}, {}, {}
     for i in teeth:
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], own[i] = _own_tooth(gear, glued)
+                near[i], own[i], leans[i] = _own_tooth(gear, glued)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
-    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t].T) for t in teeth}, between, stiffness)
+    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
     unknowns = sum(p.unknowns for p in panels.values())
-    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam)
+    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, leans)
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`; the other arguments as of `flexibility`."""
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under four tilted ones: at both limits, both ways.
+
+    The other arguments are as of `flexibility`.
+    """
 
     def solve():
-        return panel(gear, sector(gear, cracks, refine=refine), material, _places(gear), order=order, state=state)
+        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, np.array(_limits(gear))), 2))
+        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 2)
+        return panel(gear, sector(gear, cracks, refine=refine), material, rolls, order=order, state=state, tilt=tilt)
 
     return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
 
@@ -162,10 +167,12 @@ def _knots(gear):
 
 def _spline(gear, influence):
     arcs, matrix = _knots(gear)
-    return RectBivariateSpline(arcs, arcs, matrix @ influence @ matrix.T)
+    return RectBivariateSpline(arcs, arcs, matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 
 
 def _own_tooth(gear, influence):
-    """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads."""
-    arcs, matrix = _knots(gear)
-    return CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, influence, matrix)), _spline(gear, (influence + influence.T) / 2)
+    """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads, and what `leaning` gives."""
+    (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
+    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, between, matrix))
+    tilted = np.diag(influence)[PLACES:]
+    return near, _spline(gear, (influence + influence.T) / 2), leaning(near(_limits(gear)), tilted[::2], tilted[1::2])

@@ -77,7 +77,7 @@ def plane_hats(gear, material, cracks=(), *, cache=True):
 
     def solve():
         panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
-        influence = join(gear, panels, panels[1])[0][0, 0]
+        influence = join(gear, panels, panels[1])[0][0, 0][:PLACES, :PLACES]
         points, weight = hat_points(hats(gear), 12)
         mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))
         return mean @ (influence + influence.T) @ mean.T / 2
