@@ -27,7 +27,7 @@ from geometry.tooth.profile import arc_at, flank_normal
 
 from ..flexibility.hats import FLANK_EDGES, SPAN, hat_knots, wider
 from ..flexibility.hertz import half_plane, hat_logarithm
-from ..flexibility.plane import TILT, Flexibility, SeamFaces, leaning
+from ..flexibility.plane import BELOW, TILT, Flexibility, SeamFaces, leaning
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -49,18 +49,19 @@ class Hats:
         return self.knots.mean(axis=0)
 
 
-def hats(section_, tooth, *, corner=False, tilt=0.0, ends=False):
+def hats(section_, tooth, *, corner=False, tilt=0.0):
     """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
 
-    With `corner`, a last, one-sided hat has its top at the tip corner. With `ends` only the first and the last, `tilt` [rad] from
-    the normal towards the outside of the gear.
+    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt` [rad] from the normal towards the outside of
+    the gear, only the three hats of `_leans`.
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = arc_at(gear, roll)
     knots = hat_knots(arc, corner=corner)
     first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
-    if ends:
-        knots, first = knots[:, [0, -1]], first[[0, -1]]
+    if tilt:
+        own = _leans(gear, knots)
+        knots, first = knots[:, own], first[own]
 
     def height(s):
         start, top, stop = knots[:, :, None, None]
@@ -157,22 +158,28 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     influence, at = _between(body, [one.load for one in (*on.values(), *tilted)])
     loaded, c = on[0], half_plane(material, state)
     near, own = own_tooth(loaded, influence[at[0], at[0]], c)
-    leans = _leaning(loaded, influence, at[0], at[-2:], c)
+    leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
     far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
     limits = loaded.arc[0], loaded.arc[-1]
     return Flexibility(gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], leans={0: leans})
 
 
 def _tilted(mesh, tooth):
-    """The hats at both ends of a flank, tilted either way."""
-    return [hats(mesh, tooth, corner=True, tilt=tilt, ends=True) for tilt in (TILT, -TILT)]
+    """The hats of `_leans` of a flank, tilted either way."""
+    return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
 
 
-def _leaning(on, influence, plain, tilted, coefficient):
+def _leans(gear, knots):
+    """Numbers of the hats at the foot of a flank, `BELOW` the tip and at the tip."""
+    away = knots[1, -1] - knots.mean(axis=0)
+    return [0, int(np.argmin(np.abs(away[1:-1] - min(BELOW * gear.m_n, away[0] / 2)))) + 1, knots.shape[1] - 1]
+
+
+def _leaning(gear, on, influence, plain, tilted, coefficient):
     """What `leaning` gives of a tooth with hats `on`, from the influence of all loads and where these and the tilted ones are."""
-    local = coefficient * np.diag(hat_logarithm(on.knots[:, [0, -1]], on.knots[:, [0, -1]]))
-    found = np.diag(influence)
-    return leaning(found[plain][[0, -1]] - local, *(found[one] - local for one in tilted))
+    own = _leans(gear, on.knots)
+    local, found = coefficient * np.diag(hat_logarithm(on.knots[:, own], on.knots[:, own])), np.diag(influence)
+    return leaning(on.arc[own], found[plain][own] - local, *(found[one] - local for one in tilted))
 
 
 def _between(body, loads):
@@ -216,7 +223,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
         shut = influence.copy()
         for one in (at[tooth], *leaned[tooth]):
             shut[one, one] -= influence[opened, one].T @ stiffness @ influence[opened, one]
-        leans[tooth] = _leaning(on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
+        leans[tooth] = _leaning(gear, on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
         for other in solved:
             glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
             if other == tooth:

@@ -47,7 +47,7 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     far = {key: _surface(part) for key, part in tree.parts("far", 2)}
     own = {tooth: _surface(part) for (tooth,), part in tree.parts("own", 1)}
     leans = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("leans", 1)}
-    _check(all(value.shape == (2, 2) for value in leans.values()), "leaning loads")
+    _check(all(value.shape == (3, 3) for value in leans.values()), "leaning loads")
     seam = None
     if tree.has("seam"):
         opening = {tooth: _curve(part) for (tooth,), part in tree.parts("seam/opening", 1)}

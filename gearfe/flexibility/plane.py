@@ -12,27 +12,39 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
 
-TILT = 0.2  # of the two loads at each end of a flank that tell how a tooth yields across the normal [rad]
+NEAREST = 0.001  # to a tip corner that a flexibility is told apart [m_n]
+TILT = 0.2  # of the two loads at each of three places that tell how a tooth yields across the normal [rad]
+BELOW = 0.1  # the tip: the place between both ends of the flank [m_n]
 
 
-def leaning(normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
+def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
     """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
 
     With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
 
     Parameters
     ----------
-    normal, ahead, back : ndarray, shape (n,)
+    arc : ndarray, shape (3,)
+        Places of the loads: at the foot of the flank, `BELOW` the tip and at the tip [mm].
+    normal, ahead, back : ndarray, shape (3,)
         Under loads along the involute's normal n, and tilted towards t and away from it [mm per N/mm].
 
     Returns
     -------
-    ndarray, shape (n, 2)
-        S_nt and S_tt [mm per N/mm].
+    ndarray, shape (3, 3)
+        Arcs, S_nt and S_tt [mm per N/mm].
     """
     plain, plus, minus = (np.asarray(values, dtype=float) for values in (normal, ahead, back))
     across = (plus - minus) / (2 * math.sin(2 * TILT))
-    return np.stack([across, ((plus + minus) / 2 - plain * math.cos(TILT) ** 2) / math.sin(TILT) ** 2], axis=-1)
+    along = ((plus + minus) / 2 - plain * math.cos(TILT) ** 2) / math.sin(TILT) ** 2
+    return np.array([np.asarray(arc, dtype=float), across, along])
+
+
+def _logarithmic(arc, places, least):
+    """A variable of the arc in which `leaning` changes evenly between its places: towards the tip's wedge a logarithm."""
+    _, middle, tip = places
+    left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
+    return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,9 +106,9 @@ class Flexibility:
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     seam : SeamFaces or None
         The cracks; the splines above then are those with the cracks glued shut.
-    leans : dict of int to ndarray, shape (2, 2)
-        Of each solved tooth, at both `limits`, what `leaning` gives: t is the tangent away from the gear's centre. Without it a
-        tooth yields to loads off its normal by their torque.
+    leans : dict of int to ndarray, shape (3, 3)
+        Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
+        loads off its normal by their torque.
     """
 
     gear: Gear
@@ -153,9 +165,9 @@ class Flexibility:
         leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
         if leans is None:
             return np.outer(torque, torque) * (self.within(roll, tooth) - local)
-        low, high = self.limits
-        part = np.clip((arc_at(self.gear, roll) - low) / (high - low), 0.0, 1.0)[:, None]
-        across, along = ((1 - part) * leans[0] + part * leans[1]).T
+        least = NEAREST * self.gear.m_n
+        at, places = (_logarithmic(arc, leans[0], least) for arc in (arc_at(self.gear, roll), leans[0]))
+        across, along = (np.interp(at, places, values) for values in leans[1:])
         (normal, tangent), along = force, (along[:, None] + along) / 2
         mixed = np.outer(normal * across, tangent)
         straight = np.outer(normal, normal) * (self.within(roll, tooth) - local)

@@ -17,13 +17,13 @@ from geometry.kept import keeping
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
-from ...flexibility.plane import TILT, Flexibility, SeamFaces, leaning
+from ...flexibility.plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
 from ...flexibility.solved import solved_gears
 from .join import join
 from .panel import panel
 
 PLACES = 16  # loads on each flank
-NEAREST = 0.001  # of them to the tip corner, and to the form point 20 times as much [m_n]
+FOOT = 20 * NEAREST  # of them to the form point; to the tip corner it is `NEAREST` [m_n]
 HATS = 2  # times finer hats at corners than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
@@ -101,22 +101,27 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`, and under four tilted ones: at both limits, both ways.
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under six tilted ones: at `_leans`, both ways.
 
     The other arguments are as of `flexibility`.
     """
 
     def solve():
-        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, np.array(_limits(gear))), 2))
-        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 2)
+        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
+        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 3)
         return panel(gear, sector(gear, cracks, refine=refine), material, rolls, order=order, state=state, tilt=tilt)
 
     return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
 
 
 def _limits(gear):
-    nearest = NEAREST * gear.m_n
-    return arc_at(gear, gear.roll_f) + 20 * nearest, arc_at(gear, gear.roll_a) - nearest
+    return arc_at(gear, gear.roll_f) + FOOT * gear.m_n, arc_at(gear, gear.roll_a) - NEAREST * gear.m_n
+
+
+def _leans(gear):
+    """Arcs of the tilted loads, as of `leaning`."""
+    low, high = _limits(gear)
+    return np.array([low, max(high - BELOW * gear.m_n, (low + high) / 2), high])
 
 
 def _scale(gear):
@@ -174,5 +179,5 @@ def _own_tooth(gear, influence):
     """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads, and what `leaning` gives."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
     near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, between, matrix))
-    tilted = np.diag(influence)[PLACES:]
-    return near, _spline(gear, (influence + influence.T) / 2), leaning(near(_limits(gear)), tilted[::2], tilted[1::2])
+    at, tilted = _leans(gear), np.diag(influence)[PLACES:]
+    return near, _spline(gear, (influence + influence.T) / 2), leaning(at, near(at), tilted[::2], tilted[1::2])
