@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
-
 NEAREST = 0.001  # to a tip corner that a flexibility is told apart [m_n]
 TILT = 0.2  # of the two loads at each of three places that tell how a tooth yields across the normal [rad]
 BELOW = 0.1  # the tip: the place between both ends of the flank [m_n]

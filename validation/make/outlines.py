@@ -4,9 +4,10 @@ import numpy as np
 
 from gearfe.files import written
 
-from ..shared import outlines_three
+from ..shared import outlines_plane, outlines_three
 from ..shared.arbiter import kept, unloaded_table
 from ..shared.arbiter.beside import beside
+from ..shared.arbiter.cases import fresh
 from ..shared.places import PAGES
 
 __all__ = ["reference", "run"]
@@ -32,11 +33,20 @@ gone on straight. Where an arc at a tip begins on the flank (14/47), and where a
 
 """
 
+FRESH = """## Fresh pairs
+
+Fourteen pairs of the same draw (`fresh` in `validation/shared/arbiter/cases.py`), on which nothing was tried: pressed and judged
+once, after the last change above. Differences in per cent.
+
+"""
+
 
 def reference():
     """Compute what is not on file: gaps of random pairs, sections pressed by the arbiter, whole gears by CalculiX."""
     unloaded_table.reference()
     kept.reference()
+    kept.reference(fresh(), kept.FRESH)
+    outlines_plane.reference()
     outlines_three.reference()
 
 
@@ -69,7 +79,25 @@ def run():
                 f"{found['estimate']:.3f} | {row['places']} |\n"
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
-    parts.append(outlines_three.section())
+    parts += [_fresh(), outlines_plane.section(), outlines_three.section()]
     with written(PAGE) as target, open(target, "w", encoding="utf-8") as file:
         file.write("".join(parts))
     print(f"wrote {PAGE.name}")
+
+
+def _fresh():
+    """The section of the pairs on which nothing was tried."""
+    lines = [
+        FRESH,
+        "| method | phases | 50 % | 90 % | largest | at a corner: largest | estimate covers | refused |\n|---" + "|---" * 7,
+    ]
+    lines[-1] += "|\n"
+    for method in METHODS:
+        found = list(beside(method, given=fresh(), table=kept.FRESH))
+        rows = [(row, one) for row, one in found if "refused" not in one]
+        off, estimate = (np.array([abs(one[name]) for _, one in rows]) for name in ("difference", "estimate"))
+        corner = np.array([bool(row["places"]) for row, _ in rows])
+        cells = [f"{value:.3f}" for value in (*np.quantile(off, [0.5, 0.9, 1.0]), off[corner].max(initial=0.0))]
+        cells += [f"{int((off <= estimate).sum())} of {off.size}", str(len(found) - len(rows))]
+        lines.append(f"| `{method}` | {off.size} | {' | '.join(cells)} |\n")
+    return "".join(lines) + "\n"
