@@ -58,6 +58,8 @@ _HOME = {
     "mesh_excitation": "gearfe.machine.mesh_excitation",
     "simulate": "gearfe.motion.simulate",
     "single_mesh": "gearfe.machine.single_mesh",
+    "force_law": "gearfe.machine.force_law",
+    "ForceLaw": "gearfe.machine.force_law",
     "stage_phases": "gearfe.machine.planetary",
     "steady_state": "gearfe.motion.steady",
     "with_tachometer": "gearfe.signal.tachometer",

@@ -24,6 +24,8 @@ from .elements.mesh_file import export_mesh as export_mesh
 from .elements.root_stress import RootStress as RootStress
 from .elements.root_stress import root_stress_along_width as root_stress_along_width
 from .machine.compound_planetary import compound_planetary as compound_planetary
+from .machine.force_law import ForceLaw as ForceLaw
+from .machine.force_law import force_law as force_law
 from .machine.gear_mesh import GearMesh as GearMesh
 from .machine.gear_mesh import Samples as Samples
 from .machine.gear_mesh import ToothDamage as ToothDamage

@@ -13,8 +13,9 @@ from gearfe.scene import verdicts
 from gearfe.scene.stored import read_curves
 from gearfe.studies.case_table import case_curve, damage_cycle, printed_cases
 from validation import __main__ as pages
-from validation.make import assumptions, machines, shortcomings, slow
-from validation.shared import herringbone_page, places, speed_page, table_rows
+from validation.make import assumptions, herringbone, machines, speed
+from validation.shared import herringbone_page, places, state, table_rows
+from validation.shared.page import text
 
 PAGES = list(machines.PAGES)
 
@@ -58,8 +59,7 @@ def test_verdicts_follow_from_the_numbers(page):
 
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_are_not_stale(page):
-    on_disk = (machines.FOLDER / f"{page}.md").read_text(encoding="utf-8")
-    assert on_disk == machines.text(page), f"{page}.md is stale: run python -m validation machines"
+    assert state.without_first_line(page) == machines.text(page), f"{page}.md is stale: run python -m validation machines"
     for name in machines.module(page).PICTURES:
         picture = machines.FOLDER / f"{name}.png"
         assert picture.is_file(), f"{name}.png is missing: run python -m validation machines"
@@ -72,7 +72,8 @@ def test_references_computed_elsewhere_exist():
 
 
 def test_assumptions_page_is_not_stale():
-    assert assumptions.PAGE.read_text(encoding="utf-8") == assumptions.text(), "run python -m validation assumptions"
+    on_disk = state.without_first_line("assumptions")
+    assert on_disk == text("assumptions", *assumptions.text()), "run python -m validation assumptions"
     (name, pair, _, base) = assumptions.read()[0]
     one = machines.gf.load_scene(name).pairs[pair]
     assert_allclose(assumptions.mean(one), base, rtol=machines.GOLDEN_RTOL, err_msg="run python -m validation assumptions")
@@ -87,14 +88,14 @@ def test_every_assumption_says_what_depends_on_it(name):
 
 
 def test_every_page_can_be_asked_for():
-    assert set(pages.LONG) | set(pages.TIMED) < set(pages.PAGES)
+    assert set(pages.PARTS) | set(pages.ROWS) | {job.split()[0] for job in pages.CONTINUED} < set(pages.PAGES)
     for page in pages.PAGES:
         assert (places.HOME / "make" / f"{page}.py").is_file(), page
 
 
 def test_page_of_the_ten_rows_is_not_stale():
-    on_disk = (machines.FOLDER / "herringbone.md").read_text(encoding="utf-8")
-    assert on_disk == herringbone_page.page(), "herringbone.md is stale: run python -m validation herringbone"
+    on_disk = state.without_first_line("herringbone")
+    assert on_disk == text("herringbone", *herringbone.text()), "herringbone.md is stale: run python -m validation herringbone"
 
 
 def test_finite_elements_on_file_are_of_the_scene_as_it_is():
@@ -111,8 +112,6 @@ def test_finite_elements_on_file_are_of_the_scene_as_it_is():
     [
         ("sun_planet", "published"),
         ("planet_ring", "textbook"),
-        pytest.param("sun_planet", "textbook", marks=pytest.mark.slow),
-        pytest.param("planet_ring", "published", marks=pytest.mark.slow),
     ],
 )
 def test_closed_forms_of_the_ten_rows(pair, method):
@@ -125,7 +124,6 @@ def test_closed_forms_of_the_ten_rows(pair, method):
             assert_allclose([found.mean, found.largest], [float(row["mean [N/m]"]), float(row["max [N/m]"])], rtol=1e-4)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("pair", ["sun_planet", "planet_ring"])
 def test_energy_model_of_the_ten_rows(pair):
     """Healthy, recomputed; and below 3 % of the finite elements in all rows, in mean and maximum."""
@@ -140,16 +138,4 @@ def test_energy_model_of_the_ten_rows(pair):
 
 
 def test_speed_page_is_not_stale():
-    assert speed_page.PAGE.read_text(encoding="utf-8") == speed_page.page(), "run python -m validation speed"
-
-
-def test_slow_record_says_what_its_table_says():
-    assert slow.PAGE.read_text(encoding="utf-8") == slow.page(), "run python -m validation slow"
-
-
-def test_shortcomings_are_few_and_have_reasons():
-    known = shortcomings.found()
-    assert len(known) < 5
-    assert len(known) == shortcomings.mentions(), "every expected failure is a decorator of one test, with a reason in words"
-    assert all(one.strict and one.asks and len(one.reason) > 80 and "not known" not in one.reason for one in known)
-    assert shortcomings.PAGE.read_text(encoding="utf-8") == shortcomings.page(), "run python -m validation shortcomings"
+    assert state.without_first_line("speed") == text("speed", *speed.text()), "run python -m validation speed"

@@ -1,12 +1,11 @@
 """What others print: the articles' machines with their verdicts, and boundary elements, other finite elements, codes, standards.
 
 Whether gearfe finds a printed number is a recorded verdict (`validation/pages/tables/*.csv`): a test computes the number again
-and fails if the verdict changes, either way. Numbers whose simulation takes long are computed again in the slow tests.
+and fails if the verdict changes, either way. Numbers of long simulations are computed again with their pages alone.
 """
 
 import functools
 import math
-import shutil
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.scene import verdicts
 from validation.make import machines, truth
-from validation.shared import reference, table_rows
+from validation.shared import reference, state, table_rows
 
 TABLES = reference.load()
 
@@ -99,12 +98,13 @@ def now(page, name):
 
 
 def printed():
-    """Rows of all machines; those of long simulations are slow."""
+    """Rows of all machines but those of long simulations, which their pages compute again."""
     for page in machines.PAGES:
         by_id, soon = {one.id: one for one in machines.references(page)}, machines.ordinary(page)
         for row in table_rows.read(page):
             name = "-".join(filter(None, (page, row.id, row.case, row.pair)))
-            yield pytest.param(page, row, by_id[row.id], id=name, marks=[] if row.id in soon else [pytest.mark.slow])
+            if row.id in soon:
+                yield pytest.param(page, row, by_id[row.id], id=name)
 
 
 @pytest.mark.parametrize(("page", "row", "source"), list(printed()))
@@ -140,7 +140,7 @@ def test_every_machine_has_rows_in_the_ordinary_run(page):
 
 
 def test_truth_page_is_not_stale():
-    assert truth.PAGE.read_text(encoding="utf-8") == truth.text(), "run python -m validation truth"
+    assert state.without_first_line("truth") == truth.text(), "run python -m validation truth"
 
 
 def test_rows_of_the_truth_page():
@@ -161,10 +161,3 @@ def test_contact_in_calculix_as_committed():
     assert_allclose(ours, theirs, rtol=0.02, err_msg="the same near the ends of double contact")
     again = gf.mesh_stiffness(pair, truth.LINE_LOAD * pair.gear_1.b, steel, phases=phase).k
     assert_allclose(again, ours, rtol=1e-4, err_msg="run python -m validation truth")
-
-
-@pytest.mark.slow
-@pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx")
-def test_contact_in_calculix_again():
-    phase, _, theirs = truth.read_contact()
-    assert_allclose(truth.contact_row(float(phase[2]))[2], theirs[2], rtol=1e-3)

@@ -1,168 +1,120 @@
-"""``python -m validation PAGE``: rebuild a validation page; without PAGE: all of them."""
+"""``python -m validation PAGE``: rebuild a validation page; ``--stale``: what is old; ``renew``: compute that again."""
 
 import argparse
-import csv
 import importlib
-import resource
+import os
 import subprocess
 import sys
-import time
-from concurrent.futures import ThreadPoolExecutor, as_completed
 
-from .shared import places
+from .shared import kept_rows, places, renew, slow, state
+from .shared.page import QUESTIONS
 
-PAGES = {
-    "machines": "every printed number of the four machines beside ours, with verdicts",
-    "herringbone_scan": "article S4: which readings of what it does not print bear its table (resumable)",
-    "herringbone": "article S4: ten rows of stiffness against finite elements, and what moves them",
-    "sample": "finite elements against the energy model, and both error estimates, on random pairs (resumable)",
-    "sample_three": "the same in three dimensions: narrow and wide gears, rings, cracks (resumable)",
-    "cracks": "crack reductions and their conventions",
-    "assumptions": "what the assumptions of the scenes do to the stiffness",
-    "outlines": "gaps and stiffness of random pairs against whole outlines pressed together (--reference: resumable)",
-    "truth": "independent values of others, and CalculiX, beside ours",
-    "measured": "measured gearboxes of others, as far as their numbers are public",
-    "flanks": "modified flanks against CalculiX, the transmission error over load (resumable)",
-    "sweeps": "thousands of cases: cost, kills, full disks, a cluster; cracks among manufacturing scatter (resumable)",
-    "slow": "the slow tests: outcome, seconds, code and what they print (resumable; or: slow tests/FILE ...)",
-    "shortcomings": "what gearfe falls short of: the expected failures of its tests",
-    "speed": "seconds against error of every method",
-    "before_after": "seconds, memory and errors beside those of an earlier commit, in one run",
-    "threads": "threads of the caller: bits, crashes, gears solved twice; seconds with threads of the linear algebra",
-    "formulations": "closed forms on known pairs, and what each ingredient changes",
-    "map": "errors of the closed forms over thousands of gear pairs",
-    "surrogate": "stand-ins for the energy model: error on fresh cases, time of a call",
-    "dataset": "a classifier trained on a simulated data set, and what it finds by severity",
-    "hard": "hard cases, each with its outcome",
-    "three": "three dimensions: energy model against hexahedra of the whole gear",
-    "pairs_three": "stiffness of pairs in three dimensions against hexahedra of both gears (long: --reference)",
-    "outsider_three": "three dimensions against CalculiX: whole gears in contact and under line loads (--reference)",
-    "holed_cracks": "pits cut out of cracked teeth: the ten rows of S4 with holes (resumable)",
-    "holes": "pits as real holes: volume cut, and what the missing material does to k",
-    "pictures": "stress pictures of every scene and damage case",
-    "hard_three": "hard cases in three dimensions, each with its outcome",
-    "speed_three": "seconds and memory against error in three dimensions",
-    "cost_three": "cost of the energy model in three dimensions over teeth, width, helix angle, order and phases",
-    "centroid": "the sideband centroid SC of S0 and S1 against severity and impacts",
-    "dynamics": "integrators: seconds against error, all machines at their own steps (resumable)",
-    "hard_dynamics": "hard cases of the dynamics, each with its outcome (resumable)",
-    "own_model": "the example of a curve exported by MATLAB",
-    "readme": "the table and the program output in the README",
-    "tutorials": "what the scripts of the documentation print, for their test",
+PAGES = QUESTIONS | {
+    "own_model": "(a file: the example of a curve exported by MATLAB)",
+    "readme": "(a file: the table and the program output in the README)",
+    "tutorials": "(files: what the scripts of the documentation print, for their test)",
 }
 
-LONG_RUNS = ("pairs_three", "herringbone", "outsider_three", "outlines")  # pages whose finite elements --reference computes
-LONG = {
-    "sample": "a new sample of random pairs",
-    "sample_three": "brute-force finite elements of whole gears",
-    "herringbone_scan": "an hour of energy models, where it is not kept",
-    "slow": "runs the slow tests",
-    "map": "thousands of gears",
-    "before_after": "needs the repository's history",
-    "sweeps": "ten thousand cases, where they are not kept",
-    "three": "brute-force finite elements of whole gears",
-    "speed_three": "brute-force finite elements of whole gears",
-}  # left out of "everything": minutes to an hour each
-TIMED = ("speed", "readme")  # they print seconds of the clock; other pages print CPU seconds, which hardly depend on company
-PARTS = {
-    "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary")
-}  # each a job of its own
-ROWS = ("dynamics", "hard_dynamics")  # pages whose rows are kept: parts are beginnings of those computed anew
-SECONDS = places.TABLES / "seconds.csv"  # of the last run of everything
+PARTS = {  # what is computed at once, where that is not the page
+    "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
+    **dict.fromkeys(("herringbone", "sample", "three"), ("all",)),
+}
+ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
+CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
+    "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
+    "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
+    "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
+    "sample --reference": ("sample_three.jsonl",),
+    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
+}
 
 
 def main():
-    """Run the page asked for, or all of them."""
-    parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild the validation pages.")
-    parser.add_argument("page", nargs="?", choices=list(PAGES), metavar="PAGE", help=f"default: all but {', '.join(LONG)}")
-    parser.add_argument(
-        "parts",
-        nargs="*",
-        metavar="PART",
-        help="of slow: only these test files; of machines: only these pages; of dynamics, hard_dynamics: rows to compute anew",
-    )
-    parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they took")
-    parser.add_argument(
-        "--reference", action="store_true", help="compute the three-dimensional finite elements that are not on file (resumable)"
-    )
-    arguments = parser.parse_args()
-    if arguments.parts and arguments.page not in ("slow", *PARTS, *ROWS):
-        parser.error(f"only slow, machines, {', '.join(ROWS)} can be made in part; {arguments.page} is made as a whole")
-    if arguments.list:
+    """Do what is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m validation", description="Rebuild validation pages; see what is old.")
+    parser.add_argument("page", nargs="?", choices=[*PAGES, "slow", "renew"], metavar="PAGE", help="a page, slow or renew")
+    parts = "of pages that keep rows: beginnings of those to compute anew, or all; of machines and renew: pages; of slow: files"
+    takes = ("slow", "renew", *PARTS, *ROWS)
+    parser.add_argument("parts", nargs="*", metavar="PART", help=parts)
+    parser.add_argument("--list", action="store_true", help="name the pages, what is on them and what they take")
+    parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
+    parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
+    parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
+    parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file, or PART anew")
+    arguments = parser.parse_intermixed_args()
+    page, parts = arguments.page, arguments.parts
+    if parts and page not in takes:
+        parser.error(f"only {', '.join(sorted(set(takes)))} take parts; {page} is made as a whole")
+    if arguments.stale:
+        sys.exit(stale(arguments.age))
+    elif page == "renew":
+        wanted = [job for job in found() if not parts or job.words[0] in parts]
+        failed = renew.renew(wanted, arguments.minutes, CONTINUED)
+        sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
+    elif arguments.list or page is None:
         print(listed())
-    elif arguments.reference:
-        for name in [arguments.page] if arguments.page else LONG_RUNS:
-            importlib.import_module(f"validation.make.{name}").reference()
-    elif arguments.page is None:
-        sys.exit(everything())
+    elif page in ("slow", "machines") and len(parts) != 1:
+        for part in parts or (slow.files() if page == "slow" else PARTS[page]):
+            subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
     else:
-        started = time.perf_counter()
-        made = importlib.import_module(f"validation.make.{arguments.page}")
-        made.run(arguments.parts) if arguments.parts else made.run()
-        print(f"{' '.join([arguments.page, *arguments.parts])}: {time.perf_counter() - started:.0f} s, {_cpu():.1f} s of CPU")
+        compute(page, parts, arguments.reference)
+
+
+def whole():
+    """What is computed as a whole: pages or parts of them, and independent values."""
+    pages = [f"{page} {part}".strip() for page in PAGES for part in PARTS.get(page, ("",))]
+    return [*pages, *(job for job in CONTINUED if job.endswith("--reference"))]
+
+
+def found():
+    """All jobs: with the rows that are kept one by one and the slow tests."""
+    return renew.jobs(whole(), ROWS)
 
 
 def listed():
-    """Pages, CPU seconds of the last run of everything, and what is on them."""
-    took = known_seconds()
-    cost = {page: f"{sum(took.get(job, 0.0) for job in jobs_of(page)):.0f} s" for page in PAGES if took}
-    cost |= dict.fromkeys(LONG, "long")
-    return "\n".join(f"{page:14s} {cost.get(page, ''):>6s}  {about}" for page, about in PAGES.items())
+    """Pages, CPU seconds of the last run of each, and what is on them."""
+    jobs = found()
+    return "\n".join(f"{page:14s} {PAGES[page]} {renew.cost([j for j in jobs if j.words[0] == page])}" for page in PAGES)
 
 
-def jobs_of(page):
-    """What is run for a page: the page, or each of its parts."""
-    return [f"{page} {part}" for part in PARTS[page]] if page in PARTS else [page]
+def stale(age):
+    """Print what is old; with an age, the text of a failure: what is old for longer, pages that say another number; else None."""
+    jobs = found()
+    print("\n".join(renew.report(jobs)))
+    if age is None:
+        print("\n".join(f"{page}.md: first line brought up to date" for page in state.stamp()))
+        return None
+    late = sorted({" ".join(job.words[:1]) for job in renew.too_old(jobs, age)})
+    wrong, out = state.stamp(write=False), []
+    if late:
+        out.append(f"old for more than {age} days, see python -m validation renew: {', '.join(late)}")
+    if wrong:
+        out.append(f"first lines that python -m validation --stale brings up to date: {', '.join(wrong)}")
+    return "\n".join(out) or None
 
 
-def known_seconds():
-    """CPU seconds of jobs in the last run of everything."""
-    if not SECONDS.is_file():
-        return {}
-    with SECONDS.open(encoding="utf-8", newline="") as file:
-        return {row["job"]: float(row["CPU seconds"]) for row in csv.DictReader(file)}
-
-
-def everything():
-    """Rebuild all pages but the long ones, each in a fresh process as alone; returns the number of jobs that failed.
-
-    Pages that print seconds of the clock run one at a time, at the end, the others two at a time, the longest first.
-    """
-    took = known_seconds()
-    jobs = [job for page in PAGES if page not in LONG for job in jobs_of(page)]
-    wanted = sorted(jobs, key=lambda job: -took.get(job, 0.0))
-    started, failed, new, waiting = time.perf_counter(), [], {}, set(wanted)
-    for workers, pages in ((2, [p for p in wanted if p not in TIMED]), (1, [p for p in wanted if p in TIMED])):
-        with ThreadPoolExecutor(workers) as pool:
-            for job in as_completed([pool.submit(_alone, page) for page in pages]):
-                page, code, told = job.result()
-                waiting.remove(page)
-                if code:
-                    failed.append(page)
-                    print("\n".join(told[-15:]))
-                else:
-                    new[page] = float(told[-1].split(", ")[-1].split()[0])
-                last = "FAILED" if code else "; ".join([*[line for line in told if line.startswith("wrote")][-1:], told[-1]])
-                left = sum(took.get(p, 0.0) / (1 if p in TIMED else 2) for p in waiting)
-                at = f"{time.perf_counter() - started:.0f} s" + (f", about {left:.0f} s left" if took else "")
-                print(f"[{len(wanted) - len(waiting)}/{len(wanted)}, {at}] {last}", flush=True)
-    with SECONDS.open("w", encoding="utf-8", newline="") as file:
-        rows = [(page, f"{seconds:.1f}") for page, seconds in ({p: took[p] for p in wanted if p in took} | new).items()]
-        csv.writer(file, lineterminator="\n").writerows([("job", "CPU seconds"), *sorted(rows)])
-    print(f"{len(wanted)} jobs in {time.perf_counter() - started:.0f} s" + (f"; failed: {', '.join(failed)}" if failed else ""))
-    print("left out: " + "; ".join(f"{page} ({why})" for page, why in LONG.items()))
-    return len(failed)
-
-
-def _alone(page):
-    """Name, exit code and printed lines of a page or a part of one."""
-    done = subprocess.run([sys.executable, "-m", "validation", *page.split()], capture_output=True, text=True, check=False)
-    return page, done.returncode, (done.stderr + done.stdout).splitlines()
-
-
-def _cpu():
-    """CPU seconds of this process and of those it waited for."""
-    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+def compute(page, parts, reference):
+    """Compute a page, parts of one or its independent values in this process, and record what with."""
+    os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
+    state.watch()
+    if page == "slow":
+        slow.run(parts[0])
+    else:
+        job = f"{page} --reference" if reference else " ".join([page, *parts])
+        tables = [places.TABLES / name for name in CONTINUED.get(job, ())]
+        begun = [table for table in tables if table.is_file()]
+        state.run.job = job
+        made = importlib.import_module(f"validation.make.{page}")
+        if reference:
+            for table in begun if parts else ():
+                kept_rows.forget(table.stem, parts)
+            made.reference()
+        else:
+            made.run(parts) if parts else made.run()
+        if job in whole() and not begun and all(table.is_file() for table in tables):
+            state.ended(state.cpu(), tables)
+    state.stamp()
+    print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 
 
 if __name__ == "__main__":

@@ -17,6 +17,9 @@ BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
 GROWTH = 0.6  # of their length per length
 BEYOND = 12  # cells at least on the part of a line that is beyond the path of contact: gaps open there
+CARRYING = 20  # cells of a phase at least that carry load where the flanks' gaps change along the width
+SETTLED = 0.7  # the carrying part of a line has been found when it is no less than so much of what it was found to be before
+TIMES = 12  # that it is looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +71,7 @@ class Cells:
         return out
 
 
-def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
+def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None):
     """`Cells` of the pieces of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
@@ -86,11 +89,13 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1):
         Modifications of pinion and wheel.
     longer : int
         How many of these cells are taken for one: what k owes to their length.
+    fine : dict of (int, int) to (float, float, float), optional
+        By phase and piece: first depth, last depth, longest cell between them [mm].
     """
     rows, number = [], []
     for i, (own, size) in enumerate(zip(pieces, sizes, strict=True)):
-        for piece in own:
-            edge = _edges(piece, *size, slope)
+        for k, piece in enumerate(own):
+            edge = _edges(piece, *size, slope, (fine or {}).get((i, k)))
             edge = np.append(edge[:-1:longer], edge[-1])
             first, last = bands[piece.half]
             middle, width = (edge[1:] + edge[:-1]) / 2, np.diff(edge)
@@ -122,9 +127,46 @@ def _cut(pair, nominal):
     return out | (nominal > pair.path[1] - before) if before else out
 
 
-def _edges(piece, finest, step, slope):
+def carrying(cells, phase, pieces, force, bed):
+    """`fine` of `cells_of` for lines on which only a few cells carry, by their gaps on a bed of springs.
+
+    Lead crowning presses a few hundredths of the width together under a light load: cells that are longer than that would keep
+    the gap of their middles for ever, however light the load.
+
+    Parameters
+    ----------
+    cells, phase
+        As `cells_of` returns them.
+    pieces : list of list of Piece
+    force : float
+        That the cells of a phase carry together [N].
+    bed : float
+        Stiffness of both teeth per width [N/mm**2].
+    """
+    out = {}
+    for i, own in enumerate(pieces):
+        at = np.flatnonzero(phase == i)
+        if not at.size:
+            continue
+        order = at[np.argsort(cells.gap[at])]
+        gap, width = cells.gap[order], np.cumsum(cells.width[order])
+        pressed = (force / bed + np.cumsum(cells.gap[order] * cells.width[order])) / width  # approach, were so many to carry
+        deep = pressed[np.flatnonzero(pressed >= gap)[-1]]
+        loaded = at[cells.gap[at] < deep]
+        for k, piece in enumerate(own if loaded.size < CARRYING else ()):
+            inside = (cells.order[loaded] == piece.order) & (cells.half[loaded] == piece.half)
+            mine = loaded[inside & (cells.depth[loaded] > piece.first) & (cells.depth[loaded] < piece.last)]
+            if mine.size:
+                first, last = mine[np.argmin(cells.depth[mine])], mine[np.argmax(cells.depth[mine])]
+                low, high = cells.depth[first] - cells.width[first], cells.depth[last] + cells.width[last]
+                low, high = max(low, piece.first), min(high, piece.last)
+                out[i, k] = low, high, (high - low) / CARRYING
+    return out
+
+
+def _edges(piece, finest, step, slope, fine):
     """Depths between the cells of a piece [mm]."""
     a, b = piece.first, piece.last
     longest = min(step, max((b - a) / BEYOND, finest)) if piece.corner and slope > 1e-12 else step
-    fine = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
-    return spaced(a, b, longest, fine, 1, GROWTH)
+    closer = [(at, at, END * step) for at, ends in zip((a, b), piece.ends, strict=True) if ends]
+    return spaced(a, b, longest, closer + [fine] * (fine is not None), 1, GROWTH)

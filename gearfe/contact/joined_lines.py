@@ -170,8 +170,9 @@ class JoinedLines:
         return np.concatenate([force[: one.gap.size] for force, one in zip(forces, self.systems, strict=True)])
 
     def along(self, mean, forces, load):
-        """Mean line loads of all cells [N/mm]."""
-        return np.maximum(mean @ self.cells(forces), FLOOR * load[self.problem] / self.width)
+        """Mean line loads of all cells [N/mm]: none carries more than all do, though the first steps may have it pull others."""
+        own = load[self.problem]
+        return np.maximum(mean @ np.minimum(self.cells(forces), own), FLOOR * own / self.width)
 
     def wide(self, along, local):
         """Distances x of the strips ``(n,)`` [mm] at mean line loads `along`, with the local law of `SharedLines.solve`."""

@@ -14,7 +14,7 @@ from ..flexibility.hertz import contact_modulus, half_width, peak_pressure
 from ..steps import steps
 from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
-from .cells import Cells, cells_of
+from .cells import SETTLED, TIMES, Cells, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius
 from .hubs import given_way, hubs_of
 from .joined_lines import System
@@ -102,7 +102,8 @@ class PhaseContact:
         unit = self.modulus * pair.gear_1.m_n * self.width
         self.sized = unit * ROW ** math.ceil(math.log(force / unit, ROW) - 1e-9)
         # first guess: the half-plane's logarithm over the size of a tooth, and as much for the tooth
-        load, self.reach = force / self.width, 40 / (math.pi * self.modulus) * self.sized / self.width
+        load, self.bed = force / self.width, math.pi * self.modulus / 40
+        self.reach = self.sized / self.width / self.bed
         further = self._further(self.least + 80 / (math.pi * self.modulus) * load)
         self.law = CornerLaw(pair, materials, load, further, cache=cache) if extended else None
         kinked = flanks is not None and any(form.kinks for form in flanks)
@@ -206,13 +207,32 @@ class PhaseContact:
         sizes = []
         for own in pieces:
             length = sum(piece.last - piece.first for piece in own if not piece.floor or all(one.floor for one in own))
-            finest = FINEST * float(half_width(self.sized / length, self.radius, self.modulus)) if own else 0.0
+            finest = FINEST * self._half_width(length) if own else 0.0
             sizes.append((finest, max(self.step, finest)))
         if not any(pieces):
             return [None] * len(phases)
-        whole, number = cells_of(self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks, self.longer)
+        whole, number = self._close(pieces, sizes)
         ends = np.searchsorted(number, np.arange(len(phases) + 1)).tolist()
         return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+    def _half_width(self, length):
+        """Hertz's, of the force on so much of a line [mm]."""
+        return float(half_width(self.sized / length, self.radius, self.modulus))
+
+    def _close(self, pieces, sizes):
+        """`cells_of` the pieces, shorter where flanks that change along the width let a few cells alone carry."""
+        given = self.pair, pieces, self.bands, math.tan(self.beta_b), sizes, self.flanks
+        fine = {}
+        if self.flanks is not None and any(form.wide for form in self.flanks):
+            for _ in range(TIMES):
+                more = carrying(*cells_of(*given, fine=fine), pieces, self.sized, self.bed)
+                least = {at: FINEST * self._half_width(high - low) for at, (low, high, _) in more.items()}
+                more = {at: (*one[:2], max(one[2], least[at])) for at, one in more.items()}
+                more = {at: one for at, one in more.items() if one[2] < SETTLED * (fine[at][2] if at in fine else self.step)}
+                if not more:
+                    break
+                fine |= more
+        return cells_of(*given, longer=self.longer, fine=fine)
 
     def _batch(self, cells, bodies):
         """`Batch` of phases; two halves that are alike are solved once."""

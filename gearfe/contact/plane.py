@@ -114,19 +114,29 @@ class PairContact:
             )
             sets = [one | {"gap": one["gap"] - least[i]} for i, one in zip(open_.tolist(), sets, strict=True)]
             sets = [_within(contacts, reach[i]) for i, contacts in zip(open_.tolist(), sets, strict=True)]
-            line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(sets, line_load)
+            line[open_], pressure[open_], closing[open_], tangent[open_], closed, fillet = self._solved(
+                sets, line_load, line[open_]
+            )
         unloaded = least if self.flanks is not None or least.any() else None
         marked = (tuple(open_[which].tolist()) for which in (closed, fillet))
         doubt = left_out(self, line, closing, beyond)
         return Solved(found.order, closing, tangent, line, pressure, *marked, unloaded, left_out=doubt)
 
-    def _solved(self, sets, line_load):
-        """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch."""
+    def _solved(self, sets, line_load, smooth):
+        """Line loads and pressures by pair, approach, tangent of contact problems `sets`; where crack faces or fillets touch.
+
+        `smooth` are the line loads if all were single contacts: hats start in touch up to the gap at the ends of Hertz's contact
+        under these, which is the same for any radius.
+        """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
         there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
         radius[~there] = 1.0
-        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there, tilt
+        row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
+        least = np.full(smooth.shape, np.inf)
+        np.minimum.at(least, (row[there], column[there]), gap[there])
+        close = gap - least[row, column] <= sum(self.coefficients) * smooth[row, column]
+        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there, tilt, there & ((coefficient > 0) | close)
         force, approach, tangent, settled = line_contacts(*case)
         closed, fillet = [], []
         for k, contacts in enumerate(sets):
@@ -138,7 +148,6 @@ class PairContact:
                 own[:], approach[k], tangent[k] = self._share_closing(contacts, line_load)
             if (contacts["fillet"] & (own > 0)).any():
                 fillet.append(k)
-        row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
         np.add.at(line, (row, column), force)
         single, hat = coefficient > 0, there & (coefficient == 0)

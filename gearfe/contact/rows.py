@@ -12,12 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kept import keeping
-from geometry.pair.contacts import TIP, approach
+from geometry.pair.contacts import approach
 from geometry.tooth.profile import arc_at, roll_at_arc
 from geometry.tooth.side import on_fillet, side
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
+from ..flexibility.plane import towards
 
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
@@ -155,24 +156,30 @@ def _on_side(contact, wanted, host):
     sense = 1 if host == 0 else -1
     forces = [_parts(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
     values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate, *np.concatenate(forces)])
-    rows, ends = [], np.cumsum([0, *count])
-    for one, hats, first, last in zip(wanted, knots, ends[:-1], ends[1:], strict=True):
-        there = np.isfinite(gap[first:last])
-        *places, gaps, turn_1, turn_2, slow = values[:6, first:last][:, there]
-        parts = values[6:, first:last][:, there].reshape(2, 2, -1) / slow
-        order, log = int(found.order[one.column]), np.log(gear.m_n)  # local is what happens within about a module
-        kernel = (
-            _kernel(contact, one, host)[np.ix_(there, there)] if _alone(one) else hat_logarithm(hats[:, there], hats[:, there])
-        )
+    cuts = np.cumsum(count)[:-1]
+    there = np.split(np.isfinite(gap), cuts)
+    parts = [own[:, on] for own, on in zip(np.split(values, cuts, axis=1), there, strict=True)]
+    order = found.order[[one.column for one in wanted]]
+    bodies = [
+        flexible.within([part[k] for part in parts], (sign * order).tolist())
+        for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
+    ]
+    made, log = [], np.log(gear.m_n)  # local is what happens within about a module
+    for one, hats, on, part, *smooth, tooth in zip(wanted, knots, there, parts, *bodies, order.tolist(), strict=True):
+        roll_1, roll_2, gaps, *turns, slow = part[:6]
+        kernel = _standing(contact, one, host)[1][np.ix_(on, on)] if _alone(one) else hat_logarithm(hats[:, on], hats[:, on])
         influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
-        bodies = zip(contact.flexibility, contact.coefficients, places, parts, (turn_1, turn_2), (order, -order), strict=True)
-        for flexible, coefficient, own, force, turn, tooth in bodies:
-            influence = influence + flexible.towards(own, tooth, force, turn, coefficient * log)
-        tips = [n for n in _numbers(one) if n in TIP]
-        fillet = on_fillet(pair.gear_1, places[0]) if 2 in tips else np.zeros(gaps.size, dtype=bool)
-        fillet = fillet | on_fillet(pair.gear_2, places[1]) if 1 in tips else fillet
-        rows.append(Row(*places, gaps, influence, turn_1, turn_2, fillet))
-    return rows
+        leaning = zip(
+            contact.flexibility, smooth, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1) / slow, turns, strict=True
+        )
+        for coefficient, (flexible, *own) in zip(contact.coefficients, leaning, strict=True):
+            influence = influence + towards(flexible, *own, coefficient * log)
+        numbers, fillet = _numbers(one), np.zeros(gaps.size, dtype=bool)
+        for tip, other, place in ((1, pair.gear_2, roll_2), (2, pair.gear_1, roll_1)):
+            if tip in numbers:
+                fillet |= on_fillet(other, place)
+        made.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
+    return made
 
 
 def _parts(gear, roll, arm, out):
@@ -189,15 +196,16 @@ def _alone(one):
     return len(_numbers(one)) == 1 and not one.width
 
 
-def _kernel(contact, one, host):
+def _standing(contact, one, host):
+    """Knots of a row that is `_alone`, from its corner, and what its hats are to each other."""
     (gear, fine), ends = _scale(contact, host), _ends(_numbers(one), host)
-    return _alone_kernel(gear.m_n, fine, one.zone, one.finest, ends)
+    return _alone_hats(gear.m_n, fine, one.zone, one.finest, ends)
 
 
 @keeping(16)
-def _alone_kernel(m_n, fine, zone, finest, ends):
+def _alone_hats(m_n, fine, zone, finest, ends):
     knots = _knots(_tops(np.zeros(1), ends, _offsets(m_n, fine, zone, finest)), ends)
-    return hat_logarithm(knots, knots)
+    return knots, hat_logarithm(knots, knots)
 
 
 def _scale(contact, host):
@@ -218,6 +226,8 @@ def _placed(contact, one, host):
     found, at = contact.found, (one.phase, one.column)
     gear, fine = _scale(contact, host)
     marks = {n: float(arc_at(gear, found.corner_roll[(host, n - 1, *at)])) for n in _numbers(one)}
+    if _alone(one):
+        return next(iter(marks.values())) + _standing(contact, one, host)[0]
     offsets, ends = _offsets(gear.m_n, fine, one.zone, one.finest), _ends(marks, host)
     low, high = marks.get(2 - host, -np.inf), marks.get(1 + host, np.inf)
     if low > high:  # each tip stands beyond the other: they touch at one of them

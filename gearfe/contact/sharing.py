@@ -157,7 +157,7 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     return force, approach, float(tangent)
 
 
-def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0):
+def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0, start=None):
     """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
@@ -173,43 +173,53 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
         Contacts that may carry load; at least one in each set.
     tilt : float or ndarray, shape (sets, n)
         As of `line_contact`.
+    start : ndarray of bool, shape (sets, n), optional
+        Of the possible ones, those that are likely in touch, at least one in each set; default: all.
 
     Returns
     -------
     force, approach, tangent, settled : ndarray (sets, n), (sets,), (sets,), (sets,) of bool
     """
-    n = gap.shape[1]
-    gap = np.where(possible, gap, 0.0)
-    each = np.broadcast_to(load, len(gap))[:, None]
-    floor = 1e-9 * each
-    active = possible.copy()
-    force = np.where(active, each / active.sum(axis=1, keepdims=True), 0.0)
-    settled = np.zeros(len(gap), dtype=bool)
-    diagonal = np.arange(n)
-    system, right = np.zeros((len(gap), n + 1, n + 1)), np.zeros((len(gap), n + 1))
+    sets = len(gap)
+    gap, load = np.where(possible, gap, 0.0), np.broadcast_to(load, sets)[:, None]
+    coefficient, tilt = (np.broadcast_to(values, gap.shape) for values in (coefficient, tilt))
+    force, approach, tangent = np.zeros(gap.shape), np.zeros(sets), np.zeros(sets)
+    open_, case = np.arange(sets), (flexibility, gap, load, coefficient, radius, tilt, possible)
+    active = possible if start is None else start
+    old = load / active.sum(axis=1, keepdims=True) * active
     for _ in range(30):
-        carried = np.maximum(force, floor)
-        total = flexibility.copy()
-        total[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried
-        offset = gap + (coefficient / 2 + tilt * carried) * carried
-        both = active[:, :, None] & active[:, None, :]
-        system[:, :n, :n] = np.where(both, total, 0.0)
-        system[:, diagonal, diagonal] += ~active
-        system[:, :n, n] = -active.astype(float)
-        system[:, n, :n] = active
-        right[:, :n] = np.where(active, -offset, 0.0)
-        right[:, n] = load
-        solution = np.linalg.solve(system, right[..., None])[..., 0]
-        new, approach = solution[:, :n], solution[:, n]
-        free = gap + np.einsum("pij,pj->pi", flexibility, np.maximum(new, 0.0))
-        wanted = np.where(active, new > 0, possible & (free < approach[:, None]))
-        settled = (wanted == active).all(axis=1) & (np.abs(new - force) < 1e-10 * each).all(axis=1)
-        if settled.all():
+        new, approach[open_], tangent[open_] = _newton(*case[:-1], modulus, active, old)
+        force[open_] = np.where(active, new, 0.0)
+        flexibility, gap, load, *_, possible = case
+        free = gap + (flexibility @ np.maximum(new, 0.0)[..., None])[..., 0]
+        wanted = np.where(active, new > 0, possible & (free < approach[open_, None]))
+        on = (wanted != active).any(axis=1) | ~(np.abs(new - old) < 1e-10 * load).all(axis=1)
+        if not on.any():
+            open_ = open_[on]
             break
-        active, force = wanted, np.where(wanted, np.where(new > 0, new, floor), 0.0)
-        active[~active.any(axis=1)] = possible[~active.any(axis=1)]
-    tangent = 1 / np.linalg.inv(system)[:, n, n]
-    return np.where(active, new, 0.0), approach, tangent, settled
+        if not on.all():
+            open_, case, wanted, new = open_[on], [values[on] for values in case], wanted[on], new[on]
+        active = np.where(wanted.any(axis=1, keepdims=True), wanted, case[-1])
+        old = np.where(wanted, np.where(new > 0, new, 1e-9 * case[2]), 0.0)
+    settled = np.ones(sets, dtype=bool)
+    settled[open_] = False
+    return force, approach, tangent, settled
+
+
+def _newton(flexibility, gap, load, coefficient, radius, tilt, modulus, active, force):
+    """Forces, approach and d load / d approach of `line_contacts` with the `active` contacts, the logarithm taken at `force`."""
+    (sets, n), diagonal = gap.shape, np.arange(gap.shape[1])
+    carried = np.maximum(force, 1e-9 * load)
+    system, right = np.zeros((sets, n + 1, n + 1)), np.zeros((sets, n + 1, 2))
+    system[:, :n, :n] = flexibility
+    system[:, diagonal, diagonal] += coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried
+    np.copyto(system[:, :n, :n], 0.0, where=~(active[:, :, None] & active[:, None, :]))
+    system[:, diagonal, diagonal] += ~active
+    system[:, :n, n], system[:, n, :n] = -active.astype(float), active
+    right[:, :n, 0] = np.where(active, -gap - (coefficient / 2 + tilt * carried) * carried, 0.0)
+    right[:, n] = np.append(load, np.ones((sets, 1)), axis=1)
+    solution = np.linalg.solve(system, right)
+    return solution[:, :n, 0], solution[:, n, 0], 1 / solution[:, n, 1]
 
 
 def approaches(flexibility, gap, load, possible):

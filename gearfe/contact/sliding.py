@@ -24,7 +24,7 @@ def sliding(contact):
     contact : gearfe.contact.plane.PairContact
     """
     found, step = contact.found, STEP * contact.pair.gear_1.m_n
-    ahead, behind = (_alone(contact, sense * step) for sense in (1, -1))
+    ahead, behind = _alone(contact, step * np.array([1, -1])[:, None, None])
     on = np.isfinite(found.gap)
     for flexible, roll in zip(contact.flexibility, (found.roll_1, found.roll_2), strict=True):
         gear = flexible.gear
@@ -34,16 +34,16 @@ def sliding(contact):
 
 
 def _alone(contact, moved):
-    """Flexibility of each pair alone ``(phases, pairs)``, its contact moved up the pinion's side by so much [mm]."""
+    """Flexibility of each pair alone ``(k, phases, pairs)``, its contact moved up the pinion's side by `moved` (k, 1, 1) [mm]."""
     found, rolls = contact.found, []
-    out = np.zeros(found.gap.shape)
+    out = np.zeros((len(moved), *found.gap.shape))
     places = ((found.roll_1, found.order, moved), (found.roll_2, -found.order, -moved))
     for flexible, (roll, teeth, by) in zip(contact.flexibility, places, strict=True):
         rolls.append(roll_at_arc(flexible.gear, arc_at(flexible.gear, roll) + by))
         for k in range(teeth.size):
-            out[:, k] += flexible.matrix(rolls[-1][:, k, None], teeth[k : k + 1])[:, 0, 0]
+            out[..., k] += flexible.matrix(rolls[-1][..., k, None], teeth[k : k + 1])[..., 0, 0]
     opening = contact.opening_at(*rolls, found.order)
-    return out if opening is None else out + np.einsum("pcf,fg,pcg->pc", opening, contact.stiffness, opening)
+    return out if opening is None else out + np.einsum("...f,fg,...g->...", opening, contact.stiffness, opening)
 
 
 def bounded(contact, line_load):

@@ -161,7 +161,9 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
     far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
     limits = loaded.arc[0], loaded.arc[-1]
-    return Flexibility(gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], leans={0: leans})
+    return Flexibility(
+        gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+    )
 
 
 def _tilted(mesh, tooth):
@@ -232,7 +234,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
                 far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
     limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
-    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam, leans)
+    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
 
 
 def _face_columns(mesh):
@@ -250,8 +252,13 @@ def _face_columns(mesh):
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()
 
 
+def basis(on):
+    """Spline from values at hats to those at an arc: what S(s, s') of a tooth is carried by."""
+    return CubicSpline(on.arc, np.eye(on.arc.size))
+
+
 def own_tooth(on, influence, coefficient):
-    """Splines S(s, s) and S(s, s') of one tooth, from the influence matrix of its hats.
+    """Spline S(s, s) of one tooth, and S(s, s') between its hats, from their influence matrix.
 
     S(s, s) comes from hats twice as wide, see the module; at both ends of the flank, where none has room, from the single hat
     plus what the wide one next to it finds more than its own.
@@ -263,5 +270,4 @@ def own_tooth(on, influence, coefficient):
     found[[0, -1]] = single[[0, -1]] + inner(arc[[1, -2]]) - single[[1, -2]]
     near = CubicSpline(middle, found)
     more = near(arc) - single
-    smooth = (smooth + smooth.T) / 2 + np.diag(np.append(more, more[-1]))
-    return near, RectBivariateSpline(on.arc, on.arc, smooth)
+    return near, (smooth + smooth.T) / 2 + np.diag(np.append(more, more[-1]))

@@ -73,11 +73,10 @@ class SeamFaces:
 
         It is zero for teeth that were not solved.
         """
-        arc = np.asarray(arc)
+        arc, teeth = np.asarray(arc), np.asarray(teeth)
         out = np.zeros((*arc.shape, self.influence.shape[0]))
-        for k, tooth in enumerate(teeth):
-            if tooth in self.opening:
-                out[..., k, :] = self.opening[tooth](arc[..., k])
+        for tooth in set(teeth.tolist()) & self.opening.keys():
+            out[..., teeth == tooth, :] = self.opening[tooth](arc[..., teeth == tooth])
         return out
 
 
@@ -93,8 +92,8 @@ class Flexibility:
     far : dict of (int, int) to spline
         Influence of a load on one tooth at another, over both arcs; the second tooth is further to the loaded
         side.
-    own : dict of int to spline
-        Smooth part S(s, s') between two places of the flank of each solved tooth, over both arcs.
+    own : dict of int to ndarray, shape (k, k)
+        Smooth part S(s, s') between two places of the flank of each solved tooth: ``basis(s) @ own @ basis(s')``.
     limits : tuple of float
         Arcs between which the splines hold [mm]; contacts outside are clamped to them.
     fine : float
@@ -105,6 +104,8 @@ class Flexibility:
         Of the gear without damage, for teeth that were not solved; a healthy gear has only tooth 0 solved.
     seam : SeamFaces or None
         The cracks; the splines above then are those with the cracks glued shut.
+    basis : spline or None
+        Over the arc of a flank: the k functions by which `own` is carried.
     leans : dict of int to ndarray, shape (3, 3)
         Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
         loads off its normal by their torque.
@@ -113,12 +114,13 @@ class Flexibility:
     gear: Gear
     near: dict[int, Any]
     far: dict[tuple[int, int], Any]
-    own: dict[int, Any]
+    own: dict[int, NDArray[np.float64]]
     limits: tuple[float, float]
     fine: float = 1.0
     dofs: int = 0
     healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
+    basis: Any = None
     leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
 
     def near_of(self, tooth: int) -> Any:
@@ -131,46 +133,26 @@ class Flexibility:
         key = first % self.gear.z, second % self.gear.z
         return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
 
-    def within(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64]:
-        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth."""
-        tooth %= self.gear.z
-        spline = self.own[tooth] if tooth in self.own else self._whole().own[0]
-        arc = arc_at(self.gear, roll)
-        rising, back = np.unique(np.clip(arc, *self.limits), return_inverse=True)
-        out = spline(rising, rising)[np.ix_(back, back)]
-        depth = np.minimum(arc - self.limits[0], 0.0)
-        if (depth < 0).any():  # in the fillet it goes on straight
-            slope = spline(rising, rising, dx=1)[np.ix_(back, back)] * depth[:, None]
-            out = out + slope + slope.T
+    def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
+        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
+        arc = arc_at(self.gear, np.concatenate(rolls))
+        at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
+        solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
+        rows = {basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {one.basis for one in solved}}
+        out, stop = [], 0
+        for one, roll, tooth in zip(solved, rolls, teeth, strict=True):
+            part, values = slice(stop, stop := stop + roll.size), one.own.get(tooth % self.gear.z, one.own.get(0))
+            here, on = (own[part] for own in rows[one.basis])
+            found = here @ values @ here.T
+            if depth[part].any():  # in the fillet it goes on straight
+                slope = on @ values @ here.T
+                found = found + slope + slope.T
+            out.append(found)
         return out
 
-    def towards(
-        self, roll: NDArray[np.float64], tooth: int, force: NDArray[np.float64], torque: NDArray[np.float64], local: float
-    ) -> NDArray[np.float64]:
-        """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
-
-        Parameters
-        ----------
-        roll : ndarray, shape (n,)
-        tooth : int
-        force : ndarray, shape (2, n)
-            Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
-        torque : ndarray, shape (n,)
-            Its torque over that of a unit load along the normal.
-        local : float
-            Taken from S(s, s') as well, for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is
-            local.
-        """
-        leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
-        if leans is None:
-            return np.outer(torque, torque) * (self.within(roll, tooth) - local)
-        least = NEAREST * self.gear.m_n
-        at, places = (_logarithmic(arc, leans[0], least) for arc in (arc_at(self.gear, roll), leans[0]))
-        across, along = (np.interp(at, places, values) for values in leans[1:])
-        (normal, tangent), along = force, (along[:, None] + along) / 2
-        mixed = np.outer(normal * across, tangent)
-        straight = np.outer(normal, normal) * (self.within(roll, tooth) - local)
-        return straight + mixed + mixed.T + np.outer(tangent, tangent) * (along - local)
+    def leans_of(self, tooth: int) -> NDArray[np.float64] | None:
+        """What `leaning` gives of a tooth; None if it is not known."""
+        return self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
 
     def _whole(self):
         return self if self.healthy is None else self.healthy
@@ -184,13 +166,55 @@ class Flexibility:
         arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
-        members = {tooth: (teeth == tooth).nonzero()[0] for tooth in sorted(set(teeth.tolist()))}
-        for tooth, own in members.items():
-            out[..., own, own] = self.near_of(tooth)(arc[..., own])
+        members = {tooth: teeth == tooth for tooth in sorted(set(teeth.tolist()))}
+        near: dict[Any, NDArray[np.bool_]] = {}  # contacts by the spline that holds for them: teeth that are alike have one
+        far: dict[Any, NDArray[np.bool_]] = {}
+        for tooth, on in members.items():
+            spline = self.near_of(tooth)
+            near[spline] = near.get(spline, False) | on
             for other, theirs in members.items():
-                spline = self.far_of(tooth, other) if tooth < other else None
-                if spline is not None:
-                    block = spline.ev(arc[..., own, None], arc[..., None, theirs])
-                    out[..., own[:, None], theirs] = block
-                    out[..., theirs[:, None], own] = np.swapaxes(block, -1, -2)
+                if tooth < other and (spline := self.far_of(tooth, other)) is not None:
+                    far[spline] = far.get(spline, False) | on[:, None] & theirs
+        for spline, on in near.items():
+            (own,) = on.nonzero()
+            out[..., own, own] = spline(arc[..., own])
+        for spline, on in far.items():
+            own, theirs = on.nonzero()
+            out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
         return out
+
+
+def towards(
+    flexible: Flexibility,
+    smooth: NDArray[np.float64],
+    roll: NDArray[np.float64],
+    tooth: int,
+    force: NDArray[np.float64],
+    torque: NDArray[np.float64],
+    local: float,
+) -> NDArray[np.float64]:
+    """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+
+    Parameters
+    ----------
+    flexible : Flexibility
+    smooth : ndarray, shape (n, n)
+        What its `Flexibility.within` gives.
+    roll : ndarray, shape (n,)
+    tooth : int
+    force : ndarray, shape (2, n)
+        Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
+    torque : ndarray, shape (n,)
+        Its torque over that of a unit load along the normal.
+    local : float
+        Taken from S(s, s') for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is local.
+    """
+    leans = flexible.leans_of(tooth)
+    if leans is None:
+        return np.outer(torque, torque) * (smooth - local)
+    least = NEAREST * flexible.gear.m_n
+    at, places = (_logarithmic(arc, leans[0], least) for arc in (arc_at(flexible.gear, roll), leans[0]))
+    across, along = (np.interp(at, places, values) for values in leans[1:])
+    (normal, tangent), between = force, (along[:, None] + along) / 2
+    mixed = np.outer(normal * across, tangent)
+    return np.outer(normal, normal) * (smooth - local) + mixed + mixed.T + np.outer(tangent, tangent) * (between - local)

@@ -30,10 +30,12 @@ def stiffness(slope, weight, arms, lam, mu):
     factor[:, 0, 0] += alike
     factor[:, 1, 1] += alike
     factor *= np.abs(area)[:, None, None, None, None]  # whichever way round its corners are
-    reference = np.einsum("eiq,fjq->efij", slope * weight, slope)
     n, m = slope.shape[1], area.size
-    local = (factor.reshape(4 * m, 4) @ reference.reshape(4, n * n)).reshape(m, 2, 2, n, n)
-    return local.transpose(0, 3, 1, 4, 2).reshape(m, 2 * n, 2 * n)
+    reference = ((slope * weight).reshape(2 * n, -1) @ slope.reshape(2 * n, -1).T).reshape(2, n, 2, n).swapaxes(1, 2)
+    spread = np.zeros((2, 2, 2, 2, n, 2, n, 2))  # where they go: turning the axes of the sum takes ten times as long
+    for a, b in np.ndindex(2, 2):
+        spread[a, b, :, :, :, a, :, b] = reference
+    return (factor.reshape(m, 16) @ spread.reshape(16, -1)).reshape(m, 2 * n, 2 * n)
 
 
 def bent_stiffness(slope, weight, jacobian, lam, mu):

@@ -139,8 +139,16 @@ def sided_force(x, v, k, law, side):
     return force(depth, v, k, law | {"backlash": np.zeros_like(law["backlash"])})
 
 
-def slopes(x, v, k, law):
-    """Derivatives of `force` by x and v, of the branch the state is on (shapes as there)."""
+def depth(x, law):
+    """How far the flanks of each mesh are pressed, front or back ones, at compressions `x` ``(..., m)``; 0 where none touch."""
+    return np.maximum(x, 0.0) + np.maximum(-law["backlash"] - x, 0.0)
+
+
+def slopes(x, v, k, law, bend=0.0):
+    """Derivatives of `force` by x and v, of the branch the state is on (shapes as there).
+
+    `bend` is that of k by the depth, of a `gearfe.machine.force_law.ForceLaw` [N/m2].
+    """
     back = x < -law["backlash"]
     delta = np.where(back, -law["backlash"] - x, np.maximum(x, 0.0))
     inside = back | (x > 0)
@@ -150,5 +158,7 @@ def slopes(x, v, k, law):
     share = np.where(inside, np.where(stepped, u * u * (3 - 2 * u), 1.0), law["film"])
     rise = np.where(stepped & inside, 6 * u * (1 - u) * law["per_depth"], 0.0) * np.where(back, -1.0, 1.0)
     spring = np.where(inside, k * law["power"] * np.where(law["power"] == 1.0, 1.0, delta ** (law["power"] - 1)), 0.0)
+    side = np.where(back, -1.0, 1.0)
+    spring = spring + np.where(inside, bend * (delta + side * law["beta"] * share * v), 0.0)
     pulls = law["push"] & (force(x, v, k, law) == 0.0)
     return np.where(pulls, 0.0, spring + full * rise * v), np.where(pulls, 0.0, full * share)

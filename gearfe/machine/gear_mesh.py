@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..stiffness.curve import StiffnessCurve
+from .force_law import ForceLaw, Secant
 
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
@@ -63,7 +64,7 @@ class Table:
         return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
 
 
-Stiffness = float | NDArray[np.float64] | Curve | Table  # what `GearMesh` takes
+Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
 
 
 def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> Table:
@@ -80,9 +81,11 @@ def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> T
 
 
 def cycle_table(stiffness: Stiffness) -> Table:
-    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve` or of `Samples`."""
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law."""
     if isinstance(stiffness, Table):
         return stiffness
+    if isinstance(stiffness, ForceLaw):
+        stiffness = Samples(*stiffness.at(stiffness.force))
     if not isinstance(stiffness, (StiffnessCurve, Samples)):
         values = np.atleast_1d(np.asarray(stiffness, dtype=float))
     else:
@@ -106,17 +109,19 @@ class ToothDamage:
         0 or 1: whose tooth.
     tooth : int
         Its number.
-    curve : StiffnessCurve or Samples
-        Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters.
+    curve : StiffnessCurve, Samples or ForceLaw
+        Stiffness over the tooth's whole engagement (``span="tooth"``): phase 0 is where its pair enters. A law where the mesh
+        has one.
     """
 
     body: int
     tooth: int
-    curve: Curve
+    curve: Curve | ForceLaw
 
     def change(self, healthy: Table) -> Table:
         """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
-        phase, k = np.asarray(self.curve.phase, dtype=float), np.asarray(self.curve.k, dtype=float)
+        given = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) else self.curve
+        phase, k = np.asarray(given.phase, dtype=float), np.asarray(given.k, dtype=float)
         if phase.size < 2 or not (np.diff(phase) > 0).all():
             raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
         width = np.diff(phase).min()
@@ -136,8 +141,10 @@ class GearMesh:
     name : str
     row : ndarray, shape (n,)
         ``row @ q`` is the compression along the transverse line of action [m].
-    stiffness : float, ndarray, StiffnessCurve or Table
-        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced.
+    stiffness : float, ndarray, StiffnessCurve, ForceLaw or Table
+        Stiffness over one mesh cycle from phase 0 [N/m^power]; samples are equally spaced. Of a `ForceLaw` k is the secant
+        stiffness at the depth at which the flanks press, the same law on the back flanks; where one stiffness over the phase is
+        asked for, that under the law's `force`.
     frequency : float
         Mesh frequency [Hz]. It is negative where the loaded flanks are those of gear 1 driving, but gear 2 drives: the contacts
         then run backwards.
@@ -182,6 +189,7 @@ class GearMesh:
     friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
     cycle: Table = field(init=False)
     changes: tuple[tuple[float, float, Table], ...] = field(init=False)
+    laws: tuple[Secant, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         """Make the tables; refuse what cannot be."""
@@ -198,6 +206,7 @@ class GearMesh:
                 raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
+        object.__setattr__(self, "laws", self._laws())
         changes = []
         for hurt in self.damage:
             z = self.teeth[hurt.body]
@@ -206,6 +215,20 @@ class GearMesh:
                 raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
             changes.append((float(z), float((hurt.tooth - self.first[hurt.body]) % z), made))
         object.__setattr__(self, "changes", tuple(changes))
+
+    def _laws(self) -> tuple[Secant, ...]:
+        """`Secant` of the healthy cycle, then what each damage is beyond it; none without a `ForceLaw`."""
+        given = [isinstance(one, ForceLaw) for one in (self.stiffness, *(hurt.curve for hurt in self.damage))]
+        if any(given) != all(given):
+            raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
+        if not isinstance(self.stiffness, ForceLaw):
+            return ()
+        if self.power != 1:
+            raise ValueError(f"mesh {self.name}: power = {self.power} besides a law of force, which says itself how force rises")
+        if not self.stiffness.periodic:
+            raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
+        healthy = self.stiffness.secant
+        return healthy, *(hurt.curve.secant.less(healthy) for hurt in self.damage if isinstance(hurt.curve, ForceLaw))
 
     def k(self, t: ArrayLike) -> NDArray[np.float64]:
         """Stiffness at times `t` [N/m^power], never below zero."""

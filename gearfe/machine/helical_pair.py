@@ -26,7 +26,8 @@ SHAFT = 1e4  # N m/rad, to the motor, assumed
 def scene_pair(scene, case, **options):
     """Machine of a scene with linear contact: the stiffness curves of its pair."""
     chosen = scene.pair()
-    healthy, hurt = curves(chosen, case, options)
+    name = next(name for name, one in scene.pairs.items() if one is chosen)
+    healthy, hurt = curves(name, chosen, case, options)
     damage = () if hurt is None else (ToothDamage(0, 0, hurt),)
     return gear_pair(
         chosen.pair, _bodies(chosen.pair, DENSITY), healthy, speed=speed_of(scene), torque=scene.machine["torque_Nm"],

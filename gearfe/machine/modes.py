@@ -13,7 +13,7 @@ RIGID = 1e-12  # of the largest squared frequency: below it a mode is a rigid-bo
 
 
 def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Natural frequencies and modes without damping, meshes at their mean stiffness.
+    """Natural frequencies and modes without damping, meshes at their mean stiffness (of a `ForceLaw` the tangent one).
 
     Parameters
     ----------
@@ -28,9 +28,7 @@ def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tupl
     modes : ndarray, shape (n, n)
         In columns, ``modes.T @ diag(mass) @ modes = 1``. Of a machine with a `spin` they are complex, of modal mass 1.
     """
-    if x is None and (machine.law["power"] != 1).any():
-        x = machine.G @ machine.rest()
-    K = machine.linear(x)[0] - machine.frame
+    K = machine.linear(machine.working() if x is None else x)[0] - machine.frame
     if machine.spin:
         return _whirling(machine, K)
     squared, modes = modal(K, machine.mass)

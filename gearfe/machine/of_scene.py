@@ -4,17 +4,21 @@ A model is one file that states its bodies, stages and springs and a function ``
 one row here.
 """
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from ..scene.load import Scene
 from ..stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
+from .force_law import ForceLaw
+from .gear_mesh import Samples
 from .helical_pair import scene_pair
 from .herringbone_planetary import scene_herringbone
 from .impact import impact_helical, impact_planetary
 from .mesh_errors import with_errors
-from .mesh_excitation import mesh_excitation
 from .pitted_planetary import scene_planetary
+from .scene_curves import own_forces
 from .tables import Machine
 
 MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it is built with either contact
@@ -23,11 +27,15 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
 }
+LOADS = (0.0625, 0.25, 0.5, 1.0, 2.0)  # of the meshes' own forces, of laws of force
+ROUGH = 8  # phases of the curves that tell these forces
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
 
-def build_machine(scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto") -> Machine:
-    """Machine of a scene for `gearfe.simulate`, with the stiffness curves of its pairs.
+def build_machine(
+    scene: Scene, case: str | None = None, *, phases: int = 64, method: str = "auto", loads: Sequence[float] = LOADS
+) -> Machine:
+    """Machine of a scene for `gearfe.simulate`, with laws of force of its pairs that cover the loads of its meshes.
 
     Parameters
     ----------
@@ -39,11 +47,15 @@ def build_machine(scene: Scene, case: str | None = None, *, phases: int = 64, me
         Per mesh cycle, of the curves.
     method : str
         As in `mesh_stiffness`.
+    loads : sequence of float
+        Loads that the contact of each pair is solved under, as multiples of the largest force of its meshes at rest, which the
+        load that the scene states for the pair need not be. One of them makes stiffnesses over the phase that are true of this
+        load alone, ``(1.0,)`` of the meshes' own.
 
     Returns
     -------
     gearfe.machine.tables.Machine
-        Its `stages` and `notes` hold mesh, fault and carrier frequencies.
+        Its `stages` and `notes` hold mesh, fault and carrier frequencies, and the forces of the pairs' meshes at rest.
 
     Raises
     ------
@@ -66,16 +78,23 @@ def build_machine(scene: Scene, case: str | None = None, *, phases: int = 64, me
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
     if contact == "impact":
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
-    out, play = MACHINES[model][contact](scene, case, phases=phases, method=method), scene.machine.get("backlash_um")
+    if not len(loads) or not all(math.isfinite(one) and one > 0 for one in loads):
+        raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
+    build, play = MACHINES[model][contact], scene.machine.get("backlash_um")
+    own = own_forces(build(scene, None, phases=ROUGH, method=method, loads=None))
+    several = {name: ([force * one for one in loads], force) for name, force in own.items()}
+    out = build(scene, case, phases=phases, method=method, loads=several)
+    stated = {name: pair.force for name, pair in scene.pairs.items() if name in own}
+    out = replace(out, notes=out.notes | {"mesh forces at rest [N]": own, "loads stated for the pairs [N]": stated})
     return with_scene_errors(scene, with_flanks(out.with_meshes(backlash=1e-6 * play) if play else out))
 
 
 def with_flanks(machine):
     """The machine with the unloaded transmission error of modified flanks in the meshes whose curves have one."""
     found = {
-        mesh.name: mesh_excitation(mesh.stiffness)[1]
+        mesh.name: Samples(mesh.stiffness.phase, mesh.stiffness.unloaded)
         for mesh in machine.meshes
-        if isinstance(mesh.stiffness, StiffnessCurve) and mesh.stiffness.unloaded is not None
+        if isinstance(mesh.stiffness, (StiffnessCurve, ForceLaw)) and mesh.stiffness.unloaded is not None
     }
     return with_errors(machine, profile=found) if found else machine
 

@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contact_law import LAW, force, slopes
+from .contact_law import LAW, depth, force, slopes
 from .gear_mesh import GearMesh
 from .speed import Speed
 from .turning_frame import frame_terms
 
 # of a load: a number, times and values, or a function of an array of times
 History = float | tuple[ArrayLike, ArrayLike] | Callable[[NDArray[np.float64]], ArrayLike]
+
+TOUCH = 1e-12  # compression at which the tangent of a law of force without load is taken [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,18 +253,39 @@ class Machine:
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Stiffness and damping matrices with the meshes at their mean, and the mesh values used.
 
-        `x` (m,): compressions [m] at which a law that is not linear is taken (needed for a power other than 1).
+        `x` (m,): compressions [m] at which a law that is not linear is taken (`working`; needed for a power other than 1 and
+        for a `ForceLaw`, whose tangent stiffness there is taken).
 
         Returns
         -------
         K, C : ndarray, shape (n, n)
         k, c : ndarray, shape (m,)
         """
-        mean = self.mean_stiffness()
         if x is None:
             x = np.where(self.law["power"] == 1.0, 1.0, 0.0)
-        k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law)
+        mean, bend = self._mean_at(np.asarray(x))
+        k, c = slopes(np.asarray(x), np.zeros(len(mean)), mean, self.law, bend)
         return self.K + self.G.T @ (k[:, None] * self.G), self.C + self.G.T @ (c[:, None] * self.G), k, c
+
+    def _mean_at(self, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
+        mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
+        for i, mesh in enumerate(self.meshes):
+            if mesh.laws:
+                mean[i], bend[i] = mesh.laws[0].mean(0.0, depth(x, self.law)[i])
+        return mean, bend
+
+    @property
+    def curved(self) -> bool:
+        """Whether the force of a mesh is no straight line over its compression: a power, or a `ForceLaw`."""
+        return bool((self.law["power"] != 1).any()) or any(mesh.laws for mesh in self.meshes)
+
+    def working(self) -> NDArray[np.float64] | None:
+        """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
+        if not self.curved:
+            return None
+        x = self.G @ self.rest()
+        return np.where([bool(mesh.laws) for mesh in self.meshes] & (depth(x, self.law) == 0), TOUCH, x)
 
     def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""
@@ -279,13 +302,14 @@ class Machine:
             If Newton's method does not settle: a load opens a mesh that nothing closes.
         """
         load = self.load(0.0 if t is None else t)
-        mean, zero = self.mean_stiffness(), np.zeros(len(self.meshes))
+        zero = np.zeros(len(self.meshes))
         start = 1e-5 * np.ones(len(self.meshes))
         q = np.linalg.lstsq(self.linear(start)[0], load, rcond=1e-12)[0]
         for _ in range(200):
             x = self.G @ q
+            mean, bend = self._mean_at(x)
             away = load - self.K @ q - self.G.T @ force(x, zero, mean, self.law)
-            tangent = slopes(x, zero, mean, self.law)[0]
+            tangent = slopes(x, zero, mean, self.law, bend)[0]
             tangent = np.maximum(tangent, 1e-6 * self.linear(start)[2])  # an open mesh keeps the matrix regular
             change = _weighted_solve(self.K + self.G.T @ (tangent[:, None] * self.G), away, self.mass)
             q = q + change

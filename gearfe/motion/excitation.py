@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..machine.contact_law import depth
 from ..machine.speed import turned
 
 
@@ -17,6 +18,8 @@ class Flat(NamedTuple):
     each load: where its knots start and end.
     `twin` is the first mesh whose stiffness is always that of a mesh. `pace` are the knots of `gearfe.machine.speed.Speed`, none
     at a constant speed.
+    `secant` holds the tables of all laws of force one after the other; `shape` is, of each mesh and then of each damaged tooth,
+    the place, rows and columns of its table and one over its depth [1/m], no rows where it has no law.
     """
 
     cells: np.ndarray
@@ -37,6 +40,8 @@ class Flat(NamedTuple):
     knot_place: np.ndarray
     twin: np.ndarray
     pace: np.ndarray  # (n, 3): time, speed over the nominal one, turned time
+    secant: np.ndarray
+    shape: np.ndarray  # (meshes + changes, 4)
 
 
 def flatten(machine, times):
@@ -54,6 +59,8 @@ def flatten(machine, times):
     errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
     knots = [_knots(one, times) for one in machine.loads]
+    laws = [m.laws[0] if m.laws else None for m in meshes]
+    laws += [m.laws[1 + j] if m.laws else None for m in meshes for j in range(len(m.changes))]
     whole = np.int64
     return Flat(
         np.concatenate(cells) if cells else np.zeros((1, 4)),
@@ -74,7 +81,23 @@ def flatten(machine, times):
         np.cumsum([0, *map(len, knots)]).astype(whole),
         np.array([next(j for j, other in enumerate(meshes) if _twins(m, other)) for m in meshes], dtype=whole),
         np.zeros((0, 3)) if machine.speed is None else machine.speed.knots,
+        *_laid_out(laws),
     )
+
+
+def _laid_out(laws):
+    """`Flat.secant` and `Flat.shape` of laws; one that several meshes share is laid out once."""
+    places, parts, shape, end = {}, [np.zeros(0)], [], 0
+    for one in laws:
+        if one is None:
+            shape.append((0, 0, 0, 0))
+            continue
+        if id(one.k) not in places:
+            places[id(one.k)] = end
+            parts.append(one.k.ravel())
+            end += one.k.size
+        shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
+    return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)
 
 
 def _twins(one, two):
@@ -86,7 +109,10 @@ def _twins(one, two):
     pairs = list(zip(one.changes, two.changes, strict=True))
     tables = [(one.cycle, two.cycle), *((a[2], b[2]) for a, b in pairs)]
     alike = all((a.start, a.width) == (b.start, b.width) and np.array_equal(a.cells, b.cells) for a, b in tables)
-    return alike and all(a[:2] == b[:2] for a, b in pairs)
+    same = len(one.laws) == len(two.laws) and all(
+        a is b or (a.deepest == b.deepest and np.array_equal(a.k, b.k)) for a, b in zip(one.laws, two.laws, strict=True)
+    )
+    return same and alike and all(a[:2] == b[:2] for a, b in pairs)
 
 
 def _knots(load, times):
@@ -98,7 +124,7 @@ def _knots(load, times):
 
 
 def stiffness(flat, t):
-    """Stiffness of all meshes at times `t` ``(..., m)`` and the running phases."""
+    """Stiffness of all meshes at times `t` ``(..., m)`` and the running phases; of laws of force that under the law's `force`."""
     phase = flat.phase + flat.frequency * _paced(flat, t)[0][..., None]
     k = _value(flat, phase - np.floor(phase), flat.place, flat.count)
     for mesh, (z, first, start, width), place, count in zip(
@@ -113,6 +139,28 @@ def stiffness(flat, t):
             change = c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
             k[..., mesh] += np.where(inside, change, 0.0)
     return (np.maximum(k, 0.0) if len(flat.change_mesh) else k), phase
+
+
+def stiffness_at(machine, flat, t, x):
+    """Stiffness of all meshes at times `t` and compressions `x` ``(..., m)``, its derivative by the depth, the running phases."""
+    k, phase = stiffness(flat, t)
+    if not flat.secant.size:
+        return k, np.zeros_like(k), phase
+    deep, bend = depth(x, machine.law), np.zeros_like(k)
+    for i, mesh in enumerate(machine.meshes):
+        if not mesh.laws:
+            continue
+        healthy, *hurt = mesh.laws
+        k[..., i], bend[..., i] = healthy(phase[..., i] % 1.0, deep[..., i])
+        for (z, first, _), one in zip(mesh.changes, hurt, strict=True):
+            start, end = one.start + one.width, one.end - one.width
+            own = phase[..., i] - first - start
+            own = own - z * np.floor(own / z) + start
+            more = one(own, deep[..., i])
+            inside = own < end
+            k[..., i] += np.where(inside, more[0], 0.0)
+            bend[..., i] += np.where(inside, more[1], 0.0)
+    return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0), phase
 
 
 def _paced(flat, t):

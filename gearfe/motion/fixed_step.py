@@ -38,7 +38,7 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     from .loop import run  # loads numba
 
     started, h = time.perf_counter(), duration / steps
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
+    x = machine.working()
     plan = propagator.plan(machine, h, x, adapt)
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 4 * steps + 1))
     breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))

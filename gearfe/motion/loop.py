@@ -13,7 +13,7 @@ import numpy as np
 
 from ..machine.contact_law import LAW, branches, contact_force
 from .exponential import UNSTABLE
-from .loop_parts import compiled, lookup, stage
+from .loop_parts import compiled, lookup, secant, stage
 
 GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
 CHUNK = 64  # steps whose stiffnesses are looked up at once
@@ -89,11 +89,12 @@ def _matrices(plan, kept, still):
 
 
 @compiled
-def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total):
+def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, table, shape, change_mesh):
     """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``."""
     affine, rates, bent, stepped, pushing = kind
-    m, rub = total.size, rub_mesh.size
-    for j in range(now.shape[1] - 3 * m - rub):
+    m, rub, lawful = total.size, rub_mesh.size, table.size > 0
+    at = now.shape[1] - (shape.shape[0] if lawful else 0)
+    for j in range(at - 3 * m - rub):
         g[first + m + rub + j] = now[row, 3 * m + rub + j]
     if affine:  # every mesh stays closed: the same, without asking where it is
         for i in range(m):
@@ -103,6 +104,13 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total):
     for i in range(m):
         v = x[m + i] if rates else 0.0
         k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
+        if lawful and now[row, at + i] >= 0:
+            deep = max(x[i] - e, 0.0) + max(-laws[i, 4] - (x[i] - e), 0.0)
+            k = secant(table, shape, i, now[row, at + i], deep)
+            for j in range(change_mesh.size):
+                if change_mesh[j] == i and now[row, at + m + j] >= 0:
+                    k += secant(table, shape, m + j, now[row, at + m + j], deep)
+            k = max(k, 0.0)
         law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
         whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
         g[first + i] = whole - linear[0, i] * x[i] - linear[1, i] * v
@@ -163,8 +171,9 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, W, P = matrices
     m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
+    table, shape, change_mesh = flat.secant, flat.shape, flat.change_mesh
     whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
-    now = np.zeros((own + 3, 3 * m + f - m))
+    now = np.zeros((own + 3, 3 * m + f - m + (len(shape) if table.size > 0 else 0)))
     g, last_g, apart = np.zeros(4 * f), np.zeros(f), np.zeros(f)  # forces of the stages 1, 3, 4, 2; at the end; it less stage 4
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
@@ -211,17 +220,17 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 for j in range(m + rub.size, f):  # a load may jump here
                     g[j] = now[row, 2 * m + j]
             else:
-                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total)
+                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total, table, shape, change_mesh)
             fresh = True
             stage(x, y, nil, S, level, g, nil)
             change = opens and _changed(side, x, now, row + 1, laws)
-            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total)
+            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total, table, shape, change_mesh)
             stage(x, y, nil, S, level, g, 3 * f)
             change = change or (opens and _changed(side, x, now, row + 1, laws))
-            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total)
+            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total, table, shape, change_mesh)
             stage(x, y, p, T, level, g, nil)
             change = change or (opens and _changed(side, x, now, row + 2, laws))
-            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total)
+            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total, table, shape, change_mesh)
             for i in range(f):
                 g[f + i] += g[3 * f + i]
             stage(new, push, (n + p) * level, PF, level, g, nil)
@@ -229,7 +238,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
             away = 0.0
             if held:
-                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total)
+                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total, table, shape, change_mesh)
                 for i in range(f):
                     apart[i] = last_g[i] - g[2 * f + i]
                 stage(doubt, none, nil, W, level, apart, nil)

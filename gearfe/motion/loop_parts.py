@@ -82,17 +82,37 @@ def _paced(pace, t):
 
 
 @compiled
+def secant(table, shape, which, row, depth):
+    """Stiffness from the table `which` at a row, and at a depth [m]; as `gearfe.machine.force_law.Secant`."""
+    columns, last = int(shape[which, 2]), int(shape[which, 2]) - 1
+    over = depth * shape[which, 3]  # of the deepest
+    i, at = min(max(int(row + 0.5), 1), int(shape[which, 1]) - 2), last * np.sqrt(over)
+    j, u = min(int(at), last - 1), row + 0.5 - i
+    here = int(shape[which, 0]) + i * columns + j
+    a, b, c, low, high = (1 - u) * (1 - u) / 2, 0.5 + u * (1 - u), u * u / 2, here - columns, here + columns
+    left = a * table[low] + b * table[here] + c * table[high]
+    right = a * table[low + 1] + b * table[here + 1] + c * table[high + 1]
+    if at > last:
+        before = (1 - 1 / last) ** 2
+        slope = (right - left * before) / (1 - before)
+        return slope + (right - slope) / over
+    return left + (at - j) * (right - left)
+
+
+@compiled
 def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
     A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
-    loads. Many times at once, for a compiled function takes its time to find the tables.
+    loads, then, of machines with laws of force, the rows of the meshes' and damaged teeth's tables, -1 where there is none or the
+    tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
     """
     cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
     change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
     error_mesh, error, twin, knots, knot_place = flat.error_mesh, flat.error, flat.twin, flat.knots, flat.knot_place
     rub_mesh, rub_place, rub_count, pace = flat.rub_mesh, flat.rub_place, flat.rub_count, flat.pace
     m, rub, changes, loads = frequency.size, rub_mesh.size, change_mesh.size, knot_place.size - 1
+    shape, lawful, at = flat.shape, flat.secant.size > 0, 3 * frequency.size + rub_mesh.size + knot_place.size - 1
     for row in range(first, last):
         t = origin + h * (low + share * (row - first))
         turned, fast = t, 1.0
@@ -103,6 +123,8 @@ def lookup(flat, now, first, last, origin, h, low, share):
             if twin[i] == i:
                 phase = phases[i] + frequency[i] * turned
                 now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
+                if lawful:
+                    now[row, at + i] = 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3) if shape[i, 1] > 0 else -1.0
         for j in range(changes):
             i = change_mesh[j]
             if twin[i] == i:
@@ -110,8 +132,14 @@ def lookup(flat, now, first, last, origin, h, low, share):
                 own = (own - z * np.floor(own / z)) / change[j, 3]
                 if own < change_count[j]:
                     now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
+            if lawful:
+                z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
+                own = (own - z * np.floor(own / z)) / change[j, 3]
+                now[row, at + m + j] = own + 1 if own < shape[m + j, 1] - 3 else -1.0
         for i in range(m):
             now[row, i] = now[row, twin[i]]
+            if lawful:
+                now[row, at + i] = now[row, at + twin[i]]
             if changes:
                 now[row, i] = max(now[row, i], 0.0)
         for j in range(error_mesh.size):

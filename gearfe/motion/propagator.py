@@ -64,7 +64,7 @@ def is_affine(machine):
     law = machine.law
     plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
     smooth = all(one.breaks.size < 2 for one in machine.loads) and not any(m.friction for m in machine.meshes)
-    return bool(plain.all()) and smooth
+    return bool(plain.all()) and smooth and not machine.curved
 
 
 def plan(machine, h, x=None, adapt=False):
@@ -118,7 +118,7 @@ def default_step(machine):
     A mesh excites its bodies up to about ``sqrt(k sum(row**2 / m))``; supports, however stiff, are in the exact linear part.
     """
     highest = machine.fastest * max((abs(m.frequency) for m in machine.meshes), default=0.0)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
+    x = machine.working()
     own = machine.linear(x)[2] * (machine.G**2 / machine.mass).sum(axis=1)
     top = math.sqrt(own.max()) / (2 * math.pi) if own.size else natural_frequencies(machine)[0][-1]
     return 1 / max(STEPS * highest, top / SHARE)

@@ -102,11 +102,11 @@ class Response:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
         machine, n = self.machine, len(self.machine.dofs)
         flat = excitation.flatten(machine, self.time)
-        k = excitation.stiffness(flat, self.time)[0]
-        if kind == "stiffness":
-            return k
         e, rate = excitation.errors(flat, self.time)
         x = self.states @ (machine.G @ self.basis[:n]).T - e
+        k = excitation.stiffness_at(machine, flat, self.time, x)[0]
+        if kind == "stiffness":
+            return k
         v = self.states @ (machine.G @ self.basis[n:]).T - rate
         return x if kind == "compression" else force(x, v, k, machine.law)
 
@@ -167,9 +167,9 @@ class Response:
 
 def acceleration(machine, flat, t, q, v, side=None):
     """Accelerations at times `t` from displacements and velocities ``(..., n)``; of meshes held on a `side` if given."""
-    k, phase = excitation.stiffness(flat, t)
     e, rate = excitation.errors(flat, t)
     law, x, speed = machine.law, q @ machine.G.T - e, v @ machine.G.T - rate
+    k, _, phase = excitation.stiffness_at(machine, flat, t, x)
     total = force(x, speed, k, law) if side is None else sided_force(x, speed, k, law, side)
     out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     rub = [row for mesh in machine.meshes for row, _ in mesh.friction]

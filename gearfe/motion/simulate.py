@@ -14,6 +14,7 @@ from ..elements.solver import free_memory
 from ..machine.tables import Machine
 from ..threads import single
 from .fixed_step import fixed_steps
+from .law_range import compared
 from .reference import SOLVERS, reference
 from .response import Response
 from .step_control import (
@@ -101,7 +102,8 @@ def simulate(
         step (under a law of contact that is not linear, of a third), over their ranges
         (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
         where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
-        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``).
+        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). ``stats["loads"]`` says
+        which mesh forces leave the loads that their law of force or stiffness curve was solved for, if any do.
 
     Raises
     ------
@@ -113,7 +115,8 @@ def simulate(
     Warns
     -----
     UserWarning
-        If the estimate of a given step is above a tenth of the range. Without `progress`, before the loop is compiled.
+        If the estimate of a given step is above a tenth of the range. If a mesh force is above the loads of its law
+        (`gearfe.machine.force_law.ForceLaw`). Without `progress`, before the loop is compiled.
     """
     _check(machine, duration, method, rate, step, dt, start, every)
     if initial is None:
@@ -131,15 +134,16 @@ def simulate(
         count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
     _check_memory(machine, duration, count)
     if method != "fast":
-        return reference(machine, duration, count, state, method, rtol, start)
+        return compared(reference(machine, duration, count, state, method, rtol, start))
     own = state if initial is not None else None
     from .loop_parts import announced  # loads numba
 
     run = _Runs(machine, duration, count, state, own, start, progress)
     with announced(progress):
         if step is None and dt is None:
-            return run.controlled(error)
-        return run.given(math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1, error)
+            return compared(run.controlled(error))
+        steps = math.ceil(duration / count / step * (1 - 1e-12)) if step else every if rate is None else 1
+        return compared(run.given(steps, error))
 
 
 def _check_initial(machine, state):

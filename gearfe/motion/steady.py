@@ -151,13 +151,13 @@ class _Flow:
     def __init__(self, machine, period, dt):
         steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
         h, law = period / steps, machine.law
-        x = machine.G @ machine.rest() if (law["power"] != 1).any() else None
+        x = machine.working()
         self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)
         self.plan, self.coarse = propagator.plan(machine, h / 2, x), propagator.plan(machine, h, x)
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
         self.breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
         plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
-        self.linear = bool(plain.all())  # even with friction
+        self.linear = bool(plain.all()) and not machine.curved  # even with friction
         # both plans must speak of the same coordinates
         self.turn = self.coarse.inverse @ self.plan.basis
 
@@ -171,14 +171,15 @@ class _Flow:
     def monodromy(self, states):
         """Derivative of the state after the period by that before, along `states` (None: they do not matter)."""
         machine, n, m = self.machine, len(self.machine.dofs), len(self.machine.meshes)
-        k, phase = excitation.stiffness(self.flat, self.times)
         if states is None:
-            x, v = np.ones_like(k), np.zeros_like(k)
+            x = np.ones((self.times.size, m))
+            v = np.zeros_like(x)
         else:
             e, rate = excitation.errors(self.flat, self.times)
             x = states @ (machine.G @ self.plan.basis[:n]).T - e
             v = states @ (machine.G @ self.plan.basis[n:]).T - rate
-        by_x, by_v = slopes(x, v, k, machine.law)
+        k, bend, phase = excitation.stiffness_at(machine, self.flat, self.times, x)
+        by_x, by_v = slopes(x, v, k, machine.law, bend)
         rub = len(self.flat.rub_mesh)
         weight = excitation.rubbing(self.flat, phase) if rub else None
         X, step = np.eye(2 * n), Step(self.coarse, (2 * n,))

@@ -155,33 +155,6 @@ def _binned(values, bins):
     return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]
 
 
-def plot_errors(errors, rows, columns, path=None, largest=30.0):
-    """Heat maps of errors in percent, one below the other, each with its numbers in it.
-
-    Parameters
-    ----------
-    errors : dict of str to ndarray, shape (len(rows), len(columns))
-        By title [-].
-    rows, columns : sequence of str
-    path : path, optional
-    largest : float
-        Error of the darkest colours [%].
-    """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(2.5 + 0.62 * len(columns), len(errors) * (1.1 + 0.24 * len(rows))), layout="constrained")
-    for axes, (title, values) in zip(figure.subplots(len(errors), 1, squeeze=False)[:, 0], errors.items(), strict=True):
-        image = axes.imshow(100 * values, cmap="RdBu_r", vmin=-largest, vmax=largest, aspect="auto")
-        for (i, j), value in np.ndenumerate(100 * values):
-            color = "white" if abs(value) > 0.7 * largest else "black"
-            axes.text(j, i, f"{value:+.1f}", ha="center", va="center", fontsize=7, color=color)
-        axes.set_title(title, fontsize=9)
-        axes.set_yticks(range(len(rows)), rows, fontsize=7)
-        axes.set_xticks(range(len(columns)), columns, fontsize=7, rotation=30, ha="right")
-        figure.colorbar(image, ax=axes, label="error [%]")
-    return save_figure(figure, path, dpi=100)
-
-
 def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
     """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
     from matplotlib.figure import Figure

@@ -152,8 +152,7 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
 def slowest_decay(machine):
     """Rate at which the least damped vibration of a machine dies out, meshes at their mean stiffness [1/s]; 0 if it does not."""
     n = len(machine.dofs)
-    x = machine.G @ machine.rest() if (machine.law["power"] != 1).any() else None
-    K, C, _, _ = machine.linear(x)
+    K, C, _, _ = machine.linear(machine.working())
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-K / machine.mass[:, None], -C / machine.mass[:, None]]])
     values = np.linalg.eigvals(A)
     slow = 1e-6 * np.abs(values).max()  # turning as a whole, not vibrating

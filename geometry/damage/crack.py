@@ -8,6 +8,7 @@ from numbers import Integral, Real
 import numpy as np
 from scipy.optimize import brentq
 
+from ..kept import keeping
 from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
 
 STARTS = ("30deg", "root", "middle")
@@ -216,6 +217,7 @@ def start_arc(gear, crack):
     return brentq(lambda arc: float(root_curve(gear, arc)[0]) - wanted, 0.0, fillet_length(gear), xtol=1e-12 * gear.m_n)
 
 
+@keeping(256)
 def crack_path(gear, crack):
     """Corners ``(2, 2 or 3)`` [mm] of the crack in the frame of its tooth (centre-line +y), from the fillet to its tip.
 

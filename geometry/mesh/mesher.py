@@ -4,7 +4,9 @@ gmsh has one model and one set of options for the whole process: threads that me
 """
 
 import contextlib
+import ctypes
 import os
+import signal
 import sys
 import threading
 from dataclasses import dataclass
@@ -14,6 +16,8 @@ import numpy as np
 # Largest coordinate that gmsh sees, and the decimals of coordinates: its tolerances are absolute, and what it does with points on
 # one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
 SEEN, DECIMALS = 50.0, 8
+
+TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
 
 _turn = threading.Lock()
 
@@ -38,13 +42,36 @@ def gmsh_session():
             ) from error
         if gmsh.isInitialized():
             raise RuntimeError("this program has gmsh open, which has one session for all: call gmsh.finalize() before gearfe")
-        gmsh.initialize(readConfigFiles=False, interruptible=False)  # a user's own options would change the mesh
+        with _handlers_kept():
+            gmsh.initialize(readConfigFiles=False, interruptible=False)  # a user's own options would change the mesh
         try:
             gmsh.option.setNumber("General.Terminal", 0)
             gmsh.option.setNumber("General.NumThreads", 1)
             yield gmsh
         finally:
-            gmsh.finalize()
+            with _handlers_kept():
+                gmsh.finalize()
+
+
+@contextlib.contextmanager
+def _handlers_kept():
+    """What the process does on signals, put back.
+
+    gmsh loads PETSc, which sets some to the system's default: then a worker that dies ends the process that writes to it, by
+    SIGPIPE, and the faults of other libraries are no longer told. Python's own `signal` would serve the main thread alone.
+    """
+    if os.name != "posix":
+        yield
+        return
+    sigaction = ctypes.CDLL(None).sigaction
+    kept = {number: ctypes.create_string_buffer(256) for number in map(int, TOUCHED)}  # a struct sigaction is shorter
+    for number, old in kept.items():
+        sigaction(number, None, old)
+    try:
+        yield
+    finally:
+        for number, old in kept.items():
+            sigaction(number, old, None)
 
 
 def _begin_anew():

@@ -4,7 +4,7 @@ The outline is exact: every boundary edge carries how its curve departs from its
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -55,6 +55,8 @@ class Sector:
         Vertices of the loaded flank from root to tip and their roll lengths [mm]; edges are linear in the roll.
     faces : tuple of ndarray, shape (2, k)
         Vertices of the two faces (left, right) of each crack from mouth to tip, the tip shared.
+    edge_bulges : ndarray, shape (3, 2, k, m)
+        Bulges of the local edges of all triangles, zero inside.
     """
 
     points: np.ndarray
@@ -66,9 +68,10 @@ class Sector:
     flank: np.ndarray
     roll: np.ndarray
     faces: tuple = ()
+    edge_bulges: np.ndarray = field(init=False)
 
-    def edge_bulges(self):
-        """Bulges of the local edges of all triangles ``(3, 2, k, m)``, zero inside."""
+    def __post_init__(self):
+        """Bulges by triangle from those by edge."""
         count, values = self.points.shape[1], np.array(list(self.bulge.values()))
         first, second = np.array(list(self.bulge), dtype=np.int64).T
         out = np.zeros((3, *values.shape[1:], self.triangles.shape[1]))
@@ -79,7 +82,7 @@ class Sector:
                 at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
                 found = keys[at] == wanted
                 out[local][..., found] = np.moveaxis(along[at[found]], 0, -1)
-        return out
+        object.__setattr__(self, "edge_bulges", out)
 
 
 def sector(gear, cracks=(), *, refine=1.0, sizes=None):
@@ -148,7 +151,7 @@ def _attempt(gear, cracks, sizes, refine, finer):
         points, triangles, _bulges(pieces, first, doubles), left, right, vertices["held"], vertices["flank"][::-1], rolls[::-1],
         tuple(faces),
     )  # fmt: skip
-    bulges = made.edge_bulges()
+    bulges = made.edge_bulges
     bent = bulges.any(axis=(0, 1, 2))  # the others are as good as their corners
     (xx, xy), (yx, yy) = jacobians(points, triangles[:, bent], bulges[..., bent], CHECKED).transpose(1, 2, 0, 3)
     return made if (xx * yy - xy * yx).min() > 0 else None

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 STEPS = 10  # of Newton's method at most: each doubles the correct digits, or adds three where a modified flank slopes
 SETTLED = 1e-7  # last step, in base pitches
 EXACT = 1e-13  # the same, where no further step is needed: light loads close by less than any larger
+SQUARED = 1e-9  # the same between unmodified flanks: the next step would be its square
 PITCHES = 8  # beyond the path that are looked at, of rings with hardly more teeth than their pinion
 CLOSE = 0.02  # gap [m_n] that no load closes
 ROUNDING = 1e-7  # overlap [m_n] of corners that are on the path of contact
@@ -258,7 +259,7 @@ def approach(
         step = 2 * (distance - gap) / (1 + arms[0] / arms[1])
         facing_it = (np.abs(distance) < pair.p_bt) & (arms[0] > 0) & (arms[1] > 0)
         gap = gap + np.where(facing_it, step, np.nan)  # else the flanks face away: no contact
-        if not (np.abs(step) >= EXACT * pair.p_bt).any():
+        if not (np.abs(step) >= (SQUARED if mate is None else EXACT) * pair.p_bt).any():
             break
     there = np.abs(step) < SETTLED * pair.p_bt
     return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))

@@ -21,7 +21,7 @@ def overlap(pair, nominals):
     ways. Without backlash the cut is zero up to rounding. Catches tips in fillets and, for rings, tips in tips.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
-    outlines = [outline(gear) for gear in gears]
+    outlines, turned = [outline(gear) for gear in gears], np.array(pair.turn(np.asarray(nominals)))
     deepest = 0.0
     for own, other in ((0, 1), (1, 0)):
         gear, mate = gears[own], gears[other]
@@ -30,13 +30,15 @@ def overlap(pair, nominals):
         rising = np.argsort(solid_radius)
         low, high = sorted((mate.r_a, mate.r_f))
         reach = min(gear.z // 2, 8 if not pair.gear_2.internal else pair.gear_1.z // 2)
-        teeth = 2 * math.pi / gear.z * np.arange(-reach, reach + 1)
-        shape = (teeth[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
-        radii = np.tile(radius, shape.size // radius.size)
-        for nominal in nominals:
-            turns = pair.turn(nominal)
-            x, y = cartesian(radii, turns[own] + mirror[own] * shape)
-            y = y + centres[own] - centres[other]
+        teeth, apart = 2 * math.pi / gear.z * np.arange(-reach, reach + 1), centres[own] - centres[other]
+        towards = -math.copysign(mate.outward, apart)  # cosine of the angle at which the mate is
+        widest = towards * (mate.r_a**2 - radius**2 - apart**2) / (2 * radius * apart)  # its cosine where a point may reach it
+        reached = math.cos(min(math.acos(np.clip(widest.min(), -1, 1)) + half.max(), math.pi))
+        for turns in turned.T:
+            near = teeth[towards * np.cos(turns[own] + mirror[own] * teeth) >= reached]
+            shape = (near[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
+            x, y = cartesian(np.tile(radius, shape.size // radius.size), turns[own] + mirror[own] * shape)
+            y = y + apart
             away = np.hypot(x, y)
             near = (away > low) & (away < high)
             angle = mirror[other] * (np.arctan2(x[near], y[near]) - turns[other])

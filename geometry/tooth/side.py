@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import make_interp_spline
 
 from .gear import Gear
 from .profile import arc_at, cartesian, fillet, fillet_length, flank, form_point, roll_at_arc, root_curve
@@ -34,12 +34,12 @@ class Place(NamedTuple):
 
 @lru_cache(maxsize=256)
 def _fillet(gear):
-    """Splines of angle [rad] and arc length from the root circle [mm] over the root of the part of the fillet's height."""
+    """Spline of angle [rad] and arc length up to the form point [mm] over the root of the part of the fillet's height."""
     phi = np.linspace(np.pi / 2, form_point(gear)[0], POINTS)
     radius, angle = fillet(gear, phi)
     height = np.sqrt(np.abs(radius - gear.r_f) / abs(radius[-1] - gear.r_f))
     length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cartesian(radius, angle), axis=1)))])
-    return CubicSpline(height, angle), CubicSpline(height, length)
+    return make_interp_spline(height, np.array([angle, length - length[-1]]).T)
 
 
 def on_fillet(gear: Gear, roll: ArrayLike) -> NDArray[np.bool_]:
@@ -67,11 +67,12 @@ def place(gear: Gear, radius: ArrayLike) -> Place:
     if low.any():
         down, whole = radius[low], abs(gear.r_form - gear.r_f)
         height = np.sqrt(np.maximum(gear.outward * (down - gear.r_f), 0.0) / whole)
-        angles, lengths = _fillet(gear)
-        slope = down * gear.outward * angles(height, 1) / (2 * np.maximum(height, 1e-9) * whole)
-        angle[low], arm[low] = angles(height), down / np.hypot(1.0, slope)
+        curve = _fillet(gear)
+        angle[low], length = curve(height).T
+        slope = down * gear.outward * curve(height, 1)[:, 0] / (2 * np.maximum(height, 1e-9) * whole)
+        arm[low] = down / np.hypot(1.0, slope)
         lean[low] = -gear.outward * slope * arm[low]
-        roll[low] = roll_at_arc(gear, arc_at(gear, gear.roll_f) + lengths(height) - lengths(1.0))
+        roll[low] = roll_at_arc(gear, arc_at(gear, gear.roll_f) + length)
     least, most = sorted((gear.r_f, gear.r_a))
     slack = 1e-9 * gear.m_n
     outside = ~((radius >= least - slack) & (radius <= most + slack))

@@ -61,11 +61,9 @@ def test_render_makes_a_picture_of_stress(tmp_path, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", ["minor", None])
-def test_render_shows_a_pitted_tooth_in_three_dimensions(case, tmp_path, capsys):
+def test_render_shows_a_pitted_tooth_in_three_dimensions(tmp_path, capsys):
     path = tmp_path / "tooth.png"
-    options = [] if case is None else ["--case", case]
-    assert main(["render", "helical_pitting", *options, "--refine", "0.5", "--phase", "1.2", "-o", str(path)]) == 0
+    assert main(["render", "helical_pitting", "--case", "minor", "--refine", "0.5", "--phase", "1.2", "-o", str(path)]) == 0
     from matplotlib.image import imread
 
     picture = imread(path)

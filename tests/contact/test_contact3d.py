@@ -185,11 +185,7 @@ def test_impossible_pairs(options, message):
         pair_stiffness3d(pair_of(), **({"force": 1500.0, "material": STEEL} | options))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("ratio", "printed", "found"),
-    [(5, -0.040, -0.034), (10, -0.025, -0.022), (20, -0.014, -0.013)],
-)
+@pytest.mark.parametrize(("ratio", "printed", "found"), [(5, -0.040, -0.034), (20, -0.014, -0.013)])
 def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
     """Away from tip corners, against an earlier study whose pair and load are not stated: found at b/m 20, not at 5 and 10.
 
@@ -203,15 +199,6 @@ def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
     ours = solid.mean() / plane.mean() - 1
     assert (abs(ours - printed) < 0.002) == (ratio == 20)
     assert_allclose(ours, found, atol=0.001)
-
-
-@pytest.mark.slow
-def test_herringbone_sun_and_planet():
-    rack = RACK | {"b": 60.0, "beta": BETA}
-    sun, planet = (gf.Gear(z=z, r_bore=0.5 * (z * 1.0403 - 2.5), **rack) for z in (18, 27))
-    solved = pair_stiffness3d(gf.GearPair(sun, planet), 7120.0, gf.Material(E=206e3, nu=0.3), 32, face="herringbone")
-    print(f"{solved.k.mean():.4g} N/m")
-    assert_allclose(solved.k.mean(), 0.970e9, rtol=0.01)
 
 
 def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():

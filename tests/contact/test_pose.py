@@ -70,7 +70,6 @@ def test_an_unknown_pose_is_refused(pair):
         solved(pair, 0.1, "gear")
 
 
-@pytest.mark.slow
 def test_the_pose_holds_in_three_dimensions():
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
     wide = {"method": "ritz3d", "face": "spur"}
@@ -82,11 +81,7 @@ def test_the_pose_holds_in_three_dimensions():
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx")
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("phase", "pose"),
-    [(0.3, "mean"), (0.63, "mean"), (0.65, "mean"), (0.65, "pinion"), (0.65, "wheel"), (0.95, "mean"), (0.95, "pinion"),
-     (0.95, "wheel"), (0.97, "mean")],
-)  # fmt: skip
+@pytest.mark.parametrize(("phase", "pose"), [(0.65, "pinion"), (0.95, "wheel")])
 def test_calculix_in_the_same_pose(pair, phase, pose, tmp_path):
     """Nonlinear contact with large displacements, the same gears turned."""
     curve = solved(pair, phase, pose)

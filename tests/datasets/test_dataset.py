@@ -204,7 +204,9 @@ def test_verb_goes_on_with_a_folder(made, plan, tmp_path, capsys):
     assert main(["dataset", str(tmp_path / "set.toml"), "-o", str(made.folder), "--workers", "1"]) == 0
     text = capsys.readouterr().out
     assert "cracks: 24 windows of 4 conditions" in text
-    assert "crack 0.4" in text
+    labels = made.labels()
+    lost = labels["loss_max"][(labels["fault"] == "crack") & (labels["severity"] == 0.4)].mean()
+    assert float(re.search(r"crack 0\.4 .*loss of stiffness ([\d.]+) %", text)[1]) == pytest.approx(100 * lost, abs=0.051)
     assert "described in card.md" in text
 
 

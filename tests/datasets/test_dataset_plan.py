@@ -2,9 +2,10 @@
 
 import copy
 
+import numpy as np
 import pytest
 
-from gearfe.datasets.conditions import conditions
+from gearfe.datasets.conditions import _dealt, conditions
 from gearfe.datasets.plan import read_plan
 
 SMALL = {
@@ -100,6 +101,15 @@ def test_every_class_is_split_by_shares():
     for label, severity in (("healthy", 0.0), ("crack", 0.2), ("crack", 0.4), ("misplaced", 20.0)):
         sides = [one.side for one in every if (one.label, one.severity) == (label, severity)]
         assert sorted(sides) == ["test"] * 2 + ["train"] * 4 + ["validation"] * 2, label
+
+
+@pytest.mark.parametrize(
+    ("shares", "sizes"), [((0.58, 0.22, 0.2), [6, 2, 2]), ((0.4, 0.28, 0.32), [4, 3, 3]), ((0.9, 0.05, 0.05), [8, 1, 1])]
+)
+def test_what_is_left_over_goes_where_most_is_missing(shares, sizes):
+    """Ten of them by the largest remainders; every side that has a share has one at least."""
+    dealt = _dealt(10, np.array(shares), np.random.default_rng(0), "ten")
+    assert np.bincount(dealt, minlength=3).tolist() == sizes
 
 
 def test_split_by_operation_shares_none():

@@ -67,43 +67,16 @@ def test_deck_is_complete(tmp_path):
         gf.write_inp(tmp_path / "gear.txt", gear, radius, 100.0, STEEL)
 
 
-def contact_difference(folder, phase, line_load, *, ring=False):
-    """Relative difference of k, gearfe's over CalculiX's nonlinear contact at the same approach."""
-    wheel = gf.Gear(z=84, r_rim=95.0, tip_radius=0.2, **RACK) if ring else gf.Gear(z=31, r_bore=13.0, **RACK)
-    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), wheel)
-    curve = gf.mesh_stiffness(pair, 20 * line_load, STEEL, phases=[phase])
-    deck = gf.write_contact_inp(folder / "pair.inp", pair, phase, float(curve.lte[0]) * 1e3, line_load, (STEEL, STEEL))
-    done = run(folder, "pair")
-    assert (folder / "pair.dat").exists(), done.stdout[-500:]
-    return line_load / deck.force(folder / "pair.dat") - 1
-
-
-@needs_ccx
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("phase", "line_load", "tolerance"),
-    [
-        (0.3, 100.0, 0.005),
-        (0.8, 100.0, 0.005),
-        (0.8, 300.0, 0.005),
-        (0.63, 100.0, 0.01),
-        (0.65, 100.0, 0.01),
-        (0.63, 300.0, 0.01),
-        (0.98, 100.0, 0.01),
-        (0.98, 300.0, 0.01),
-    ],
-)
-def test_nonlinear_contact(tmp_path, phase, line_load, tolerance):
-    difference = contact_difference(tmp_path, phase, line_load)
-    print(f"phase {phase}, {line_load} N/mm: {100 * difference:+.2f} %")
-    assert abs(difference) < tolerance
-
-
 @needs_ccx
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
-@pytest.mark.parametrize("phase", [0.3, 0.85])
-def test_nonlinear_contact_of_a_ring(tmp_path, phase):
-    difference = contact_difference(tmp_path, phase, 100.0, ring=True)
-    print(f"ring, phase {phase}: {100 * difference:+.2f} %")
+def test_nonlinear_contact_of_a_ring(tmp_path):
+    """Force per width of nonlinear contact in CalculiX at the approach found here."""
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=10.0, **RACK), gf.Gear(z=84, r_rim=95.0, tip_radius=0.2, **RACK))
+    curve = gf.mesh_stiffness(pair, 2000.0, STEEL, phases=[0.85])
+    deck = gf.write_contact_inp(tmp_path / "pair.inp", pair, 0.85, float(curve.lte[0]) * 1e3, 100.0, (STEEL, STEEL))
+    done = run(tmp_path, "pair")
+    assert (tmp_path / "pair.dat").exists(), done.stdout[-500:]
+    difference = 100.0 / deck.force(tmp_path / "pair.dat") - 1
+    print(f"{100 * difference:+.2f} %")
     assert abs(difference) < 0.01

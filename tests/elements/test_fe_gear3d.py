@@ -32,11 +32,9 @@ def line_loads(found):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("cracks", [(), (gf.Crack(level=0.5),)], ids=["healthy", "crack"])
-@pytest.mark.parametrize("beta", [0.0, 0.35])
-def test_patches_move_as_in_the_energy_model(cracks, beta, steel):
+def test_patches_move_as_in_the_energy_model(steel):
     """To within the step from one mesh to the next and the model's own error, in parts of the largest displacement."""
-    gear = replace(GEAR, beta=beta)
+    gear, cracks = replace(GEAR, beta=0.35), (gf.Crack(level=0.5),)
     healthy = solid_flexibility(gear, steel, **LEVELS[0])
     levels = [solid_flexibility(gear, steel, cracks, healthy=healthy, **options) for options in LEVELS]
     model = flexibility3d(gear, steel, cracks, axial=DEGREE + 4)
@@ -122,35 +120,15 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_cracks_of_part_of_the_width_lie_between_none_and_all(steel):
-    phases = np.array([0.3, 0.6, 0.9])
-    k = {
-        name: curve_of(steel, damage, phases=phases).k
-        for name, damage in {
-            "none": None,
-            "half": {"pinion": [gf.Crack(level=0.5, width=(0.0, 2.0))]},
-            "other half": {"pinion": [gf.Crack(level=0.5, width=(2.0, 4.0))]},
-            "sloping": {"pinion": [gf.Crack(level=0.5, ends=(1.0, 0.0))]},
-            "all": {"pinion": [gf.Crack(level=0.5)]},
-        }.items()
-    }
-    for name in ("half", "other half", "sloping"):
-        assert (k[name] < 0.995 * k["none"]).all(), name
-        assert (k[name] > 1.005 * k["all"]).all(), name
-    assert np.abs(k["half"] / k["other half"] - 1).max() > 0.01, "the contact line runs across the width"
-
-
-@pytest.mark.slow
 def test_part_width_is_seen_from_the_right_end(steel):
     """The mirrored pair with its crack at the other end."""
     crack = gf.Crack(level=0.5, width=(0.0, 1.5))
     other = gf.Crack(level=0.5, width=(2.5, 4.0))
-    for gear in ("pinion", "wheel"):
-        one = curve_of(steel, {gear: [crack]}, phases=np.array([0.2, 0.7]))
-        mirrored = curve_of(steel, {gear: [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-        wrong = curve_of(steel, {gear: [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-        assert_allclose(one.k, mirrored.k, rtol=1e-9)
-        assert np.abs(one.k / wrong.k - 1).max() > 2e-3
+    one = curve_of(steel, {"wheel": [crack]}, phases=np.array([0.2, 0.7]))
+    mirrored = curve_of(steel, {"wheel": [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
+    wrong = curve_of(steel, {"wheel": [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
+    assert_allclose(one.k, mirrored.k, rtol=1e-9)
+    assert np.abs(one.k / wrong.k - 1).max() > 2e-3
 
 
 @pytest.mark.slow
@@ -217,19 +195,6 @@ def test_degrees_the_layers_do_not_carry_are_dropped(steel):
     assert cracked.near[0].shape == whole.near[0].shape
 
 
-@pytest.mark.slow
-def test_error_estimate_covers_the_difference_from_the_energy_model(steel):
-    """The error estimates of `fe3d` and `ritz3d` together cover their difference at every phase."""
-    pair = pair_of(10.0)
-    brute = curve_of(steel, pair=pair, force=1000.0, refine=0.8, phases=8, error=True)
-    model = gf.mesh_stiffness(pair, 1000.0, steel, method="ritz3d", phases=8, error=True)
-    print("difference", model.k / brute.k - 1, "estimates", brute.error / brute.k, model.error / model.k)
-    assert (np.abs(model.k - brute.k) <= brute.error + model.error).all()
-    assert brute.error.max() < 0.01 * brute.k.min()
-    assert_allclose(model.k, brute.k, rtol=1e-2)
-    assert model.k.mean() == pytest.approx(brute.k.mean(), rel=5e-3)
-
-
 def test_zones_of_crack_faces_keep_them_apart(steel):
     """Loads open a crack on their side and close the one behind; with closed faces the tooth is nearly a healthy one."""
     patches, size = fe3d.Patches((0,), hats(SMALL)[:, 5:6], 1), {"refine": 0.3, "per_hat": 2, "layer": 0.4}
@@ -246,18 +211,3 @@ def test_zones_of_crack_faces_keep_them_apart(steel):
             shut = open_crack - opening @ np.linalg.solve(found.mutual, opening)
             print("shut", shut / healthy, "open", open_crack / healthy)
             assert 0.99 * healthy < shut < healthy + 0.15 * (open_crack - healthy)
-
-
-@pytest.mark.slow
-def test_a_crack_that_the_load_closes(steel):
-    """Within half a percent of k of what the section says; faces that pass through each other lost 9 to 38 %."""
-    pair, damage = pair_of(beta=0.0), {"pinion": [gf.Crack(level=0.4, side="unloaded")]}
-    lost = {}
-    for method, more in (("fe3d", {"refine": 0.6}), ("ritz", {})):
-        cracked, healthy = (
-            gf.mesh_stiffness(pair, 400.0, steel, damage=own, method=method, phases=4, **more) for own in (damage, None)
-        )
-        assert cracked.meta["crack_closed_phases"] == [0.0, 0.25, 0.5, 0.75]
-        lost[method] = 1 - cracked.k / healthy.k
-    print(lost)
-    assert_allclose(lost["fe3d"], lost["ritz"], atol=0.005)

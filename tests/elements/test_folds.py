@@ -120,10 +120,9 @@ def test_a_deck_with_folded_elements_is_not_written():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["cut", "filled"])
-@pytest.mark.parametrize("refine", [0.8, 1.7])
-def test_decks_with_pits_do_not_fold(tmp_path, kind, refine):
+def test_decks_with_pits_do_not_fold(tmp_path, kind):
     """At refine 1.7, with longer tets, CalculiX stopped at one across the form circle of an undamaged tooth."""
     pair, damage = outsider.pair_of(15.0), {"pinion": outsider.pits()}
-    options = {"face": "helical", "damage": damage, "pits": kind, "per_width": 1.0, "refine": refine}
+    options = {"face": "helical", "damage": damage, "pits": kind, "per_width": 1.0, "refine": 1.7}
     deck = gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, 0.016, 300.0, (STEEL, STEEL), **options)
     assert all(jacobians(part.points, part.cells).min() > 0 for part in deck.parts)

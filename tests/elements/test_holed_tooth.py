@@ -163,10 +163,9 @@ def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("gear", [GEAR, HELICAL])
-def test_the_mesh_is_finer_along_loaded_contact_lines_only(gear, steel):
+def test_the_mesh_is_finer_along_loaded_contact_lines_only(steel):
     """Nodes within 0.1 mm of the lines of tooth 0, and more than 2 mm away, with edges of 0.12 modules there and without."""
-    pair = gf.GearPair(replace(gear, b=4.0), replace(gear, b=4.0, z=27))
+    pair = gf.GearPair(replace(HELICAL, b=4.0), replace(HELICAL, b=4.0, z=27))
     near, far = [], []
     for strip in (None, 0.12):
         made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes=COARSE, teeth=1, strip=strip)

@@ -71,7 +71,6 @@ def test_a_rigid_stub_is_a_held_face(mesh):
     assert_allclose(integral_influence(mesh, STEEL, PATCHES, thick).matrix, expected, rtol=1e-4)
 
 
-@pytest.mark.slow
 def test_a_shaft_seen_from_its_other_end(mesh):
     one, two = (integral_influence(mesh, STEEL, PATCHES, held).matrix.reshape(2, 2) for held in (shaft(), shaft().turned()))
     assert_allclose(one * [[1, -1], [-1, 1]], two, rtol=1e-5, atol=1e-9 * one.max())
@@ -105,18 +104,19 @@ def test_only_hexahedra_have_them():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("hand", [0, 1])
-def test_pairs_with_a_pinion_cut_from_its_shaft(hand):
+def test_pairs_with_a_pinion_cut_from_its_shaft():
     """Mirrored pairs on mirrored shafts are alike, an overhung pinion's too."""
     found = []
     for side in (1, -1):
-        beta = side * hand * math.radians(15)
+        beta = side * math.radians(15)
         rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": B}
-        pair = gf.GearPair(gf.Gear(z=17, beta=-beta, r_bore=3.0, **rack), gf.Gear(z=25, beta=beta, r_bore=12.0, **rack))
+        pair = gf.GearPair(
+            gf.Gear(z=12, x=0.3, beta=-beta, r_bore=3.0, **rack), gf.Gear(z=13, x=0.3, beta=beta, r_bore=5.0, **rack)
+        )
         parts = {"bearings": (0.0, 25.0), "gear": 30.0 + B / 2, "material": STEEL, "torque": 0.0, "integral": True}
-        held = gf.Shaft(segments=[(30.0, 25.0), (B, 29.0)], **parts)
+        held = gf.Shaft(segments=[(30.0, 16.0), (B, 19.0)], **parts)
         held = held if side > 0 else held.turned()
-        options = {"supports": {"pinion": held}, "phases": [0.75], "refine": 0.5, "cache": False}
+        options = {"supports": {"pinion": held}, "phases": [0.75], "refine": 0.4, "cache": False}
         found.append(gf.mesh_stiffness(pair, 500.0, STEEL, **options))
     assert found[0].meta["method"] == "fe3d"
     assert_allclose(found[0].k, found[1].k, rtol=1e-3)

@@ -10,10 +10,10 @@ from scipy.integrate import quad
 
 import gearfe as gf
 from gearfe.elements import fe
-from gearfe.energy.closed import annulus, coupled
+from gearfe.energy.closed import annulus, coupled, textbook
 from gearfe.energy.closed.beam import along_fillet, along_flank
 from gearfe.flexibility.hertz import half_plane
-from gearfe.studies.ladder import ladder
+from gearfe.studies.ladder import ladder, plane_strain_textbook
 from geometry.tooth.profile import cartesian, fillet, flank, form_point, root_half_angle, tangent_point
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -262,3 +262,12 @@ def test_plane_stress_is_plane_strain_of_another_material():
         coupled.local_remainder(gear, STEEL, roll, state="plane strain"),
         rtol=1e-12,
     )
+
+
+def test_plane_strain_rung_is_the_textbook_of_another_material():
+    """Its beam bends and shortens with E / (1 - nu**2); shear and body stay."""
+    gear, roll, nu = make(25, 10.0), np.linspace(5.0, 12.0, 7), STEEL.nu
+    other = gf.Material(E=STEEL.E / (1 - nu**2), nu=nu / (1 - nu))
+    rung, own, stiffer = plane_strain_textbook(gear, STEEL, roll), *(textbook.components(gear, m, roll) for m in (STEEL, other))
+    for name, want in (("bending", stiffer), ("axial", stiffer), ("shear", stiffer), ("shear", own), ("foundation", own)):
+        assert_allclose(getattr(rung, name), getattr(want, name), rtol=1e-12)

@@ -228,6 +228,16 @@ def test_other_roots_equal_quadrature(root):
     assert (got.foundation == 0).all()
 
 
+def test_all_roots_are_one_where_the_flank_reaches_the_root_circle():
+    """Of many teeth without shift: nothing is left between base and root circle that a line or a prism could fill."""
+    gear = gf.Gear(z=60, r_bore=30.0, **RACK)
+    assert gear.r_f > gear.r_b
+    roll = np.linspace(gear.roll_f, gear.roll_a, 5)
+    base, *others = (textbook.components(gear, STEEL, roll, root=root) for root in ("base", "line", "prism"))
+    for other in others:
+        assert_allclose(other.total, base.total, rtol=1e-12)
+
+
 # --- limits and order
 
 

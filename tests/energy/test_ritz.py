@@ -53,7 +53,7 @@ def test_flamant_moves_the_surface_by_the_logarithm(side):
 @pytest.mark.parametrize("cracks", [(), (gf.Crack(level=0.4),), (gf.Crack(level=0.7, turning=True),)], ids=str)
 def test_area_of_the_sector_is_that_of_the_profile(gear, cracks):
     made = sector(gear, cracks)
-    area = np.linalg.det(jacobians(made.points, made.triangles, made.edge_bulges(), 6).transpose(0, 3, 1, 2))
+    area = np.linalg.det(jacobians(made.points, made.triangles, made.edge_bulges, 6).transpose(0, 3, 1, 2))
     radius, angle = outline(gear, 4000)
     radius = np.concatenate([[gear.r_a], radius, [gear.r_f]])
     angle = np.concatenate([[0.0], angle, [math.pi / gear.z]])
@@ -184,7 +184,7 @@ def test_random_pairs_against_refined_fe():
 @pytest.mark.slow
 def test_many_random_pairs_against_refined_fe():
     """Seeds 0 to 39 were looked at while mesh sizes and the estimate were chosen; these are others."""
-    away, everywhere, inside = against_fe(range(1000, 1200), 24)
-    print(f"away from tip corners at most {away.max():.2e}, everywhere {everywhere.max():.2e}; {inside.sum()} of 24 inside")
+    away, everywhere, inside = against_fe(range(1000, 1200), 8)
+    print(f"away from tip corners at most {away.max():.2e}, everywhere {everywhere.max():.2e}; {inside.sum()} of 8 inside")
     assert away.max() < 2e-3
-    assert inside.mean() >= 0.95
+    assert inside.all()

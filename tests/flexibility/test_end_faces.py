@@ -9,7 +9,8 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.end_faces import edge_factor, mirrored_patches
-from gearfe.flexibility.halfspace import hat_distance, modes, pair_kernel
+from gearfe.flexibility.halfspace import half_space, hat_distance, modes, pair_kernel
+from gearfe.flexibility.hertz import half_plane
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 PHASES = [0.05, 0.2, 0.5, 0.8]
@@ -43,6 +44,14 @@ def test_a_cell_and_an_image_are_their_integral():
     for one, two, value in zip(i, j, got, strict=True):
         q = (low[one] + at * (high - low)[one])[:, None] + low[two] + at * (high - low)[two]
         assert value == pytest.approx((weight[:, None] * weight / np.hypot(q, x)).sum(), rel=1e-4)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.25, 0.45])
+def test_a_line_load_is_in_plane_stress_on_the_end_face(nu):
+    """Over half a line the mean of 1 / R gives the logarithm once, over a whole line twice: itself and its image make that up."""
+    material = gf.Material(E=207e3, nu=nu)
+    assert_allclose(2 * half_space(material), half_plane(material, "plane strain"), rtol=1e-12)
+    assert_allclose(half_space(material) * (1 + edge_factor(material)), half_plane(material, "plane stress"), rtol=1e-12)
 
 
 @pytest.mark.parametrize("b", [1.0, 6.0])

@@ -6,6 +6,7 @@ from scipy.special import xlogy
 
 import gearfe as gf
 from gearfe.flexibility import hertz
+from gearfe.flexibility.halfspace import hat_points
 from gearfe.flexibility.hats import hat_knots, wider
 from gearfe.flexibility.hertz import hat_logarithm
 
@@ -34,6 +35,15 @@ def test_hat_logarithm_equals_its_integral(apart):
 def test_far_apart_hats_see_a_point_log():
     one = np.array([[-0.1], [0.0], [0.1]])
     assert_allclose(hat_logarithm(one, one + 50)[0, 0], -np.log(50), rtol=1e-5)
+
+
+@pytest.mark.parametrize("apart", [29.0, 31.0, 60.0])
+def test_hats_that_are_uneven_on_either_side_of_where_the_series_begins(apart):
+    """By Gauss points, which are exact as good as: the logarithm is smooth that far away."""
+    one, two = np.array([[0.0], [0.3], [1.0]]), np.array([[0.0], [0.7], [0.9]]) + apart
+    (x, p), (y, q) = ((points[0], weight[0]) for points, weight in (hat_points(one, 6), hat_points(two, 6)))
+    want = -p @ np.log(np.abs(x[:, None] - y)) @ q
+    assert_allclose(hat_logarithm(one, two)[0, 0], want, atol=2e-7)
 
 
 def test_line_contact_constant_is_the_mean_log_under_an_ellipse():

@@ -1,9 +1,14 @@
 """Contact laws and tables over the mesh phase."""
 
+import math
+
 import numpy as np
+import pytest
 from machines import WAVE
 from numpy.testing import assert_allclose
 
+import gearfe as gf
+from gearfe.machine.contact_cycle import SI, friction_weights, impact_cycle
 from gearfe.machine.contact_law import force, friction_coefficient, slopes, step
 from gearfe.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
 
@@ -36,6 +41,42 @@ def test_slopes_are_derivatives_of_the_force():
         assert_allclose(by_x[ok], numeric[ok], rtol=1e-3, atol=1e-2)
         numeric = (force(x, v + 1e-6, k, law) - force(x, v - 1e-6, k, law)) / 2e-6
         assert_allclose(by_v[ok], numeric[ok], rtol=1e-5, atol=1e-4)
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 1.2])
+def test_the_back_flank_pushes_as_the_front_flank_does(power):
+    """Seen from the middle of the play both are alike; flanks that only push never pull."""
+    law = {name: np.array([value]) for name, value in (("power", power), ("damping", 200.0), ("beta", 0.0), ("per_depth", 1e4))}
+    law |= {"backlash": np.array([3e-5]), "film": np.array([0.0]), "push": np.array([True])}
+    rng = np.random.default_rng(4)
+    for x, v in zip(rng.uniform(0, 1e-4, 50), rng.uniform(-2, 2, 50), strict=True):
+        front, back = force(np.array([x]), v, 1e8, law), force(np.array([-3e-5 - x]), -v, 1e8, law)
+        assert front >= 0
+        assert_allclose(back, -front, rtol=1e-9)
+
+
+def pair_of(scale=1.0):
+    rack = {"m_n": 2.0 * scale, "alpha_n": math.radians(20), "b": 20.0}
+    return gf.GearPair(gf.Gear(z=21, r_bore=7.4 * scale, **rack), gf.Gear(z=31, r_bore=11.4 * scale, **rack))
+
+
+def test_a_pair_at_its_pitch_point_is_hertzs_sphere():
+    """F = 4/3 E' sqrt(R) d**1.5, with the radii of curvature r_w sin(alpha_w) and 1 / E' twice (1 - nu**2) / E of steel."""
+    pair, steel = pair_of(), gf.Material(E=207e3, nu=0.3)
+    one, two = (math.sin(pair.alpha_w) * r for r in (pair.pitch_radius_1, pair.a - pair.pitch_radius_1))
+    want = 4 / 3 * 207e3 / (2 * (1 - 0.3**2)) * math.sqrt(one * two / (one + two))
+    found = impact_cycle(pair, (steel, steel))
+    assert pair.eps_alpha - 1 < pair.pitch_phase % 1.0 < 1, "one pair alone"
+    assert_allclose(np.interp(pair.pitch_phase, found.phase, found.k), SI * want, rtol=1e-4)
+
+
+def test_friction_turns_round_at_the_pitch_point():
+    """There the flanks roll: they slide the one way before and the other way after."""
+    pair = pair_of()
+    speeds = 100.0, -100.0 * 21 / 31
+    weight, *_ = friction_weights(pair, speeds, static=0.1, dynamic=0.1, v_static=1e-6, v_dynamic=1e-5)
+    assert pair.eps_alpha - 1 < pair.pitch_phase < 1, "one pair alone"
+    assert_allclose(weight(np.array([pair.pitch_phase - 0.02, pair.pitch_phase + 0.02])), [-0.1, 0.1], rtol=1e-9)
 
 
 def test_table_passes_through_its_samples_without_overshoot():

@@ -9,7 +9,6 @@ from checks import pit_loss
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.cli import main
 from gearfe.machine.contact_cycle import ellipse_loss
 from gearfe.machine.impact import pits_loss
 from gearfe.motion.simulate import simulate
@@ -61,17 +60,6 @@ def test_the_article_s_stage_runs_from_its_scene():
     assert got["force sun_planet1"].min() > 0
 
 
-@pytest.mark.slow
-def test_the_helical_pair_runs_from_its_scene(capsys):
-    command = ["dynamics", "helical_pitting", "--case", "severe", "--contact", "impact", "--duration", "0.1"]
-    assert main(command) == 0
-    text = capsys.readouterr().out
-    assert "| 2 f_r | 83.33 |" in text
-    assert "kurtogram" in text
-    machine = gf.build_machine(with_keys(HELICAL, contact="impact"), "multi")
-    assert machine.meshes[0].damping == 1e3
-
-
 def test_play_and_errors_of_the_scene():
     machine = gf.build_machine(
         with_keys(STAGE, backlash_um=50.0, profile_error_um=2.0, runout_um=10.0, misplaced_um=5.0), phases=8
@@ -85,6 +73,11 @@ def test_play_and_errors_of_the_scene():
     assert_allclose([a for a, f in sizes if abs(f - 280) < 1e-9], 2e-6, rtol=1e-9)
     still = [a * np.sin(p) for a, f, p in first.error if f == 0]
     assert_allclose(still, [5e-6 * np.sin(first_angle(STAGE))], rtol=1e-9)  # outward opens the mesh with the sun
+
+
+def test_the_helical_pair_has_the_law_of_its_scene():
+    machine = gf.build_machine(with_keys(HELICAL, contact="impact"), "multi")
+    assert machine.meshes[0].damping == 1e3
 
 
 def first_angle(scene):

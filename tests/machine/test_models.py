@@ -130,3 +130,13 @@ def test_compound_stage_balances_its_torques():
     by_kind = forces.reshape(3, 5)
     assert_allclose(by_kind, by_kind[:1].repeat(3, axis=0), rtol=1e-6)
     assert_allclose(by_kind[0, 0] / by_kind[0, 4], 78 / 72, rtol=1e-6)  # the ring passes the torque from stage 2 to stage 1
+
+
+def test_the_compound_carrier_turns_with_all_planets_as_points():
+    """Those of stage 2 lie at the sun's centre distance and, the outer ones, at the ring's."""
+    machine = compound_planetary(dict.fromkeys(KINDS, 1.6e9), pairs=PAIRS)
+    mass = dict(zip(machine.dofs, machine.mass.tolist(), strict=True))
+    away = {"p": PAIRS["sun1_p"].a, "b": PAIRS["sun2_b"].a, "c": PAIRS["c_ring"].a}
+    points = [(mass[f"{name}{i}.x"], 1e-3 * a) for name, a in away.items() for i in (1, 2, 3)]
+    want = sum(m for m, _ in points), sum(m * a**2 for m, a in points)
+    assert_allclose([mass["carrier.x"], mass["carrier.theta"]], want, rtol=1e-12)

@@ -45,6 +45,7 @@ def test_channels_units_and_files(tmp_path):
     assert_allclose(np.gradient(motion, r.time)[2:-2], speed[2:-2], atol=5e-3 * np.ptp(speed))
     assert_allclose(np.gradient(speed, r.time)[2:-2], r["a.x acceleration"][2:-2], atol=2e-2 * np.ptp(r["a.x acceleration"]))
     assert_allclose(r["a.x acceleration"], 1000.0 - r["force m"], rtol=1e-6, atol=1e-3)
+    assert_allclose(r["compression m"], machine.G[0] @ [motion, r["b.x"]] - machine.meshes[0].e(r.time)[0], rtol=1e-9)
     units = {"a.x": "m", "b.x velocity": "m/s", "a.x acceleration": "m/s2", "force m": "N", "stiffness m": "N/m"}
     assert {name: r.unit(name) for name in units} == units
     assert len(r.names) == 3 * 2 + 3

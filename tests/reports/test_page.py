@@ -44,7 +44,7 @@ def test_numbers_of_the_page_are_those_of_compare(page):
             assert f">{100 * error:+.1f} %</td>" in text
 
 
-def test_surface_of_the_tooth_points_outwards(page):
+def test_surface_of_the_tooth_points_outwards():
     import numpy as np
 
     from gearfe.reports.tooth import surface

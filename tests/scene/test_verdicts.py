@@ -98,3 +98,10 @@ def test_what_the_herringbone_scene_says_of_its_errors_is_what_runs():
     told = next(one["what"] for one in scene.assumptions if one["what"].startswith("errors"))
     for key in ("profile_error_um", "runout_um", "misplaced_y_um", "backlash_um"):
         assert f"{scene.machine[key]:g} um" in told, key
+
+
+def test_values_that_are_nearly_one_have_no_order():
+    """Two of ours within a thousandth rise only by rounding."""
+    rows = printed("a", 1.0), printed("b", 2.0)
+    assert [row.verdict for row in judged([5.0, 5.004], *rows, trend=True)] == [verdicts.NOT] * 2
+    assert [row.verdict for row in judged([5.0, 5.006], *rows, trend=True)] == [verdicts.TREND] * 2

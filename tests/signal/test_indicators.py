@@ -8,6 +8,7 @@ import gearfe as gf
 from gearfe.signal import indicators as ind
 from gearfe.signal.spectra import Spectrum
 from validation.make import centroid
+from validation.shared import places
 
 RATE, N = 5120.0, 51200  # 10 s, bins 0.1 Hz apart
 F_M, F_FAULT = 280.0, 40.0  # of S0's machine
@@ -178,9 +179,10 @@ def test_printed_349_8_and_352_9_are_impossible():
     assert 315.4 < found < 349.8 < 352.9, "the moderate values lie in the window, the severe ones beyond its end"
 
 
-def test_the_page_of_verdicts_is_up_to_date():
+def test_the_page_says_what_the_formulas_do():
     assert [holds for _, holds, _ in centroid.verdicts(centroid.study())] == [False, False, True, False]
-    assert centroid.page() == centroid.PAGE.read_text(encoding="utf-8"), "remake: python -m validation centroid"
+    text = (places.PAGES / "planetary_pitting.md").read_text(encoding="utf-8")
+    assert "\n".join(centroid.section()) in text, "remake: python -m validation machines planetary_pitting"
 
 
 @pytest.mark.parametrize("noise", [0.3, 3.0, 30.0])

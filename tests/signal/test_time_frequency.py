@@ -27,6 +27,15 @@ def test_a_lasting_sine_has_its_amplitude_in_every_frame(size):
     assert found.values.shape == (found.frequency.size, found.time.size)
 
 
+def test_lines_without_a_twin_are_not_doubled():
+    """At 0 Hz a frame's mean, here 3 in one half of the record and -3 in the other; at Nyquist's frequency the whole line."""
+    values = np.where(np.arange(N) < N // 2, 3.0, -3.0) + 0.5 * np.cos(np.pi * np.arange(N))
+    found = gf.spectrogram(gf.Signal(values, RATE, "N"), 256)
+    apart = np.abs(found.time - TIME[N // 2]) > 256 / RATE
+    assert_allclose(found.values[0, apart], 3.0, rtol=1e-12)
+    assert_allclose(found.values[-1, apart], 0.5, rtol=1e-12)
+
+
 def test_an_echo_in_the_cepstrum():
     """Log(1 + a exp(-i w t)): a / 2 at t, -a**2 / 4 at 2 t."""
     noise = np.random.default_rng(0).standard_normal(N)

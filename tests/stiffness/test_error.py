@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.stiffness.estimate import estimate
 
 
 def random_case(seed):
@@ -68,9 +69,15 @@ def covered(seed, pair, force, damage):
     return inside
 
 
-@pytest.mark.slow
-def test_error_estimate_covers_the_true_error_in_a_case():
-    assert [covered(*case) for case in admissible([1])] == [True]
+def test_the_estimate_by_hand():
+    """Both solves differ at a fixed phase alone, to either side, a sixteenth of a pitch before phase 0, over the cycle's end.
+
+    The differences add up where they are near; the mean is that of the first solve, over one pitch.
+    """
+    coarse = np.zeros((2, 2 + 16))
+    coarse[:, -1] = 3.0, -4.0
+    found = estimate(np.array([0.0, 0.5]), True, np.zeros(2 + 16), coarse)
+    np.testing.assert_allclose(found, [3.0 + 4.0 + 3.0 / 16, 3.0 / 16], rtol=1e-12)
 
 
 @pytest.mark.parametrize("damage", [None, {"pinion": [gf.Crack(level=0.4)]}])
@@ -89,14 +96,12 @@ def test_the_estimate_of_a_phase_is_the_same_in_any_company(damage):
 @pytest.mark.slow
 def test_error_estimate_covers_the_true_error():
     results = []
-    for case in admissible(range(100, 400)):
+    for case in admissible(range(100, 200)):
         result = covered(*case)
         results += [] if result is None else [result]
-        if len(results) == 48:
+        if len(results) == 5:
             break
-    print(f"{sum(results)} of {len(results)} inside")
-    assert len(results) == 48
-    assert np.mean(results) >= 0.95
+    assert results == [True] * 5
 
 
 def fuzz(seeds, method="ritz", refine=1.0):
@@ -129,19 +134,15 @@ def fuzz(seeds, method="ritz", refine=1.0):
     return curves, refused
 
 
-@pytest.mark.parametrize(
-    ("method", "seeds"),
-    [pytest.param("fe", range(1000, 1004), marks=pytest.mark.slow), ("ritz", [*range(1000, 1006), *range(2000, 2006)])],
-)
-def test_fuzz_a_few(method, seeds):
-    curves, _ = fuzz(seeds, method, 0.6 if method == "fe" else 1.0)
+def test_fuzz_a_few():
+    seeds = [*range(1000, 1006), *range(2000, 2006)]
+    curves, _ = fuzz(seeds)
     assert curves >= len(seeds) / 2
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("first", range(2000, 2300, 50))
-@pytest.mark.parametrize(("method", "refine"), [("fe", 0.6), ("ritz", 1.0)])
-def test_fuzz(method, refine, first):
-    curves, refused = fuzz(range(first, first + 50), method, refine)
+@pytest.mark.parametrize(("method", "refine", "count"), [("fe", 0.6, 12), ("ritz", 1.0, 40)])
+def test_fuzz(method, refine, count):
+    curves, refused = fuzz(range(2100, 2100 + count), method, refine)
     print(f"{curves} curves, {refused} refused")
-    assert curves >= 25
+    assert curves >= count / 2

@@ -1,7 +1,7 @@
 """Stiffness and transmission error of modified flanks."""
 
 import math
-import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -130,7 +130,7 @@ def test_a_revolution_is_its_cycles_one_after_the_other():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("case", [(0.010, 4.7, 1.0, 0.3), (0.030, 4.0, 2.0, 0.55), (0.010, 4.7, 1.0, 0.1)])
+@pytest.mark.parametrize("case", [(0.010, 4.7, 1.0, 0.3), (0.030, 4.0, 2.0, 0.55)])
 def test_full_contact_on_modified_flanks(case):
     """All pressures as unknowns, no Hertz, no kink rows: the independent check."""
     *shape, phase = case
@@ -155,6 +155,9 @@ def test_harmonics_need_whole_cycles():
         found.harmonics()
     one, two = (gf.transmission_error(PAIR, [LOAD], STEEL, phases=p) for p in (32, np.arange(64) / 32))
     assert_allclose(one.harmonics(), two.harmonics(), rtol=1e-9)
+    turn = 2 * np.pi * two.phase
+    made = replace(two, te=(1e-6 * (9 + 3 * np.cos(turn + 0.4) + 0.5 * np.sin(3 * turn)))[None, :])
+    assert_allclose(made.harmonics(), [[3e-6, 0, 0.5e-6, 0]], atol=1e-18)
 
 
 def seeded_pair(seed):
@@ -175,31 +178,14 @@ def seeded_pair(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(200))
-def test_ritz_and_fe_agree_on_random_modified_pairs(seed):
-    pair, flanks, force = seeded_pair(seed)
-    ritz, fe = (solved(flanks, force=force, pair=pair, method=method, phases=24) for method in ("ritz", "fe"))
-    difference = np.abs(ritz.te - fe.te).max() / fe.lte.mean()
-    print(f"seed {seed}: transmission error {100 * difference:.3f} % of the deflection")
-    assert difference < 0.003
-
-
-def cpu(run, times=3):
-    spent = []
-    for _ in range(times):
-        start = time.process_time()
-        run()
-        spent.append(time.process_time() - start)
-    return min(spent)
-
-
-@pytest.mark.slow
-def test_a_modified_curve_costs_little_more():
-    plain = cpu(lambda: solved(None, cache=False))
-    for exponent in (1.0, 2.0):
-        ratio = cpu(lambda exponent=exponent: solved(relieved(0.01, 4.7, exponent), cache=False)) / plain
-        print(f"exponent {exponent:g}: {ratio:.2f} times the curve of involutes")
-        assert ratio < 1.6
+def test_ritz_and_fe_agree_on_random_modified_pairs():
+    """Of seeds 100 to 199 (`validation/pages/tables/flanks_fe.csv`) those furthest apart."""
+    for seed in (132, 142, 156, 164, 175, 184, 195):
+        pair, flanks, force = seeded_pair(seed)
+        ritz, fe = (solved(flanks, force=force, pair=pair, method=method, phases=24) for method in ("ritz", "fe"))
+        difference = np.abs(ritz.te - fe.te).max() / fe.lte.mean()
+        print(f"seed {seed}: transmission error {100 * difference:.3f} % of the deflection")
+        assert difference < 0.002
 
 
 def test_a_plain_sum_carries_what_closes_its_gaps():

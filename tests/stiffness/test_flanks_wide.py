@@ -101,7 +101,6 @@ def test_light_loads_leave_the_unloaded_error():
     assert (np.diff(away) > 0).all()
 
 
-@pytest.mark.slow
 def test_crowning_carries_in_the_middle_and_misalignment_at_an_end():
 
     spur = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=30, r_bore=18.0, **RACK))
@@ -152,7 +151,6 @@ def test_poses_and_auto_take_them():
     assert gf.mesh_stiffness(PAIR, 2000.0, STEEL, phases=[0.5], flanks=flanks, order=2).meta["method"] == "ritz3d"
 
 
-@pytest.mark.slow
 def test_a_herringbone_pair_takes_misalignment():
     double = replace(PAIR, gear_1=replace(PAIR.gear_1, b=30.0), gear_2=replace(PAIR.gear_2, b=30.0))
     run = {"pair": double, "face": "herringbone", "phases": [0.3], "force": 4000.0}
@@ -217,8 +215,8 @@ def test_the_pattern_marks_edge_contact(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(6))
-def test_ritz3d_and_fe3d_agree_on_random_modified_pairs(seed):
+def test_ritz3d_and_fe3d_agree_on_a_random_modified_pair():
+    seed = 4  # of those of the page that which is furthest apart
     _, away = flanks_wide.against_fe3d(seed)
     print(f"seed {seed}: transmission error {100 * away:.2f} % of the deflection")
     assert away < 0.01  # coarse hexahedra

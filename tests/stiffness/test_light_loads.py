@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
 import gearfe as gf
 
@@ -80,3 +82,21 @@ def test_sums_of_pairs_keep_their_digits():
     """Constant springs in series: k does not change with the load until another pair joins."""
     light, heavier = (solved("linear relief", 16, method="textbook")[k] for k in (0, 4))
     assert_allclose(light.k, heavier.k, rtol=1e-12)
+
+
+@pytest.mark.parametrize("crowning", [0.005, 0.02])
+def test_crowned_widths_touch_in_hertzs_ellipse(crowning):
+    """One tooth pair, so light that the tooth gives nothing: K. L. Johnson, Contact Mechanics, 4.26-4.28."""
+    loads = 10.0 ** np.arange(-6, -2.5, 0.5)
+    flanks = {"pinion": gf.Flank(lead_crowning=crowning)}
+    curves = gf.mesh_stiffness(PAIR, loads, STEEL, method="ritz3d", phases=np.array([0.8]), flanks=flanks, error=False)
+    modulus, radius = 207e3 / (1 - 0.3**2) / 2, float(PAIR.relative_radius(*PAIR.curvature_radii(0.8)))
+    along, across = 4 * crowning / 20.0**2, 1 / (2 * radius)
+
+    def ratio(e2):  # of the two curvatures of the gap, for an ellipse of the square e2 of its eccentricity
+        return (ellipe(e2) / (1 - e2) - ellipk(e2)) / (ellipk(e2) - ellipe(e2))
+
+    e2 = brentq(lambda e2: ratio(e2) - across / along, 1e-6, 1 - 1e-13)
+    long = (3 * loads * (ellipk(e2) - ellipe(e2)) / (2 * math.pi * modulus * e2 * along)) ** (1 / 3)
+    want = 3 * loads * ellipk(e2) / (2 * math.pi * long * modulus)
+    assert_allclose([1e3 * one.lte[0] for one in curves], want, rtol=0.02)

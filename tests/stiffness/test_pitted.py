@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from checks import pit_loss
-from machines import SHAPE, STEEL, herringbone, lines, tooth
+from machines import SHAPE, STEEL, herringbone, tooth
 from numpy.testing import assert_allclose
 from scipy.signal import hilbert
 
@@ -90,7 +90,7 @@ def pitted_responses():
     steel = (gf.Material(E=210e3, nu=0.278),) * 2
     large = [(pair.pitch_radius_1, 8.0, 10.0, 2.0)]
     row = [(pair.pitch_radius_1, place, 3.0, 2.0) for place in (3.0, 8.0, 13.0)]
-    cases = {teeth: tuple((tooth, large) for tooth in teeth) for teeth in ((0,), (0, 8), (0, 8, 9), (0, 1, 2), (0, 6, 11))}
+    cases = {teeth: tuple((tooth, large) for tooth in teeth) for teeth in ((0,), (0, 8), (0, 1, 2))}
     from gearfe.motion.steady import steady_state
 
     cases["three pits on one tooth"] = ((0, row),)
@@ -108,35 +108,17 @@ def turns(response, channel="pinion.y acceleration", count=8):
 def test_several_pitted_teeth_show_twice_the_turning_frequency_only_half_a_turn_apart(pitted_responses):
     """The claim of S3, that 2 f_r dominates with several pits, is a statement on where they are, not on how many.
 
-    In the squared envelope of the pinion's acceleration the largest line is 2 f_r = 83.3 Hz for teeth 0 and 8 and for 0, 8 and 9
-    (17 teeth cannot be halved: 8 is the nearest), f_r for neighbours and for three pits on one tooth, as for one pit, and 3 f_r
-    for thirds of a turn. Where the impacts are apart the lines are those of one tooth times the factors of their places, within
-    0.15. Verdict: the claim holds for teeth half a turn apart only; it does not hold for several pits in general, and not for
-    several on one tooth, which is how the scene reads the article's case of several pits.
+    In the squared envelope of the pinion's acceleration the largest line is 2 f_r = 83.3 Hz for teeth 0 and 8 (17 teeth cannot
+    be halved: 8 is the nearest), f_r for neighbours and for three pits on one tooth, as for one pit. Where the impacts are
+    apart the lines are those of one tooth times the factors of their places, within 0.15. Verdict: the claim holds for teeth
+    half a turn apart only; it does not hold for several pits in general, and not for several on one tooth, which is how the
+    scene reads the article's case of several pits.
     """
     found = {name: turns(one) for name, one in pitted_responses.items()}
     largest = {name: 1 + int(np.argmax(lines)) for name, lines in found.items()}
-    want = {(0,): 1, (0, 8): 2, (0, 8, 9): 2, (0, 1, 2): 1, (0, 6, 11): 3, "three pits on one tooth": 1}
-    assert largest == want
-    assert found[(0, 8, 9)][1] > 1.8 * found[(0, 8, 9)][0]
+    assert largest == {(0,): 1, (0, 8): 2, (0, 1, 2): 1, "three pits on one tooth": 1}
     assert found[(0, 8)][1] > 7 * found[(0, 8)][0]
-    for teeth in ((0, 8), (0, 6, 11)):
-        assert_allclose(found[teeth][:4] / found[(0,)][:4], [pattern(teeth, n) for n in (1, 2, 3, 4)], atol=0.15)
-
-
-@pytest.mark.slow
-def test_twice_the_turning_frequency_in_the_mesh_force(pitted_responses):
-    """Lines of the force itself: they grow up to the 13th, where the pair resonates; f_r and 2 f_r are below 1 % of it.
-
-    2 f_r is never its largest line. What teeth half a turn apart do to it is to raise even lines over odd ones.
-    """
-    force = {name: lines(one, "force mesh", 1 / 0.024, range(1, 17)) for name, one in pitted_responses.items()}
-    one, three = force[(0,)], force[(0, 8, 9)]
-    for found in (one, three):
-        assert 1 + int(np.argmax(found)) == 13
-        assert found[:2].max() < 0.01 * found.max()
-    gains = three / one
-    assert gains[[1, 3, 5]].min() > 2.5 * gains[[2, 4, 6]].max()
+    assert_allclose(found[(0, 8)][:4] / found[(0,)][:4], [pattern((0, 8), n) for n in (1, 2, 3, 4)], atol=0.15)
 
 
 def test_impact_law_of_the_spur_stage_runs(spur_stage):

@@ -60,10 +60,6 @@ def part(s):
     return crack(s, width=(0.0, 4 * s))
 
 
-def slope(s):
-    return crack(s, width=(0.0, 8 * s), ends=(1.0, 0.3))
-
-
 def runs_out(s):
     return crack(s, width=(0.0, 6 * s), ends=(1.0, 0.0), rounded=True)
 
@@ -88,17 +84,13 @@ def alike(case, scales, *, rtol=1e-6):
 
 SECTIONS = {
     "energy": ("ritz", pair, {"error": True}),
-    "energy, crack": ("ritz", pair, {"damage": crack}),
     "energy, flanks": ("ritz", pair, {"flanks": flanks}),
     "energy, ring": ("ritz", ring, {}),
-    "finite elements": ("fe", pair, {"error": True}),
     "finite elements, crack": ("fe", pair, {"damage": crack}),
     "finite elements, flanks": ("fe", pair, {"flanks": flanks}),
     "finite elements, ring": ("fe", ring, {}),
     "coupled beams": ("coupled", pair, {}),
     "textbook, crack": ("textbook", pair, {"damage": crack}),
-    "textbook, pits": ("textbook", pair, {"damage": pits}),
-    "textbook, helical": ("textbook", lambda s: pair(s, 15.0), {"flanks": flanks_along, "face": "helical"}),
     "published, crack": ("published", pair, {"damage": crack}),
 }
 CHEAP = "energy", "energy, flanks", "finite elements, crack", "coupled beams", "textbook, crack", "published, crack"
@@ -109,9 +101,7 @@ SOLIDS = {
     "ring": ("ritz3d", ring, {}),
     "pits": ("ritz3d", lambda s: pair(s, 15.0), {"damage": pits}),
     "flanks": ("ritz3d", lambda s: pair(s, 15.0), {"flanks": flanks_along}),
-    "crack": ("ritz3d", lambda s: pair(s, 15.0), {"damage": crack}),
     "crack over a part": ("ritz3d", lambda s: pair(s, 15.0), {"damage": part}),
-    "sloping crack": ("ritz3d", pair, {"damage": slope}),
     "crack that runs out": ("ritz3d", pair, {"damage": runs_out}),
 }
 
@@ -140,7 +130,7 @@ def test_hexahedra_of_another_size_are_alike(beta, cracked):
         return found.near | found.far
 
     one = influences(1.0)
-    for s in SCALES:
+    for s in SCALES[:2]:
         other = influences(s)
         assert set(other) == set(one)
         for key, values in one.items():

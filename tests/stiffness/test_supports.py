@@ -7,6 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.stiffness.plausible import REFUSE
+from gearfe.stiffness.supported import supports_of
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -78,7 +80,6 @@ def test_a_tilting_shaft_is_the_misalignment_it_makes():
     assert_allclose(found.cells[0].load, cells.load, atol=1e-5 * cells.load.max())
 
 
-@pytest.mark.slow
 def test_the_load_of_helical_gears_moves_to_the_stiff_side_and_mirrors():
     right = gf.Shaft(segments=[(80, 30)], bearings=(30, 80), gear=10, material=STEEL, torque=80)
     one, two = (
@@ -110,7 +111,6 @@ def test_reactions_of_a_helical_gear_do_the_work_of_its_load():
         assert_allclose(found.supports, work / force, rtol=1e-9)
 
 
-@pytest.mark.slow
 def test_herringbone_halves_share_a_hub():
     """Mirrored halves cancel each other's axial force, so that an axial spring and one that tilts change nothing."""
     pair = helical(1, b=12.0)
@@ -224,3 +224,15 @@ def test_the_error_of_the_teeth_alone():
     moved = 1 / (1 / (found.k + off) - SERIES) - 1 / (1 / found.k - SERIES)
     assert_allclose(teeth.error, 1e6 * moved, rtol=1e-4)
     assert (teeth.error > 1.5 * found.error).all()
+
+
+def test_what_a_hub_tilts_under_a_force_counts():
+    """Shift and tilt by the moment take 0.3 each of what is allowed, and the coupling, at its largest, 0.6 or more again."""
+    force, gear = 2000.0, PAIR.gear_1
+    limit, arm = REFUSE * gear.m_n, gear.b / 4
+    radial, tilt = force / (0.3 * limit), force * arm * gear.b / 2 / (0.3 * limit)
+    free = gf.Support(radial=radial, tilt=tilt)
+    assert supports_of(PAIR, {"pinion": free}, [force]) == (free, None)
+    tilting = gf.Support(radial=radial, tilt=tilt, coupling=0.99 / math.sqrt(radial * tilt))
+    with pytest.raises(ValueError, match="give way by"):
+        supports_of(PAIR, {"pinion": tilting}, [force])

@@ -98,7 +98,6 @@ def test_auto_says_which_method_and_why(steel):
         assert chosen(spur, damage={"wheel": [gf.Crack(level=0.3, tooth=9)]})[0] == "ritz"
 
 
-@pytest.mark.slow
 def test_more_damage_is_not_stiffer(healthy, steel):
     cracks = [curve_of(steel, {"pinion": [gf.Crack(level=level)]}).k for level in (0.2, 0.5)]
     sizes = [{"axes": (0.4, 0.7)}, {"axes": (0.8, 1.5)}, {"axes": (1.2, 2.5)}]
@@ -215,7 +214,6 @@ def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
         wide._coarser((), {}, 0.5, False, None)
 
 
-@pytest.mark.slow
 def test_overlap_carries_pairs_whose_section_loses_contact(steel):
     """Contact ratio 0.999 at 45 degrees: solved as steadily as one of 1.001, refused where nothing knows of the width."""
 

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.studies.errormap import CRACKED, HEALTHY, RANGES, build
+from gearfe.studies.errormap import CRACKED, HEALTHY, RANGES, ErrorMap, build
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))
@@ -131,3 +131,10 @@ def test_your_own_model_is_in_the_map(found):
 def test_impossible_number_of_pairs(pairs):
     with pytest.raises(ValueError, match="number of pairs"):
         gf.error_map(pairs)
+
+
+def test_models_too_soft_count_as_those_too_stiff():
+    """Of four errors two are within 3 %, whichever way."""
+    columns = {"load": np.ones(4), "mine mean": np.array([-0.5, -0.02, 0.02, 0.5])}
+    made = ErrorMap(columns, ("mine",), np.zeros(4), 0.0, 1)
+    assert made.bands("mine")[3:] == (0.5, 4)

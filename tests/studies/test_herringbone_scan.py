@@ -22,7 +22,7 @@ def test_nodes_are_those_of_this_code(name, ritz):
     assert_allclose(work(*case), ritz.known[name], rtol=2e-5)
 
 
-@pytest.mark.parametrize("place", [pytest.param(0, marks=pytest.mark.slow), 5, 11])
+@pytest.mark.parametrize("place", [5, 11])
 def test_readings_are_those_of_this_code(place, ritz):
     row = scan.load()[place]
     reading = scan.readings()[int(row["number"])]

@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.studies.by_zone import Comparison
 
 
 def test_a_pair_without_a_scene_is_compared_as_in_one():
@@ -23,6 +24,22 @@ def test_a_pair_without_a_scene_is_compared_as_in_one():
     assert bare.reference.meta["force_N"] == pytest.approx(chosen.force)
     assert bare.reference.k.min() < 0.97 * np.interp(1.0, [0, 1], [one.reference.k.max()] * 2)
     assert "coupled" not in bare.curves
+
+
+def test_a_model_that_is_a_tenth_too_stiff_is_told_so():
+    """Two pairs touch over half of the cycle, 300 N/um for 200; the other model says 330 for 220."""
+    phase, none = np.arange(8) / 8, np.zeros((8, 1))
+    k = np.where(phase <= 0.5, 3e8, 2e8)
+    truth, stiffer = (
+        gf.StiffnessCurve(phase, part * k, part * k, none[:, 0], np.array([0]), none, none, meta={"eps_alpha": 1.5})
+        for part in (1.0, 1.1)
+    )
+    made = Comparison("21/31", {"fe": truth, "mine": stiffer}, {"fe": 1.0, "mine": 1.0})
+    rows = {zone: (value, others["mine"]) for zone, value, _, others in made.rows()}
+    assert list(rows) == ["single", "double", "mean", "max"]
+    for value, (own, error) in rows.values():
+        assert_allclose([own, error], [1.1 * value, 0.1], rtol=1e-12)
+    assert "+10.0 %" in made.table()
 
 
 @pytest.mark.parametrize(

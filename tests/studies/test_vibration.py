@@ -49,7 +49,7 @@ def test_mesh_forces_carry_the_torque(found):
 
 
 @pytest.mark.slow
-def test_the_reference_integrator_agrees(found):
+def test_the_reference_integrator_agrees():
     short = responses(SCENE, duration=0.02, phases=32)["healthy"]
     slow = responses(SCENE, duration=0.02, phases=32, method="DOP853")["healthy"]
     fast, truth = (one["sun2.theta"] for one in (short, slow))

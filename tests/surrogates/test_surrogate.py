@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.surrogates.fit import held_back_error, solved
+from gearfe.surrogates.fit import _regression, held_back_error, solved
+from gearfe.surrogates.zoned import DEGREE, breaks_of, phases_of, series_of
 from gearfe.surrogates.zoned import at as value_at
-from gearfe.surrogates.zoned import breaks_of, phases_of, series_of
 
 LOADS = {"force": (600.0, 3000.0)}
 
@@ -31,6 +31,21 @@ def test_error_on_cases_of_our_own_is_as_stated(fitted, steel):
     assert fitted.error["worst"] < 5e-3
     assert error["mean"] < 2 * fitted.error["mean"]
     assert error["worst"] < 3 * fitted.error["worst"]
+
+
+def test_the_error_of_cases_left_out_is_that_of_fits_without_them():
+    """The formula of the leverage against as many fits as there are cases, each without one."""
+    rng = np.random.default_rng(7)
+    points = rng.uniform(-1, 1, (24, 1))
+    values = np.exp(points * np.array([0.3, 0.9, -0.5])) + 0.01 * rng.standard_normal((24, 3))
+    powers, _, left_out = _regression(points, values, 1)
+    terms = np.polynomial.legendre.legvander(points[:, 0], int(powers.max()))[:, powers[:, 0]]
+    away = []
+    for i in range(24):
+        rest = np.arange(24) != i
+        weights = np.linalg.lstsq(terms[rest], values[rest], rcond=None)[0]
+        away.append(values[i, 1:] - terms[i] @ weights[:, 1:])
+    assert_allclose(left_out, np.sqrt((np.array(away) ** 2).mean() * (DEGREE + 1)), rtol=1e-8)
 
 
 def test_a_worse_surrogate_says_so(fitted, steel):

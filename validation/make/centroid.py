@@ -1,17 +1,10 @@
-"""The sideband centroid SC of articles S0 and S1, in both printed definitions, against severity and impact level."""
-
-from pathlib import Path
+"""A part of the page `planetary_pitting`: the sideband centroid SC of S0 and S1, in both definitions, on synthetic lines."""
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 from gearfe.signal import indicators as ind
 
-from ..shared import table_rows
-from ..shared.places import PAGES
-
-PAGE = PAGES / "centroid.md"
 RATE, SECONDS = 1000.0, 10.0  # S0: 10 s, which sets the distance of the bins
 F_M, F_FAULT, F_IMPACT = 280.0, 40.0, 2.0  # Hz; the articles print no frequency of their impacts
 SEVERITY = {"mild": 0.1, "moderate": 0.2, "severe": 0.4}  # amplitude of the fault sidebands, of the mesh line
@@ -67,22 +60,16 @@ def verdicts(found):
     )
 
 
-def judged():
-    """Rows of the simulated machine on the articles' claims about SC: there they are judged, see `planetary_pitting.md`."""
-    return [row for row in table_rows.read("planetary_pitting") if row.id == "statements" and row.case.startswith("SC by")]
-
-
-def page():
-    """The page as Markdown."""
+def section():
+    """Lines of the page."""
     found = study()
     lines = [
-        "# Sideband centroid SC",
+        "## What the two formulas of SC do",
         "",
         "S0: `sum(f E) / sum(E)`, f frequency, E amplitude squared [Hz]. S1, with the roles of f and E swapped: amplitude",
         "weighted by frequency [here mN]. Both from 240 to 320 Hz (f_m 280, f_fault 40 Hz), Hann window, 10 s at 1 kHz.",
         "Synthetic: mesh line of 1 N; fault sidebands of 0.1, 0.2, 0.4 N (mean of both); impact sidebands 2 Hz apart, the first",
         "0, 0.1, 0.3 N (assumed: the articles print neither rate nor size of their impacts); noise 0.006 N.",
-        "Rebuild: `python -m validation centroid`.",
         "",
         f"| sidebands | severity | {' | '.join(f'{form}, impacts {name}' for form in ('S0', 'S1') for name in IMPACT)} |",
         "|---|---|" + "---|" * 2 * len(IMPACT),
@@ -91,24 +78,6 @@ def page():
         for j, severity in enumerate(SEVERITY):
             cells = [f"{value:.1f}" for value in found[i, j, :, 0]] + [f"{value:.3f}" for value in found[i, j, :, 1]]
             lines.append(f"| {lean} | {severity} | {' | '.join(cells)} |")
-    lines += ["", "| printed | mild | moderate | severe |", "|---|---|---|---|"]
-    lines += [f"| {name} [Hz] | {' | '.join(map(str, row))} |" for name, row in PRINTED.items()]
-    lines += ["", "What the formulas do where sidebands of a given size are all that changes:", ""]
-    lines += ["| property | verdict | why |", "|---|---|---|"]
+    lines += ["", "Where sidebands of a given size are all that changes:", "", "| property | verdict | why |", "|---|---|---|"]
     lines += [f"| {claim} | {'holds' if holds else 'does not hold'} | {why} |" for claim, holds, why in verdicts(found)]
-    lines += [
-        "",
-        "What the articles claim is of a machine with pits and impacts, and is judged there ([page](planetary_pitting.md)):",
-        "",
-    ]
-    lines += ["| claim | printed | gearfe | verdict |", "|---|---|---|---|"]
-    said = {1.0: "yes", 0.0: "no"}
-    lines += [f"| {row.case} | {said[row.printed]} | {said[row.ours]} | {row.verdict} |" for row in judged()]
-    return "\n".join(lines) + "\n"
-
-
-def run():
-    """Write the page."""
-    with written(PAGE) as name:
-        Path(name).write_text(page(), encoding="utf-8")
-    print(f"wrote {PAGE.name}")
+    return [*lines, ""]

@@ -1,21 +1,17 @@
-"""What the energy model costs in three dimensions, over teeth, width, helix angle, order and phases, with exponents."""
+"""A part of the page `speed`: cost of the energy model in three dimensions over teeth, width, helix angle, order and phases."""
 
 import json
 import math
 import subprocess
 import sys
 import time
-from pathlib import Path
 
-import matplotlib
 import numpy as np
 
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
-from gearfe.files import written
 
-from ..shared import machine
-from ..shared.places import PAGES, ROOT
+from ..shared.places import ROOT
 
 STANDARD = {"teeth": 24, "b/m": 8, "helix angle": 16, "order": 3, "phases": 16}
 OVER = {
@@ -27,7 +23,6 @@ OVER = {
     "phases": (16, 64, 256, 1024),
 }
 SPUR = {"helix angle": 0}  # of rows called so
-PICTURE = "cost_three.png"
 
 
 def measure(setting):
@@ -45,62 +40,19 @@ def measure(setting):
     return time.process_time() - started
 
 
-def run():
-    """Measure, each setting in a process of its own, write `cost_three.md` with its picture, and print the page."""
+def seconds():
+    """Measure, each setting in a process of its own: CPU seconds by what is varied."""
     found = {}
     for name, values in OVER.items():
         fixed = STANDARD | (SPUR if name.endswith(", spur") else {})
-        found[name] = [_apart(fixed | {_setting(name): value}) for value in values]
+        found[name] = [_apart(fixed | {name.removesuffix(", spur"): value}) for value in values]
         print(name, np.round(found[name], 2), flush=True)
-    _draw(found)
-    standard = ", ".join(f"{name} {value}" for name, value in STANDARD.items())
-    lines = ["# Cost in three dimensions", ""]
-    lines += [
-        f"Made by `python -m validation cost_three` on {machine.describe()}. A healthy pair by `ritz3d`, the",
-        f"wheel with one tooth more, nothing known before: {standard}; one of them is varied at a time,",
-        "once more for spur gears, whose even and odd functions along the width are solved for apart.",
-        "CPU seconds; exponent: of the last doubling, or of the last step of the order.",
-        "",
-        "| varied | values | CPU seconds | exponent |",
-        "|---|---|---|---|",
-    ]
-    for name, values in OVER.items():
-        rise = math.log(found[name][-1] / found[name][-2]) / math.log(values[-1] / values[-2])
-        lines.append(f"| {name} | {_list(values)} | {_list(f'{t:.3g}' for t in found[name])} | {rise:.1f} |")
-    lines += ["", f"![CPU seconds over each of them]({PICTURE})", ""]
-    with written(PAGES / "cost_three.md") as name:
-        Path(name).write_text("\n".join(lines), encoding="utf-8")
-    print("\n".join(lines))
-
-
-def _setting(name):
-    return name.removesuffix(", spur")
-
-
-def _list(values):
-    return ", ".join(map(str, values))
+    return found
 
 
 def _apart(setting):
     command = [sys.executable, "-m", "validation.make.cost_three", json.dumps(setting)]
     return float(subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout)
-
-
-def _draw(found):
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
-    for name, values in OVER.items():
-        axes.loglog(np.array(values) / STANDARD[_setting(name)], found[name], "o-", label=name)
-    axes.set_xlabel(
-        "in parts of the standard case: " + ", ".join(f"{name} {value}" for name, value in STANDARD.items()), fontsize=8
-    )
-    axes.set_ylabel("CPU seconds of a pair")
-    axes.grid(True, which="both", alpha=0.3)
-    axes.legend()
-    figure.savefig(PAGES / PICTURE, dpi=120)
-    plt.close(figure)
 
 
 if __name__ == "__main__":

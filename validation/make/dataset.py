@@ -1,4 +1,4 @@
-"""A worked example: a small classifier trained on a simulated data set, and what it finds by severity. Needs scikit-learn."""
+"""A part of the page `detection`: a small classifier trained on a simulated data set. Needs scikit-learn."""
 
 import tempfile
 from pathlib import Path
@@ -6,11 +6,9 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 
-from ..shared.places import PAGES
+from ..shared.kept_rows import kept
 
-PAGE = PAGES / "dataset.md"
 SEVERITIES = [0.05, 0.1, 0.2, 0.4]
 PLAN = {
     "title": "cracks of the sun among machines that differ",
@@ -31,46 +29,52 @@ PLAN = {
 }
 ALARMS = 0.05  # of healthy machines taken for faulty, set on the validation side
 
-TEXT = """\
-# A classifier trained on simulated windows
 
-Made by `python -m validation dataset` (needs scikit-learn). `gf.dataset` on the machine of `planetary_pitting`, a sensor on the
-ring: {machines} machines, {healthy} of them healthy, that differ in speed and torque (3 % up and down), run-out (5 to 20 um),
-profile error (0.2 to 1 um) and the place of a planet (up to 20 um), each with three windows of 0.2 s. Half of the machines train
-a random forest on line amplitudes, envelope lines and indicators of single windows; a quarter sets the threshold at
-{alarms:.0f} % false alarms of machines; on the rest:
+def section(again=()):
+    """Lines of the page."""
+    found = kept("detection", "classifier", classified, again)
+    return [
+        "## By vibration, with a classifier",
+        "",
+        "`gf.dataset` on the machine of `planetary_pitting`, a sensor on the ring:",
+        f"{found['machines']} machines, {found['healthy']} of them healthy, that differ in speed and torque (3 % up and",
+        "down), run-out",
+        "(5 to 20 um), profile error (0.2 to 1 um) and the place of a planet (up to 20 um), each with three windows of 0.2 s.",
+        "Half of",
+        "the machines train a random forest on line amplitudes, envelope lines and indicators of single windows; a quarter",
+        "sets the",
+        f"threshold at {100 * ALARMS:.0f} % false alarms of machines; on the rest:",
+        "",
+        *found["table"],
+        "",
+        "A machine is judged by the mean over its windows. In brackets: 95 % intervals for that many machines (Wilson). AUC",
+        "is the",
+        "chance that a cracked machine is rated above a healthy one; 0.5 is a guess. The loss is the largest loss of mesh",
+        "stiffness.",
+        "",
+        "**It is easy here, and a bound.** The scatter of these machines makes lines at turning and mesh frequencies only, so",
+        "that",
+        "lines at the frequency of the fault are the crack's alone until noise covers them. Real flanks differ from tooth to",
+        "tooth",
+        "and put lines of their own there; rates on measured signals will be lower. Nothing here says how it would do on a real",
+        "gearbox, whose path to the sensor, other machinery and scatter differ; with less scatter the same cracks are easier",
+        "to find.",
+        "",
+        "What leakage would have claimed:",
+        *found["leak"],
+        "Where both agree, the classes lie so far apart that to know the machine adds nothing.",
+    ]
 
-{table}
 
-A machine is judged by the mean over its windows. In brackets: 95 % intervals for that many machines (Wilson). AUC is the chance
-that a cracked machine is rated above a healthy one; 0.5 is a guess. The loss is the largest loss of mesh stiffness.
-
-**It is easy here, and a bound.** The scatter of these machines makes lines at turning and mesh frequencies only, so that lines at
-the frequency of the fault are the crack's alone until noise covers them. Real flanks differ from tooth to tooth and put lines of
-their own there; rates on measured signals will be lower.
-
-## What leakage would have claimed
-
-{leak}
-Where both agree, the classes lie so far apart that to know the machine adds nothing.
-
-Simulated machines alone: nothing here says how it would do on a real gearbox, whose path to the sensor, other machinery and
-scatter differ. The scatter above is assumed; with less of it the same cracks are easier to find, with more harder.
-"""
-
-
-def run():
-    """Write `dataset.md` and print it."""
+def classified():
+    """The tables, as lines."""
     with tempfile.TemporaryDirectory() as folder:
         made = gf.dataset(PLAN, Path(folder) / "set", workers=1, progress=_said)
         labels = made.labels()
         losses = labels.groupby("severity")["loss_max"].mean()
         table, leak = _table(made, losses), _leak(made)
     healthy = labels.query("severity == 0")["condition"].nunique()
-    text = TEXT.format(machines=labels["condition"].nunique(), healthy=healthy, alarms=100 * ALARMS, table=table, leak=leak)
-    with written(PAGE) as name:
-        Path(name).write_text(text, encoding="utf-8")
-    print(text)
+    return {"machines": labels["condition"].nunique(), "healthy": healthy, "table": table, "leak": leak}
 
 
 def _said(done, total):
@@ -130,7 +134,7 @@ def _table(made, losses):
             cells.append(f"{_share(own > limit)}, AUC {np.mean(own[:, None] > healthy[None, :]):.2f}")
         ratio = "none added" if not noise else f"{labels['snr_dB'].median():.0f} dB"
         rows.append([f"{noise:g}", ratio, _share(healthy > limit), *cells])
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)
+    return [f"| {' | '.join(row)} |" for row in rows]
 
 
 def _share(hits):
@@ -155,7 +159,7 @@ def _leak(made):
     for train, other in ((np.flatnonzero(honest), np.flatnonzero(test)), (every[mixed], every[~mixed])):
         (rating,) = learned((found[train], faulty[train]), (found[other],))
         scores.append(balanced_accuracy_score(faulty[other], rating > 0.5))
-    return (
-        f"Balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many: {100 * scores[0]:.1f} % if all\n"
-        f"windows of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random."
-    )
+    return [
+        f"balanced accuracy over single windows (noise {noise:g} m/s2), trained on as many: {100 * scores[0]:.1f} % if all",
+        f"windows of a machine lie on one side, {100 * scores[1]:.1f} % if windows are dealt out at random.",
+    ]

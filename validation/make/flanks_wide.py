@@ -56,7 +56,7 @@ def read():
         return {int(row["seed"]): row for row in csv.DictReader(file)}
 
 
-def run():
+def reference():
     """Compute the rows that are not on file."""
     rows = read()
     for seed in SEEDS:
@@ -86,7 +86,8 @@ def text():
         f"`ritz` against `fe` on {len(away)} random pairs: tip relief (linear to parabolic), crowning and slope on both gears,",
         "24 phases each: largest difference of the transmission error over the mean deflection. "
         f"Median {np.median(list(away.values())):.3f} %, largest {away[worst]:.3f} % (seed {worst}).",
-        f"Seeds {min(away)} to {max(away)}, made by `pytest -m slow -k random_modified tests/stiffness/test_flanks.py`",
+        f"Seeds {min(away)} to {max(away)} of `seeded_pair` in `tests/stiffness/test_flanks.py`;",
+        "a slow test there repeats the furthest apart",
         "([tables/flanks_fe.csv](tables/flanks_fe.csv)).",
         "",
         "## Along the width",
@@ -114,7 +115,7 @@ def _section():
     lines = [
         "",
         "Spur gears 24/36 of m 3, 30 mm wide, 150 N/mm, the same profile along the width, three dimensions beside the section",
-        "(plane strain is the stiffer one, see [three.md](three.md)): peak-to-peak over 16 phases, and the mean error.",
+        "(plane strain is the stiffer one): peak-to-peak over 16 phases, and the mean error.",
         "",
         "| relief on both gears | `ritz` [um] | `ritz3d` [um] | mean, `ritz3d` over `ritz` |",
         "|---|---|---|---|",

@@ -1,20 +1,15 @@
-"""Hard cases in three dimensions: each ends in a curve with an error estimate, or in an error that says why not."""
+"""A part of the page `hard`: cases in three dimensions."""
 
 import math
-import time
 import warnings
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 
-from ..shared import machine
-from ..shared.places import PAGES
+from ..shared.kept_rows import kept
 
-PAGE = PAGES / "hard_three.md"
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 PHASES = np.array([0.1, 0.35, 0.6, 0.85])  # not 0, where a spur pair enters at once
@@ -93,50 +88,43 @@ def cases():
 
 
 def outcome(case):
-    """What a case ended in: mean k/b, error and seconds, or the error it was refused with."""
+    """What a case ended in: mean k/b and error, or the error it was refused with."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             case = {"material": STEEL, "phases": PHASES, "method": "ritz3d"} | case()
             case = {"force": 100.0 * case["pair"].gear_1.b} | case
-            started = time.process_time()
-            gf.mesh_stiffness(**case)
-            seconds = time.process_time() - started
             curve = gf.mesh_stiffness(error=True, **case)
         except (ValueError, RuntimeError) as error:
-            return f"{type(error).__name__}: {error} | | | "
+            return f"{type(error).__name__}: {error} | | "
     warned = "".join(f"; warned: {message}" for message in dict.fromkeys(str(w.message) for w in caught))
     width = curve.meta["width_mm"]
     values = f"{curve.k.mean() / width / 1e6:.3f}", f"{(curve.k / width / 1e6).min():.3f}{warned}"
-    return " | ".join([*values, f"{100 * (curve.error / curve.k).max():.2f} %", f"{seconds:.1f}"])
+    return " | ".join([*values, f"{100 * (curve.error / curve.k).max():.2f} %"])
 
 
 def _listed(phases):
     return ", ".join(f"{p:g}" for p in phases)
 
 
-def run():
-    """Run all cases, write `hard_three.md`, print it."""
+def section(again=()):
+    """Lines of the page."""
     lines = [
-        "# Hard cases, 3-D",
+        "## In three dimensions",
         "",
-        f"Made by `python -m validation hard_three` on {machine.describe()}.",
         "18/27 teeth of m_n 2 mm, 16 degrees, b 12 mm, bores at 0.55 of the root radius, 100 N/mm, steel, `ritz3d`, unless the",
         f"row says otherwise; phases {_listed(PHASES)}, of pits and cracks {_listed(PITTED)}. Damage is on the pinion's",
-        "tooth 0. Error: the largest estimate over the phases; seconds: of the processor, without the estimate; gears of earlier",
-        "rows are known.",
+        "tooth 0. Error: the largest estimate over the phases.",
         "",
-        "| case | mean k/b [N/(mm um)] | least | error | seconds |",
-        "|---|---|---|---|---|",
+        "| case | mean k/b [N/(mm um)] | least | error |",
+        "|---|---|---|---|",
     ]
     for name, case in cases():
-        lines.append(f"| {name} | {outcome(case)} |")
-        print(lines[-1], flush=True)
-    lines += [
+        lines.append(f"| {name} | {kept('hard_three', name, lambda case=case: {'cells': outcome(case)}, again)['cells']} |")
+    return [
+        *lines,
         "",
         "Thin helical gears are soft because their tooth force has an axial part, which bends a disc held at its bore; as thin",
         "spur gears are not. Rims are held outside: thinner ones are stiffer. Where a pit takes all of a pair's contact line,",
         "the next pairs carry the load beyond their path of contact, across the gap that their tip corners have there.",
     ]
-    with written(PAGE) as name:
-        Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -20,6 +20,12 @@ PAGES = {  # page and its module: scene
     "helical_pitting": "helical_pitting",
     "herringbone_machine": "herringbone",
 }
+ARTICLES = {
+    "planetary_pitting": "articles S0 and S1",
+    "compound_planetary": "article S2",
+    "helical_pitting": "article S3",
+    "herringbone_machine": "article S4",
+}
 ELSEWHERE = {  # references of a scene that another page computes
     "stiffness_analytical": "herringbone",
     "stiffness_fe": "herringbone",
@@ -77,7 +83,9 @@ def text(page):
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
     lines = [
-        f"# {scene.title}: printed and found",
+        f"# {scene.title}: which printed numbers of {ARTICLES[page]} are reproduced?",
+        "",
+        f"{Found(rows).counted()}.",
         "",
         f"**The article claims** {claim}. **gearfe finds** {find}. **What decides it**: {decide}.",
         "",

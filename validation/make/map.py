@@ -1,22 +1,20 @@
-"""The error map: closed forms against the energy model over thousands of gear pairs, and that model against finite elements."""
+"""The page `map`: closed forms against the energy model over random pairs, that model against finite elements, known pairs."""
 
 import sys
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 from gearfe.studies.errormap import CRACKED, HEALTHY, LOADS, ZONES, build
 
-from ..shared import machine
+from ..shared import page
+from ..shared.kept_rows import check, kept
 from ..shared.places import PAGES
+from . import formulations
 
-PAGE = PAGES / "map.md"
 PICTURE = PAGES / "map.png"
-DATA = PAGES / "map.csv"
-PAIRS = 2000
+PAIRS = 1000
 # corners of the map: tooth numbers, pressure angle, shift, bore, load, crack
 CORNERS = product(((12, 12), (80, 120)), (17.5, 25.0), ((0.5, 0.2), (0.0, -0.2)), (0.2, 0.9))
 SPLITS = {
@@ -35,53 +33,96 @@ SPLITS = {
 CRACKS = {"level below 0.1": (1e-9, 0.1), "0.1 to 0.3": (0.1, 0.3), "0.3 to 0.5": (0.3, 0.5), "above 0.5": (0.5, 1.0)}
 
 
-def run():
-    """Write `map.md`, `map.png` and `map.csv`, and print the page."""
-    corners = _corners()
+def sampled():
+    """Tables of the random pairs, as lines; draws the picture."""
     found = gf.error_map(PAIRS, progress=_progress)
-    found.to_csv(DATA)
     found.plot(PICTURE)
-    lines = [
-        f"# Error map: {2 * PAIRS} gears",
+    healthy, cracked, parts = [], [], []
+    for name in HEALTHY:
+        healthy.append(f"| {name} | " + " | ".join(_cell(found.bands(name, zone, crack=(0, 0))) for zone in ZONES) + " |")
+    for part, limits in SPLITS.items():
+        cells = [_cell(found.bands(name, "mean", crack=(0, 0), **limits)) for name in HEALTHY]
+        parts.append(f"| {part} | " + " | ".join(cells) + " |")
+    for name in CRACKED:
+        cracked.append(f"| {name} | " + " | ".join(_cell(found.bands(name, "single", crack=c)) for c in CRACKS.values()) + " |")
+    return {
+        "pairs": PAIRS,
+        "rows": int(found.columns["load"].size),
+        "healthy": healthy,
+        "parts": parts,
+        "cracked": cracked,
+        "extended": _three(found.bands("extended", "mean", crack=(0, 0))),
+        "within": {name: float(found.bands(name, "mean", crack=(0, 0))[3]) for name in HEALTHY},
+        "held": {name: _held(found, name) for name in HEALTHY},
+    }
+
+
+def section(found):
+    """Lines of the random pairs, of what `sampled` gives."""
+    return [
+        "## Random healthy pairs",
         "",
-        f"Made by `python -m validation map` on {machine.describe()}: {PAIRS} external pairs, {found.columns['load'].size} rows",
-        f"of pair, load and crack, in {found.elapsed:.0f} s by {found.workers} processes of one thread,",
-        f"{1e3 * np.median(found.seconds):.0f} ms per pair with all its loads and models. The rows are written to `map.csv`,",
-        "which is not kept: the sample is fixed (`gearfe.error_map`, seed 0). Loads are F / (b m_n). Errors of k against `ritz`,",
-        "without contact beyond the path of contact.",
-        "",
-        "## Healthy gears",
-        "",
-        "Error at 5 / 50 / 95 % of the rows; share of the rows within 3 %.",
+        f"{found['pairs']} external pairs, {found['rows']} rows of pair, load and crack; the sample is fixed",
+        "(`gearfe.error_map`,",
+        "seed 0). Loads are F / (b m_n). Errors of k against `ritz`, without contact beyond the path of contact: at 5 / 50 /",
+        "95 %",
+        "of the rows; share of the rows within 3 %.",
         "",
         "| formulation | " + " | ".join(ZONES) + " |",
         "|---" * (len(ZONES) + 1) + "|",
-    ]
-    for name in HEALTHY:
-        lines.append(f"| {name} | " + " | ".join(_cell(found.bands(name, zone, crack=(0, 0))) for zone in ZONES) + " |")
-    lines += [
+        *found["healthy"],
         "",
         "Contact beyond the path of contact, which none of them knows, adds",
-        f"{_three(found.bands('extended', 'mean', crack=(0, 0)))} % to the mean k.",
-        "",
-        "Mean over the cycle, by part of the map:",
+        f"{found['extended']} % to the mean k. Mean over the cycle, by part of the map:",
         "",
         "| part | " + " | ".join(HEALTHY) + " |",
         "|---" * (len(HEALTHY) + 1) + "|",
+        *found["parts"],
+        "",
+        f"![median error by load and bore]({PICTURE.name})",
+        "",
+        "## Random cracked pinions",
+        "",
+        "Over the engagement of the cracked tooth, where it carries alone (single):",
+        "",
+        "| formulation | " + " | ".join(CRACKS) + " |",
+        "|---" * (len(CRACKS) + 1) + "|",
+        *found["cracked"],
     ]
-    for part, limits in SPLITS.items():
-        cells = [_cell(found.bands(name, "mean", crack=(0, 0), **limits)) for name in HEALTHY]
-        lines.append(f"| {part} | " + " | ".join(cells) + " |")
-    lines += ["", "![median error by load and bore](map.png)", "", "## Cracked pinions", ""]
-    lines += ["Over the engagement of the cracked tooth, where it carries alone (single):", ""]
-    lines += ["| formulation | " + " | ".join(CRACKS) + " |", "|---" * (len(CRACKS) + 1) + "|"]
-    for name in CRACKED:
-        lines.append(f"| {name} | " + " | ".join(_cell(found.bands(name, "single", crack=c)) for c in CRACKS.values()) + " |")
-    lines += ["", "## Where each may be used", "", *_verdicts(found), "", "## The reference at the corners of the map", ""]
-    lines += corners
-    with written(PAGE) as name:
-        Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")
-    print("\n".join(lines))
+
+
+def corners(again=()):
+    """Lines: the reference against finite elements."""
+    return [
+        "## The reference at the corners of the map",
+        "",
+        "Largest difference of k at any phase between `ritz`, the reference of the map, and `fe` (refine 2), contact beyond the",
+        "path included. They share the profile, the held bore and the contact: see [outlines.md](outlines.md).",
+        "",
+        "| z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |",
+        "|---|---|---|---|---|---|",
+        *kept("map", "corners", lambda: {"lines": _corners()}, again)["lines"],
+    ]
+
+
+HOW = """
+`python -m validation map` makes this page from `tables/map.jsonl`; `... map ROW ...` computes the rows whose names begin so anew,
+`... map all` every one (sample, corners, earlier study, load, rungs).
+"""
+
+
+def run(parts=()):
+    """Write the page; `parts`: beginnings of the rows that are computed anew, or ``all``."""
+    again = page.anew(parts)
+    check(again, "map")
+    found = kept("map", "sample", sampled, again)
+    best = ", ".join(f"`{name}` in {100 * share:.0f} %" for name, share in found["within"].items())
+    held = "; ".join(f"`{name}`: {', '.join(parts)}" for name, parts in found["held"].items() if parts) or "in none"
+    answer = (
+        f"Of random pairs' mean stiffness within 3 %: {best}; parts of the map below in which nine rows in ten are: {held}. "
+        "Agreement below 3 % is a coincidence of load and zone."
+    )
+    page.write("map", answer, HOW.strip().splitlines(), section(found), corners(again), formulations.section(again))
 
 
 def _three(band):
@@ -92,29 +133,13 @@ def _cell(band):
     return f"{_three(band)}; {100 * band[3]:.0f} %" if band[4] else "-"
 
 
-def _verdicts(found):
-    """In words, from the numbers."""
-    out = []
-    for name in HEALTHY:
-        good = {zone: found.bands(name, zone, crack=(0, 0)) for zone in ("single", "double", "mean")}
-        share = ", ".join(f"{100 * band[3]:.0f} % of {zone}" for zone, band in good.items())
-        parts = [part for part, limits in SPLITS.items() if found.bands(name, "mean", crack=(0, 0), **limits)[3] >= 0.9]
-        where = (
-            f"it holds (nine rows in ten) for: {'; '.join(parts)}" if parts else "no part of the map above holds nine rows in ten"
-        )
-        out.append(f"- `{name}` is within 3 % in {share}; for the mean over the cycle {where}.")
-    for name in CRACKED:
-        worst = [100 * found.bands(name, "single", crack=c)[3] for c in CRACKS.values()]
-        out.append(
-            f"- `{name}` with a crack: within 3 % in {' / '.join(f'{w:.0f}' for w in worst)} % of the rows of the table above."
-        )
-    out.append("- `ritz` is the reference here; its own error is in the last table and in `speed.md`.")
-    return out
+def _held(found, name):
+    """Parts of the map in which nine rows in ten of a formulation are within 3 % of the mean over the cycle."""
+    return [part for part, limits in SPLITS.items() if found.bands(name, "mean", crack=(0, 0), **limits)[3] >= 0.9]
 
 
 def _corners():
-    lines = ["Largest difference of k at any phase between `ritz` and `fe` (refine 2), contact beyond the path included:", ""]
-    lines += ["| z | pressure angle | shifts | bore / r_f | healthy | 30 % crack |", "|---|---|---|---|---|---|"]
+    lines = []
     for z, alpha, x, bore in CORNERS:
         sample = {"z_1": z[0], "z_2": z[1], "alpha_deg": alpha, "x_1": x[0], "x_2": x[1], "tip_radius": 0.25}
         name = f"| {z[0]}/{z[1]} | {alpha:g} | {x[0]:g}, {x[1]:g} | {bore:g} | "

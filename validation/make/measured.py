@@ -3,12 +3,10 @@
 import math
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 from gearfe.machine.gear_mesh import Samples, ToothDamage, cycle_table
 from gearfe.machine.gear_pair import gear_pair
 from gearfe.machine.layout import Body
@@ -16,9 +14,11 @@ from gearfe.machine.member import disc
 from gearfe.machine.scene_curves import stage_of
 from gearfe.studies.vibration import recorded
 
+from ..shared.page import text
 from ..shared.places import PAGES, SOURCES
+from ..shared.state import replace as put
 
-PAGE = PAGES / "measured.md"
+TREND = "follow as a trend"
 TURNS, SETTLED = 8, 3  # turns of the carrier that are kept, and that are left out before
 SPEED = 1000 * math.pi / 30  # rad/s of the driving gear: no source prints one; amplitudes are compared with each other only
 PRINTED = {  # first carrier sideband over the mesh line: left, right
@@ -169,7 +169,25 @@ def page():
     """The page as Markdown."""
     found = planetary()
     tables = {rpm: spur(rpm * math.pi / 30) for rpm in (600, 1200, 1800)}
-    return "\n\n".join([*_planetary_text(found, perfect()), *_spur_text(tables), *_phm_text(), *_modes_text()]) + "\n"
+    parts = [*_planetary_text(found, perfect()), *_spur_text(tables), *_phm_text(), *_modes_text()]
+    how = _line("""Numbers of measurements that are public without the records themselves, beside simulations of the same gears.
+        What a source does not print is scanned, and named. `python -m validation measured` makes this page; scenes:
+        `validation/sources/`. Shared with the measurements: what the sources print of the gears, nothing else.""")
+    return text("measured", answer(found), [how], "\n\n".join(parts).splitlines())
+
+
+def answer(found):
+    """The first line."""
+    return (
+        f"Of four measured gearboxes the frequencies of one are found, the sidebands of another {verdict(found)}, and of two "
+        "nothing "
+        "is public that could be compared."
+    )
+
+
+def verdict(found):
+    """Whether faults move the sidebands of the planetary set as printed."""
+    return TREND if all(hit == of for hit, of in trends(found).values()) else "are not reproduced"
 
 
 def _told(pair):
@@ -192,17 +210,13 @@ def _planetary_text(found, alone):
         for side, printed, got in zip(("left", "right"), both, ours[name], strict=True)
         if printed and max(printed[0], got[0]) <= min(printed[1], got[1])
     ]
-    holds = all(count == total for count, total in rises.values())
+    holds = verdict(found) == TREND
     told = "; ".join(
         f"a fault of the {name} raises the {side} one by more than 2 % in {rises[name][0]} of {rises[name][1]} scanned sets"
         for name, side in (("planet", "left"), ("sun", "right"))
     )
     scanned, levels = ", ".join(f"{1e6 * one:.0f}" for one in MISPLACED), " and ".join(map(str, LEVELS))
     return [
-        "# Measured gearboxes of others",
-        _line("""Numbers of measurements that are public without the records themselves, beside simulations of the same gears.
-            What a source does not print is scanned, and named. Made by `python -m validation measured`; scenes:
-            `validation/sources/`."""),
         "## Planetary set 31/31/95: carrier sidebands",
         _line(f"""Ring fixed, three planets; normal (no fault), a fault of a planet, a fault of the sun; 917 records (data set
             card SNU-PLANETARY-annotated). Printed are ranges of the first carrier sideband left and right of the mesh line, over
@@ -290,6 +304,5 @@ def _modes_text():
 
 def run():
     """Write the page."""
-    with written(PAGE) as name:
-        Path(name).write_text(page(), encoding="utf-8")
-    print(f"wrote {PAGE.name}")
+    put(PAGES / "measured.md", page())
+    print("wrote measured.md")

@@ -1,21 +1,16 @@
-"""Whole outlines of gears, without load and pressed together, beside gearfe: distributions and the ten worst phases."""
+"""The page `outlines`: whole outlines of gears, without load and pressed together, beside gearfe."""
 
 import numpy as np
 
-from gearfe.files import written
-
-from ..shared import outlines_plane, outlines_three
+from ..shared import outlines_plane, outlines_three, page
 from ..shared.arbiter import kept, unloaded_table
 from ..shared.arbiter.beside import beside
 from ..shared.arbiter.cases import fresh
-from ..shared.places import PAGES
 
 __all__ = ["reference", "run"]
 
-PAGE = PAGES / "outlines.md"
 METHODS = ("ritz", "fe")
-INTRODUCTION = """# Whole outlines pressed together
-
+INTRODUCTION = """
 An arbiter that shares nothing of gearfe's contact geometry (`validation/shared/arbiter`): teeth cut by brute force, whole
 outlines, finite elements of whole gears in plane strain of its own, contact between outline points with true gaps and normals.
 Pairs are random, undercut ones, close and trimmed rings, rounded tips over-represented; phases are those where off-path pairs
@@ -57,7 +52,7 @@ def reference():
 
 def run():
     """Write the page."""
-    parts = [INTRODUCTION, unloaded_table.section()]
+    parts, answers = [INTRODUCTION, unloaded_table.section()], []
     for method in METHODS:
         rows = [(row, found) for row, found in beside(method)]
         refused = sorted({f"{row['pair']}: {found['refused']}" for row, found in rows if "refused" in found})
@@ -71,6 +66,7 @@ def run():
             f"the arbiter: median {np.median(mesh):.3f} %, largest {mesh.max():.3f} %.\n\n"
             "| difference [%] | phases | median | 90 % | 99 % | largest |\n|---|---|---|---|---|---|\n"
         )
+        answers.append(f"`{method}` by {np.median(off):.2f} % of k in the median, {off.max():.1f} % at most")
         for name, some in (("no corner, joint or fillet pressed", off[~corner]), ("one of them pressed", off[corner])):
             spread = " | ".join(f"{value:.3f}" for value in np.quantile(some, [0.5, 0.9, 0.99, 1.0])) if some.size else "| | |"
             parts.append(f"| {name} | {some.size} | {spread} |\n")
@@ -85,9 +81,12 @@ def run():
             )
         parts.append("\n" + "".join(f"Refused: {text}\n" for text in refused) + "\n")
     parts += [_fresh(), outlines_plane.section(), outlines_three.section()]
-    with written(PAGE) as target, open(target, "w", encoding="utf-8") as file:
-        file.write("".join(parts))
-    print(f"wrote {PAGE.name}")
+    answer = (
+        f"At {off.size} phases at which tooth pairs off the path come near, {' and '.join(answers)} differ from whole "
+        "outlines "
+        "pressed together by an arbiter that shares none of gearfe's contact."
+    )
+    page.write("outlines", answer, "".join(parts).strip().splitlines())
 
 
 def _fresh():

@@ -1,39 +1,8 @@
-"""Three dimensions judged by an outsider: the page and its picture, from the tables of `validation.shared.outsider` alone."""
+"""A part of the page `three`: `ritz3d` beside CalculiX, from the tables of `validation.shared.outsider` alone."""
 
-import math
-from pathlib import Path
+from ..shared.outsider import ASKED, LOAD, PITS, PITTED, SHARED, SHARING, apart, cases, lines, rows_of, stored, told, wanted
 
-from gearfe.files import written
-
-from ..shared.outsider import (
-    ASKED,
-    LOAD,
-    PITS,
-    PITTED,
-    PRESSURE,
-    SHARED,
-    SHARING,
-    SHOWN,
-    STRIP,
-    apart,
-    cases,
-    lines,
-    reference,
-    rows_of,
-    stored,
-    told,
-    wanted,
-)
-from ..shared.outsider_picture import picture
-from ..shared.places import PAGES
-
-__all__ = ["page", "reference", "run"]
-
-PAGE = PAGES / "outsider_three.md"
-PICTURE = PAGES / "outsider_three_pressure.png"
 COMPARED = f"""
-## What is compared
-
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and
 `gearfe.write_line_inp`): both whole gears with all teeth, of their finite width, bores (of a ring the outside) held, in 20-node
 hexahedra with reduced integration (C3D20R); pairs with pits in second-order tets (C3D10) with the pits cut out as holes. What
@@ -48,16 +17,13 @@ under itself.
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
 divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of
 those of the contact lines. `penalty`: stiffness of the contact springs over E, per mm, 500 unless told. Forces apart: of
-`T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part. Seconds: of the processor, one thread.
+`T1 / r_b1` and `T2 / r_b2`, which only tip corners off the line of action part.
 Displacement-based elements are too stiff where they are too coarse: CalculiX's k falls, and its deflection grows, as the mesh is
 refined, so that the difference rises. Contact in CalculiX is a bed of springs, so that its k is too low by about 0.07 %: see
 [truth.md](truth.md).
-
-`python -m validation outsider_three` makes this page from its table; `--reference` computes what the table lacks where `ccx` is
-installed, run by run.
 """
 HOLES = f"""
-## Pits: holes beside lost contact
+### Pits: holes beside lost contact
 
 Two pits, a circular and an elliptic one, lie with their centres on the contact line of tooth 0, under {PITTED:g} N/mm: contact is
 1.4 times as wide as under {LOAD:g}, so that fewer elements follow it around the pits; both solvers see it. Both gears are in
@@ -65,48 +31,30 @@ tets. These differ from hexahedra, so each case has two controls: the very same 
 of material and no contact on them, which is what `ritz3d` has, and with the pits filled and touching. What pits do is k over k of
 the second control; what the mesh does is in both and mostly drops out.
 """
-MESHES = """
-## How far the meshes are from their limit
-
-The difference to `ritz3d` by edges per Hertz half width, all else equal, and where it goes as these edges vanish, if they show an
-order of convergence of at least 1. It is that of the healthy pair, which has three such meshes; cases with two are extrapolated
-with it. It speaks for the contact strip only: the row with `refine` shows what all the other elements add, along the width too.
-Elements are 2 mm long along the width; helical contact lines cross them obliquely, those of the spur pair do not.
-"""
-PRESSED = """
-## Pressure
-
-Contact pressure on the pinion's flanks of the healthy helical pair, all teeth laid over each other, each picture with a scale of
-its own, cut off where 95 % of the places under pressure are below. Where they touch agrees: the line of pair 0 across the whole
-width, that of pair 1 up to the tip corner, and the corner itself beyond it, which `ritz3d` carries by rows of their own that are
-not drawn. The values do not compare: on these coarse faces few of CalculiX's contact points carry, with pressures far above
-Hertz's; the likely cause is that contact is enforced at more points than the faces can follow. The approach sees their mean.
-"""
-
-
 SHARES = """
-## Load sharing of the healthy helical pair
+### Load sharing of the healthy helical pair
 
 Force that each tooth pair carries, and where along the width its resultant acts (z from the end that touches last):
 """
 
 
-def page():
-    """The page, from its tables alone."""
+def section():
+    """Lines of the page, from its tables alone."""
     known = stored()
-    text = ["# Three dimensions, judged by an outsider", "", "Made by `python -m validation outsider_three`.", ""]
-    text += [*verdict(known), *COMPARED.splitlines(), "", "## In contact", ""]
+    text = ["## CalculiX", "", *verdict(known), *COMPARED.splitlines(), "", "### In contact", ""]
     text += [*_table("k [N/um]", known, cases())]
     text += [*HOLES.splitlines(), "", *_against_control(known)]
-    text += ["", "## Under line loads", "", *_table("deflection [nm/N]", known, lines())]
-    text += [*MESHES.splitlines(), "", *_refined(known)]
-    text += list(_shared()) if SHARING.exists() else []
+    text += ["", "### Single gears under line loads", "", *_table("deflection [nm/N]", known, lines())]
+    text += [line for line in _shared() if SHARING.exists()]
     missing = [f"{name} ({told(mesh)})" for name, mesh in wanted() if (name, told(mesh)) not in known]
-    if missing:
-        text += ["", f"Not computed yet: {'; '.join(missing)}."]
-    if PRESSURE.exists():
-        text += [*PRESSED.splitlines(), "", f"![contact pressure side by side]({PICTURE.name})"]
-    return "\n".join(text) + "\n"
+    return [*text, "", f"Not computed yet: {'; '.join(missing)}."] if missing else text
+
+
+def worst():
+    """Largest difference of the finest meshes: of pairs in contact without pits, and of single gears."""
+    away = {name: abs(apart(row)) for name, row in finest(stored()).items()}
+    whole = {name: value for name, value in away.items() if not name.endswith(tuple(PITS.values()))}
+    return [max(value for name, value in whole.items() if name in group) for group in (cases(), lines())]
 
 
 def finest(known):
@@ -132,6 +80,12 @@ def pitted(known):
                 ours = next(float(row["ours"]) for kind, row in rows.items() if kind != "filled")
                 out[base.strip(), mesh] = found | {"ritz3d": ours / float(rows["filled"]["ours"]) - 1}
     return out
+
+
+def pits_apart():
+    """Largest difference in what lost contact does to k, on the finest mesh of each case with pits."""
+    finer = {name: found for (name, _), found in pitted(stored()).items()}
+    return max(abs((1 + found["ritz3d"]) / (1 + found["lost"]) - 1) for found in finer.values())
 
 
 def verdict(known):
@@ -192,25 +146,6 @@ def _against_control(known):
         yield "| " + " | ".join(cells) + " |"
 
 
-def _refined(known):
-    """Differences over the edges in the contact strip, and their limit."""
-    widths = [mesh["per_width"] for mesh in cases()[SHOWN].meshes if "refine" not in mesh]
-    rows = {}
-    for name, case in cases().items():
-        found = [known.get((name, told({"per_width": width}))) for width in widths]
-        if case.meshes[: len(STRIP)] == STRIP and all(found[:2]):
-            rows[name] = [apart(row) for row in found if row]
-    order = observed_order(rows.get(SHOWN, ()), widths)
-    yield f"| case | {' | '.join(f'per_width {width:g}' for width in widths)} | extrapolated |"
-    yield "|---" * (2 + len(widths)) + "|"
-    for name, values in rows.items():
-        cells = [f"{100 * value:+.2f} %" for value in values] + [""] * (len(widths) - len(values))
-        end = "" if order is None else f"{100 * limit(values, widths, order):+.2f} %"
-        yield "| " + " | ".join([name, *cells, end]) + " |"
-    yield ""
-    yield "There is no order to extrapolate with." if order is None else f"Observed order: {order:.1f}."
-
-
 def _shared():
     yield from SHARES.splitlines()
     yield from (
@@ -224,33 +159,11 @@ def _shared():
         yield "| " + " | ".join([row["mesh"], row["pair"], ours, theirs, off, *places]) + " |"
 
 
-def observed_order(values, widths):
-    """Order of convergence in the edge length from three meshes, each finer by the same ratio; None if it is not 1 at least."""
-    if len(values) < 3 or not (values[1] - values[0]) / (values[2] - values[1]) >= widths[1] / widths[0]:
-        return None
-    return math.log((values[1] - values[0]) / (values[2] - values[1])) / math.log(widths[1] / widths[0])
-
-
-def limit(values, widths, order):
-    """The last value extrapolated to vanishing edges."""
-    ratio = (widths[len(values) - 1] / widths[len(values) - 2]) ** order
-    return values[-1] + (values[-1] - values[-2]) / (ratio - 1)
-
-
 def _table(quantity, known, order):
-    names = ("case", "mesh", "nodes", f"`ritz3d`, {quantity}", "CalculiX", "difference", "forces apart", "seconds")
+    names = ("case", "mesh", "nodes", f"`ritz3d`, {quantity}", "CalculiX", "difference", "forces apart")
     yield "| " + " | ".join(names) + " |"
     yield "|---" * len(names) + "|"
     rows = [row for row in known.values() if row["case"] in order]
     for row in sorted(rows, key=lambda row: ([*order].index(row["case"]), float(row["nodes"]))):
         cells = [row["case"], row["mesh"], f"{int(row['nodes']):,}", row["ours"], row["theirs"], f"{100 * apart(row):+.2f} %"]
-        yield "| " + " | ".join([*cells, f"{100 * float(row['forces apart']):+.2f} %", f"{float(row['seconds']):.0f}"]) + " |"
-
-
-def run():
-    """Write the page and its picture from the tables."""
-    if PRESSURE.exists():
-        picture(PICTURE)
-    with written(PAGE) as name:
-        Path(name).write_text(page(), encoding="utf-8")
-    print(f"wrote {PAGE.name}")
+        yield "| " + " | ".join([*cells, f"{100 * float(row['forces apart']):+.2f} %"]) + " |"

@@ -1,6 +1,6 @@
-"""Pairs in three dimensions: stiffness by the energy model against hexahedra of both whole gears, healthy and damaged.
+"""A part of the page `three`: pairs by the energy model against hexahedra of both whole gears, healthy and damaged.
 
-The finite elements take an hour; `reference` appends what is missing to a table, case by case, and `run` makes the page from it.
+The finite elements take an hour; `reference` appends what is missing to a table, case by case.
 """
 
 import csv
@@ -16,11 +16,11 @@ import gearfe as gf
 from gearfe.files import written
 from geometry.damage.pit import pit_row
 
-from ..shared import machine
-from ..shared.places import PAGES, TABLES
+from ..shared.kept_rows import kept
+from ..shared.places import TABLES
 
-PAGE = PAGES / "pairs_three.md"
 TABLE = TABLES / "pairs_three.csv"
+OURS = "pairs_three_ritz3d"  # table of rows
 COLUMNS = ("pair", "case", "refine", "dofs 1", "dofs 2", "seconds", "phase", "k [N/m]")
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 100.0  # [N/mm]
@@ -32,29 +32,24 @@ THREE = (("18/27", "healthy"),)  # with all three
 WIDE = "16/19"  # the coarsest resolution only, healthy and with pits
 
 TEXT = f"""
-The finite elements (`method="fe3d"`, hexahedra of both whole gears) are in `tables/pairs_three.csv`; `--reference` computes what
-it lacks, case by case. {LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle over the whole engagement of the pinion's tooth 0,
-which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as lost contact. Contact on the path only. Phases
-at which the load presses the faces of a crack together are left out: the hexahedra on file let them pass through each other.
+## Pairs over their engagement, beside hexahedra
 
-Mean and largest difference: `ritz3d` against the finest mesh, over all phases; bold beyond 0.5 % in the mean or 1 % at a phase.
-Last step: mean change of k from the mesh before to the finest, and the observed order of convergence where there are three.
-Drop: largest loss of k by the damage in the finite elements (resolution {MAIN:g}, or {COARSE:g} if there is no other), and by how
-much of itself that of `ritz3d` differs there and in the mean over the phases. Seconds: of the processor, of the finest run,
-on a machine busy with other work; gears of earlier rows are known to it.
+`fe3d`: 20-node hexahedra of both whole gears, kept in `tables/{TABLE.name}`: {LOAD:g} N/mm, m_n 2 mm, {PHASES} phases per cycle
+over the engagement of the pinion's tooth 0, which bears the damage: full-width cracks, or 7 pits in a row at the pitch line, as
+lost contact; contact on the path only. Phases at which the load presses the faces of a crack together are left out: the
+hexahedra on file let them pass through each other.
 
-What the table cannot show, because both have it: the contact lines, the half-space and its images in the end faces that are
-taken out of each patch, and the patches, 8 hats across the flank (along the width the finite elements have two more modes).
-With 12 narrower hats on finer triangles `ritz3d` finds k of the healthy 12/20 within 0.07 % of that with 8, but for two phases
-at the ends of the path, 0.3 %. CalculiX has none of them: [outsider_three.md](outsider_three.md).
-
-The hexahedra are too stiff by their own discretisation, most of it in the section. With one quad through the rim, as before,
-the section of a ring alone (plane strain, against the energy model's) was 0.2 to 1.3 % too stiff at resolution 0.55 to 1, and
-no less at the finer of two, since dividing the edges of the teeth put no more quads into the rim they stand on: the 0.6 % by
-which pairs with rings differed, and of which a refinement showed 0.09 %. With two quads through the
-rim and edges two thirds as long it is 0.05 to 0.1 %. Edges of 0.03 instead of 0.1 modules at the tip corners change k of
-12/20 by 0.04 %. The losses by damage, in which such errors cancel, agree within 1 % of themselves. The largest differences of
-cracked teeth are beside the phases left out.
+Mean and largest: `ritz3d` against the finest mesh, over all phases; bold beyond 0.5 % in the mean or 1 % at a phase. Last step:
+mean change of k from the mesh before to the finest. Drop: largest loss of k by the damage in the finite elements, and by how much
+of itself that of `ritz3d` differs there and in the mean over the phases. The hexahedra are too stiff by their own discretisation,
+most of it in the section; in losses by damage it cancels. The largest differences of cracked teeth are beside the phases left
+out.
+"""
+SHARED = """
+Shared by both: the contact lines, the half-space and its images in the end faces that are taken out of each patch, and the
+patches, 8 hats across the flank (along the width the finite elements have two more modes). With 12 narrower hats on finer
+triangles `ritz3d` finds k of the healthy 12/20 within 0.07 % of that with 8, but for two phases at the ends of the path, 0.3 %.
+CalculiX, above, has none of them.
 """
 
 
@@ -100,6 +95,17 @@ def model_curve(pair, case):
     """Stiffness by the energy model, and the phases (a mask) at which no load presses the faces of a crack together."""
     found = curve(pair, case, method="ritz3d")
     return found.k, ~np.isin(found.phase, found.meta.get("crack_closed_phases", ()))
+
+
+def kept_model(name, pair, case, again):
+    """What `model_curve` gives, from its row on file."""
+
+    def make():
+        k, apart = model_curve(pair, case)
+        return {"k": [float(f"{v:.8g}") for v in k], "apart": apart.tolist()}
+
+    row = kept(OURS, f"{name}, {case}", make, again)
+    return np.array(row["k"]), np.array(row["apart"])
 
 
 def wanted():
@@ -182,29 +188,36 @@ def row(name, about, case, known, model):
     text = f"{mean:+.2f} %" if abs(mean) <= 0.5 else f"**{mean:+.2f} %**"
     worst = f"{most:.2f} %" if most <= 1 else f"**{most:.2f} %**"
     closed = f" (without {apart.size - apart.sum()} of {apart.size} phases)" if not apart.all() else ""
-    return (
-        f"| {name}, {about} | {case}{closed} | {sizes} | {text} | {worst} | {step} | {lost or ' | | '} | {best['seconds']:.0f} |"
-    )
+    return f"| {name}, {about} | {case}{closed} | {sizes} | {text} | {worst} | {step} | {lost or ' | | '} |"
 
 
-def run():
-    """Write `pairs_three.md` from the table and print it."""
+def section(again=()):
+    """Lines of the page; `again`: beginnings of the rows whose `ritz3d` is computed anew."""
     known = stored()
     lines = [
-        "# Pairs in three dimensions",
-        "",
-        f"Made by `python -m validation pairs_three` on {machine.describe()}.",
         *TEXT.strip().splitlines(),
         "",
-        "| pair | case | unknowns, both gears | mean | largest | last step | drop | at most | mean drop | seconds |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "| pair | case | unknowns, both gears | mean | largest | last step | drop | at most | mean drop |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     for name, (about, pair) in pairs().items():
         model = {}
         for case in CASES:
             if any((name, case, resolution) in known for resolution in (MAIN, COARSE)):
-                model[case] = model_curve(pair, case)
+                model[case] = kept_model(name, pair, case, again)
                 lines.append(row(name, about, case, known, model))
-                print(lines[-1], flush=True)
-    with written(PAGE) as name:
-        Path(name).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return [*lines, *SHARED.rstrip().splitlines()]
+
+
+def worst(again=()):
+    """Largest difference of `ritz3d` from the finest hexahedra, in the mean over the phases of a case and at a phase."""
+    known, means, phases = stored(), [], []
+    for name, (_, pair) in pairs().items():
+        for case in CASES:
+            levels = [known[name, case, r] for r in (COARSE, MAIN, FINE) if (name, case, r) in known]
+            if levels:
+                k, apart = kept_model(name, pair, case, again)
+                off = (k / levels[-1]["k"] - 1)[apart]
+                means.append(abs(off.mean()))
+                phases.append(np.abs(off).max())
+    return max(means), max(phases)

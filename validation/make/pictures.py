@@ -3,19 +3,16 @@
 import multiprocessing
 import os
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import gearfe as gf
-from gearfe.files import written
 from gearfe.scene.load import scene_names
 from gearfe.stress.render import render_contact, render_stress
 from gearfe.units import in_newton_per_um
 
-from ..shared import machine
+from ..shared import page
 from ..shared.places import PAGES
 
 FOLDER = PAGES / "pictures"
-PAGE = PAGES / "pictures.md"
 SIZE = (840, 630)
 COLOURS = 256
 REFINE = 0.7  # such small pictures show no more
@@ -70,33 +67,30 @@ def picture(task):
     return [f"![{name} {case}](pictures/{path.name})", "", text, ""]
 
 
-def page(parts):
-    """Text of the page from the lines of every task."""
-    lines = [
-        "# Pictures",
-        "",
-        f"Made by `python -m validation pictures` on {machine.describe()}; a larger one by",
-        "`gearfe render SCENE --case CASE -o x.png`, mesh, displacement and stress by `-o x.vtu`.",
+def sections(parts):
+    """Sections of the page from the lines of every task."""
+    yield [
+        "`python -m validation pictures` draws these anew; a larger one is drawn by `gearfe render SCENE --case CASE -o",
+        "x.png`, mesh,",
+        "displacement and stress are written by `-o x.vtu`.",
         "",
         "Pits: the damaged tooth in three dimensions, pits cut out as holes, under its share of the load along the contact",
         "lines, spread over 0.15 modules to either side; what is above the bar is the load's strip, rims of pits and fronts of",
         "cracks, where no mesh gives a finite value. Cracks of spur gears: the transverse section, in grey both gears unloaded.",
-        "",
     ]
     for name in scene_names():
         scene = gf.load_scene(name)
-        lines += [f"## {scene.title}", "", f"Pair `{next(iter(scene.pairs))}` of scene `{name}`.", ""]
-        lines += [line for task, part in parts.items() if task[0] == name for line in part]
-    return "\n".join(lines).rstrip() + "\n"
+        lines = [f"## {scene.title}", "", f"Pair `{next(iter(scene.pairs))}` of scene `{name}`.", ""]
+        yield lines + [line for task, part in parts.items() if task[0] == name for line in part]
 
 
 def run():
-    """Write the pictures, several at a time, and `pictures.md`."""
+    """Write the pictures, several at a time, and the page."""
     FOLDER.mkdir(exist_ok=True)
     with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn")) as pool:
         parts = dict(zip(tasks(), pool.map(picture, tasks()), strict=True))
-    with written(PAGE) as path:
-        Path(path).write_text(page(parts), encoding="utf-8")
+    answer = "Von Mises stress of every damage case of the four built-in scenes, and where some of the pitted teeth touch."
+    page.write("pictures", answer, *sections(parts))
 
 
 def _small(path):

@@ -8,6 +8,7 @@ import gearfe as gf
 
 from ..shared.laws import beside, tables
 from ..shared.simulated import amplitude, knocked, machine, own_law, record, scene, signal, spectrum, told
+from . import centroid
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 
 SECONDS, SETTLE = 2.0, 0.25
@@ -202,7 +203,8 @@ def write_more():
 def more():
     """Lines of the page beside the verdicts."""
     laws = tables("planetary_pitting", BOTH, OWN, LINEAR)
-    return [*laws, "## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
+    paths = ["## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
+    return [*laws, *paths, *centroid.section()]
 
 
 BOTH = (

@@ -1,4 +1,4 @@
-"""Random pairs, cracked or not: `fe` against `ritz`, and how often the error estimates of both cover."""
+"""The page `sample`: random pairs, finite elements against the energy model, and how often both error estimates cover."""
 
 import csv
 import datetime
@@ -13,13 +13,14 @@ import numpy as np
 import gearfe as gf
 from gearfe.files import written
 
-from ..shared import code
-from ..shared.places import PAGES, TABLES
+from ..shared import page
+from ..shared.places import TABLES
+from . import sample_three
 
-PAGE, TABLE = PAGES / "sample.md", TABLES / "sample.csv"
-FIRST, COUNT = 72_000, 200  # seeds from here on; none was looked at while the methods were made
+TABLE = TABLES / "sample.csv"
+FIRST, COUNT = 72_000, 100  # seeds from here on; none was looked at while the methods were made
 FIELDS = ("seed", "date", "pair", "damage", "load_N_mm", "difference", "fe_error", "fe_estimate", "ritz_error", "ritz_estimate")
-FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s", "code")
+FIELDS += ("apart_covered", "fe_covered", "ritz_covered", "cpu_s")
 FINE = {"refine": 2.0, "order": 5}  # of `ritz`, the reference of both errors
 
 
@@ -63,13 +64,21 @@ def row(seed):
     hurt = "" if not damage else "; ".join(f"{name} crack {100 * one[0].level:.0f} %" for name, one in damage.items())
     percent = [f"{100 * float((v / fine).max()):.4f}" for v in values]
     head = [seed, datetime.datetime.now(datetime.UTC).date().isoformat(), names, hurt, f"{load:.1f}"]
-    tail = [*(str(bool(c)) for c in covered), f"{time.process_time() - started:.1f}", code.fingerprint()]
+    tail = [*(str(bool(c)) for c in covered), f"{time.process_time() - started:.1f}"]
     return dict(zip(FIELDS, [*head, *percent, *tail], strict=True))
 
 
-def run():
-    """Compute the rows that are missing, one by one into `sample.csv`, then write `sample.md` and print it."""
-    rows = rows_on_file()
+HOW = """
+What is asked of pairs that were drawn at random from seeds that nobody had looked at: do two methods differ by less than both
+estimates together, and each from a finer solution by less than its own? A pair is covered if all of its phases are; a solve that
+fails counts as not covered. `python -m validation sample` computes the rows that `tables/sample*` lack; `... sample all` computes
+those of the section and of `ritz3d` anew.
+"""
+
+
+def run(parts=()):
+    """Compute the rows that are missing, kept one by one, and write the page; ``all``: every row anew but the references."""
+    rows = [] if "all" in parts else rows_on_file()
     seed = max((int(r["seed"]) for r in rows), default=FIRST - 1) + 1
     while len(rows) < COUNT:
         found = row(seed)
@@ -82,7 +91,26 @@ def run():
             writer.writerows(rows)
             with written(TABLE) as name:
                 Path(name).write_text(text.getvalue(), encoding="utf-8")
-    page()
+    solid = sample_three.rows(page.anew(parts))
+    page.write(
+        "sample",
+        answer(rows, solid),
+        HOW.strip().splitlines(),
+        section(rows),
+        sample_three.section(solid),
+    )
+
+
+def reference():
+    """Compute the hexahedra and finer solutions in three dimensions that are not on file."""
+    sample_three.reference()
+
+
+def answer(rows, solid):
+    """The first line."""
+    (three, brute), count = sample_three.covered(solid)
+    plane = " and ".join(f"{_count(rows, f'{name}_covered')} pairs for `{name}`" for name in ("ritz", "fe"))
+    return f"In the section in {plane}, in three dimensions in {three} of {count} for `ritz3d` and {brute} of {count} for `fe3d`."
 
 
 def rows_on_file():
@@ -93,42 +121,28 @@ def rows_on_file():
         return list(csv.DictReader(file))
 
 
-def page():
-    """Write `sample.md` from the rows on file and print it."""
-    rows = rows_on_file()
-    text = "\n".join([
-        "# Random pairs: finite elements against the energy model",
+def section(rows):
+    """Lines of the page."""
+    return [
+        "## In the section",
         "",
-        f"Made by `python -m validation sample`; rows of {min(r['date'] for r in rows)} to {max(r['date'] for r in rows)} in "
-        f"`tables/sample.csv`, made with the code (hash of all sources) {_codes(rows)}.",
-        f"{len(rows)} random pairs of {COUNT} wanted (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 %",
-        "cracked), not used to develop the methods. Largest values over the phases of each pair, in percent of k; errors are",
-        f"against `ritz` with {FINE['refine']:g} times the resolution and order {FINE['order']}.",
+        f"{len(rows)} pairs (seeds {rows[0]['seed']} to {rows[-1]['seed']}; external and rings, 60 % cracked), not used to",
+        "develop the methods. Largest values over the phases of each pair, in percent of k; errors are against `ritz` with",
+        f"{FINE['refine']:g} times the resolution and order {FINE['order']}. Shared by both methods: the profile, the held bore",
+        "and the contact, which [outlines.md](outlines.md) judges.",
         "",
-        "| | median | 95th percentile | worst | of the pair |",
+        "| in percent of k | median | 95th percentile | worst | of the pair |",
         "|---|---|---|---|---|",
-        *[_line(rows, name, text) for name, text in (
-            ("difference", "`fe` against `ritz`"), ("fe_error", "error of `fe`"), ("fe_estimate", "its estimate"),
-            ("ritz_error", "error of `ritz`"), ("ritz_estimate", "its estimate"),
-        )],
+        _line(rows, "difference", "`fe` against `ritz`"),
+        _line(rows, "fe_error", "error of `fe`"),
+        _line(rows, "fe_estimate", "its estimate"),
+        _line(rows, "ritz_error", "error of `ritz`"),
+        _line(rows, "ritz_estimate", "its estimate"),
         "",
         "Pairs in which the estimates cover at every phase: "
         f"the difference by the sum of both {_count(rows, 'apart_covered')}, the error of `fe` {_count(rows, 'fe_covered')}, the "
         f"error of `ritz` {_count(rows, 'ritz_covered')}.",
-        "",
-    ])  # fmt: skip
-    with written(PAGE) as name:
-        Path(name).write_text(text, encoding="utf-8")
-    print(text)
-
-
-def _codes(rows):
-    """Fingerprints of the code and how many rows each made; the present one is named."""
-    names = list(dict.fromkeys(r["code"] for r in rows))
-    present = code.fingerprint()
-    return ", ".join(
-        f"{name}{' (the present one)' if name == present else ''}: {sum(r['code'] == name for r in rows)} rows" for name in names
-    )
+    ]
 
 
 def _line(rows, name, text):

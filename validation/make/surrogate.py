@@ -1,17 +1,12 @@
-"""Stand-ins fitted for `ritz`: their error on fresh cases by range and size of the fit, and the time of a call."""
+"""A part of the page `sweeps`: stand-ins fitted for `ritz`, their error on fresh cases, and the time of a call."""
 
 import math
 import time
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 
-from ..shared.places import PAGES
-
-PAGE = PAGES / "surrogate.md"
 HELD = 32
 CRACKED = {"force": (500.0, 4000.0), "level": (0.05, 0.6)}
 WIDE = CRACKED | {"angle": (math.radians(30), math.radians(60)), "bore_1": (0.3, 0.8), "x_1": (-0.2, 0.4)}
@@ -20,22 +15,12 @@ FITS = (("load and crack", CRACKED, 32), ("load, crack and pinion", WIDE, 96), (
 SHOWN = {"force": "N", "level": "-", "angle": "rad"}
 
 
-def run():
-    """Write `surrogate.md` and print it."""
+def fitted():
+    """Lines of what the fits and the calls gave."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
     steel = gf.Material(E=207e3, nu=0.3)
-    lines = [
-        "# Stand-ins for the energy model",
-        "",
-        "Made by `python -m validation surrogate`. `gf.fit_surrogate` about a 21/31 pair of 2 mm module and 20 mm width, and how",
-        f"far k is from `ritz` on {HELD} cases that had no part in the fit, at 64 phases a cycle that were not fitted. The",
-        "discretisation error of `ritz` itself is not in it.",
-        "",
-        "| ranges | inputs | cases | terms | mean | worst phase | worst mean k | CPU s of the fit |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    made = {}
+    lines, made = [], {}
     for name, inputs, cases in FITS:
         started = time.process_time()
         one = made[name] = gf.fit_surrogate(pair, steel, inputs, cases=cases, held_back=HELD, workers=1)
@@ -43,11 +28,28 @@ def run():
         cost = time.process_time() - started
         lines.append(f"| {name} | {len(inputs)} | {cases} | {one.meta['terms']} | {errors} | {cost:.0f} |")
         print(lines[-1], flush=True)
-    lines += ["", *(f"- {name}: {_told(one)}" for name, one in made.items()), "", *_times(made["load, crack and pinion"], steel)]
-    text = "\n".join([*lines, ""])
-    with written(PAGE) as name:
-        Path(name).write_text(text, encoding="utf-8")
-    print(text)
+    ranges = [f"- {name}: {_told(one)}" for name, one in made.items()]
+    return {"fits": lines, "ranges": ranges, "calls": _times(made["load, crack and pinion"], steel)}
+
+
+def told(found):
+    """Lines of the page."""
+    return [
+        "## Stand-ins",
+        "",
+        "`gf.fit_surrogate` about a 21/31 pair of 2 mm module and 20 mm width, and how far k is from `ritz` on",
+        f"{HELD} cases that had no part in the fit, at 64 phases a cycle that were not fitted. The discretisation error of",
+        "`ritz`",
+        f"itself is not in it. On {found['machine']}:",
+        "",
+        "| ranges | inputs | cases | terms | mean | worst phase | worst mean k | CPU s of the fit |",
+        "|---|---|---|---|---|---|---|---|",
+        *found["fits"],
+        "",
+        *found["ranges"],
+        "",
+        *found["calls"],
+    ]
 
 
 def _told(one):

@@ -1,4 +1,4 @@
-"""Threads: that those of a caller change no bit and end no process; what a pair costs with several threads of linear algebra."""
+"""A part of the page `sweeps`: threads of a caller change no bit and end no process; cost with threads of linear algebra."""
 
 import json
 import os
@@ -8,29 +8,26 @@ import time
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from math import radians
-from pathlib import Path
 
 import numpy as np
 
 import gearfe as gf
-from gearfe.files import written
 from gearfe.flexibility.solved import SolvedGears
 from gearfe.stiffness import cache
 from gearfe.threads import CHOSEN
 
-from ..shared import machine
-from ..shared.places import PAGES, ROOT
+from ..shared.places import ROOT
 
 METHODS = {"ritz": 4, "fe": 1}  # of the linear algebra's threads, and how often
 THREADS = 8  # of a caller
 STEEL = gf.Material(E=207e3, nu=0.3)
 # who runs the threads, method, its options, new pairs, repetitions
 RUNS = (
-    ("ThreadPoolExecutor", "ritz", {}, 50, 20),
-    ("ThreadPoolExecutor", "fe", {}, 10, 4),
-    ("ThreadPoolExecutor", "ritz3d", {"order": 2}, 10, 4),
-    ("dask.threaded", "ritz", {}, 50, 5),
-    ("dask LocalCluster, processes=False", "ritz", {}, 50, 5),
+    ("ThreadPoolExecutor", "ritz", {}, 50, 6),
+    ("ThreadPoolExecutor", "fe", {}, 10, 2),
+    ("ThreadPoolExecutor", "ritz3d", {"order": 2}, 10, 2),
+    ("dask.threaded", "ritz", {}, 50, 2),
+    ("dask LocalCluster, processes=False", "ritz", {}, 50, 2),
 )
 IMPORTS = 5  # processes whose first import comes from all threads at once
 FIRST = """
@@ -152,65 +149,67 @@ def _answer(done):
     return json.loads(done.stdout.splitlines()[-1])
 
 
-def _callers():
-    """Rows of the first table."""
+def callers():
+    """Lines of what `RUNS` gave, and what first imports in new processes failed with; RuntimeError if threads change anything."""
+    lines = []
     for number, (who, method, options, count, often) in enumerate(RUNS):
         code = f"import json; from validation.make.threads import compared; print(json.dumps(compared({number})))"
-        done = _apart(code, {})
-        told = f"| {who} | `{method}`{''.join(f', {k} {v}' for k, v in options.items())} | {often} x {count} "
-        if done.returncode:
-            yield f"{told}| the process ended with {done.returncode} | | | | |"
-            continue
-        one = _answer(done)
-        yield f"{told}| 0 | {one['differ']} | {one['solved']}, {one['twice']} | {one['one']:.3g} | {one['many']:.3g} |"
-
-
-def run():
-    """Measure in processes of their own, write `threads.md` and print it."""
-    callers, first = list(_callers()), [_apart(FIRST, {}) for _ in range(IMPORTS)]
+        one = _answer(_apart(code, {}))
+        more = "".join(f", {name} {value}" for name, value in options.items())
+        told = f"| {who} | `{method}`{more} | {often} x {count} | 0 | {one['differ']} | "
+        lines.append(f"{told}{one['solved']}, {one['twice']} | {one['one']:.3g} | {one['many']:.3g} |")
+        if one["differ"]:
+            raise RuntimeError(f"threads of the caller change something: {lines[-1]}")
+    first = [_apart(FIRST, {}) for _ in range(IMPORTS)]
     failed = [one.stderr.splitlines()[-1] for one in first if one.returncode]
-    cores = os.cpu_count()
-    settings = {"not set: one inside of gearfe": {}, "1": {"OMP_NUM_THREADS": "1"}, f"{cores}": {"OMP_NUM_THREADS": f"{cores}"}}
-    code = "import json; from validation.make.threads import measure; print(json.dumps(measure()))"
-    found = {said: _answer(_apart(code, chosen)) for said, chosen in settings.items()}
-    load, made_on = os.getloadavg()[0], machine.describe().replace(", one thread used", "")
-    lines = [
-        "# May I call it from several threads?",
-        "",
-        f"Yes. Made by `python -m validation threads` on {made_on}, load {load:.1f} at the end.",
-        "",
+    return {"lines": lines, "imports": IMPORTS, "failed": failed}
+
+
+def callers_told(found):
+    """Lines of the page."""
+    return [
         "## Threads of the caller",
         "",
-        f"New pairs with a cracked pinion, {THREADS} threads against one, nothing kept from before; every wheel belongs to two "
-        "pairs, so that two threads ask for it at once. A process that ends, a value with other bits, a gear solved twice: each "
-        "would be counted here. From the second repetition on threads change 50 times as often as usual; the seconds are those "
-        "of the first. gmsh has one model for the whole process, so meshing is done in turns and several threads gain little: "
-        "use processes (`gearfe.batch`) for speed.",
+        f"New pairs with a cracked pinion, {THREADS} threads against one, nothing kept from before; every wheel belongs to",
+        "two pairs, so",
+        "that two threads ask for it at once. A process that ends, a value with other bits, a gear solved twice: each would be",
+        "counted here. From the second repetition on threads change 50 times as often as usual; the seconds are those of the",
+        "first.",
+        "gmsh has one model for the whole process, so meshing is done in turns and several threads gain little: use processes",
+        f"(`gearfe.batch`) for speed. On {found['machine'].replace(', one thread used', '')}:",
         "",
         "| threads by | method | pairs | processes ended | values that differ | solves, twice | clock s, 1 thread | "
         f"{THREADS} threads |",
         "|---" * 8 + "|",
-        *callers,
+        *found["lines"],
         "",
-        f"First import of all public names from {THREADS} threads at once, in {IMPORTS} new processes: {len(failed)} failed"
-        f"{': ' + '; '.join(failed) if failed else ''}.",
-        "",
+        f"First import of all public names from {THREADS} threads at once, in {found['imports']} new processes: "
+        f"{len(found['failed'])} failed{': ' + '; '.join(found['failed']) if found['failed'] else ''}.",
+    ]
+
+
+def algebra():
+    """Lines: what a pair costs with threads of the linear algebra."""
+    cores = os.cpu_count()
+    settings = {"not set: one inside of gearfe": {}, "1": {"OMP_NUM_THREADS": "1"}, f"{cores}": {"OMP_NUM_THREADS": f"{cores}"}}
+    code = "import json; from validation.make.threads import measure; print(json.dumps(measure()))"
+    found = {said: _answer(_apart(code, chosen)) for said, chosen in settings.items()}
+    rows = {said: " | ".join(f"{cpu:.3g} | {clock:.3g}" for cpu, clock in row.values()) for said, row in found.items()}
+    return {"lines": [f"| {said} | {cells} |" for said, cells in rows.items()]}
+
+
+def algebra_told(found):
+    """Lines of the page."""
+    return [
         "## Threads of the linear algebra",
         "",
-        "The section of a pair 18/27 at 64 phases, nothing cached. gearfe uses one thread unless an environment variable says "
-        "how many; the last row is what it did before it had that limit. On a machine that does other work too, threads wait for "
-        "each other.",
+        "The section of a pair 18/27 at 64 phases, nothing cached. gearfe uses one thread unless an environment variable says",
+        "how",
+        "many; the last row is what it did before it had that limit. On a machine that does other work too, threads wait for",
+        "each",
+        f"other. On {found['machine'].replace(', one thread used', '')}:",
         "",
         "| OMP_NUM_THREADS | " + " | ".join(f"`{method}` CPU s | clock s" for method in METHODS) + " |",
         "|---" * (1 + 2 * len(METHODS)) + "|",
-        *(
-            f"| {said} | " + " | ".join(f"{cpu:.3g} | {clock:.3g}" for cpu, clock in row.values()) + " |"
-            for said, row in found.items()
-        ),
-        "",
+        *found["lines"],
     ]
-    with written(PAGES / "threads.md") as name:
-        Path(name).write_text("\n".join(lines), encoding="utf-8")
-    print("\n".join(lines))
-    if failed or any("ended with" in row or "| 0 | 0 |" not in row for row in callers):
-        raise RuntimeError("threads of the caller change something: see the first table")

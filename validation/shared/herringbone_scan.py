@@ -19,7 +19,6 @@ from gearfe.stiffness.inputs import overlap
 from gearfe.studies.case_table import printed_cases
 
 from . import herringbone_scan_nodes as nodes
-from . import machine
 from .herringbone_scan_closed import LEVELS, closed, closed_curve
 from .herringbone_scan_nodes import BORES, FLAT, GROUPS, LENGTHS, PAIRS, SCENE
 from .herringbone_scan_readings import RANGES, SCENE_READING, SIZE, Reading, readings  # noqa: F401
@@ -228,20 +227,14 @@ def compute():
     """Every reading whose group is known, from the nodes; returns the table's rows as dicts of numbers."""
     ritz = Ritz3D()
     groups, found = known_groups(ritz.known), []
-    started = time.process_time()
     for number, reading in enumerate(readings()):
         if reading.group in groups:
             own = {key: getattr(reading, key) for key in Reading.__slots__}
             found.append({"number": number, **own, **numbers(curves(ritz, reading), reading.group)})
-    seconds = time.process_time() - started
     with table("").open("w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(found[0])
         out.writerows([f"{v:.4g}" if isinstance(v, float) else v for v in row.values()] for row in found)
-    with table("_run").open("w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["readings", "groups", "seconds of nodes", "seconds of readings", "machine"])
-        out.writerow([len(found), len(groups), f"{ritz.seconds:.0f}", f"{seconds:.0f}", machine.describe()])
 
 
 def check(wanted):

@@ -1,10 +1,8 @@
 """Rows of a page that are computed once: one JSON object a line in `pages/tables`, so that a stop loses one row at most."""
 
 import json
-from pathlib import Path
 
-from gearfe.files import written
-
+from . import state
 from .places import TABLES
 
 
@@ -23,17 +21,24 @@ def check(parts, *names):
         raise ValueError(f"no row begins with {', '.join(lost)}; there are: {'; '.join(known)}")
 
 
+def forget(name, parts):
+    """Take rows whose keys begin with one of `parts` out of a table, so that they are missing."""
+    left = [row for key, row in stored(name).items() if not key.startswith(tuple(parts))]
+    state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in left))
+
+
 def kept(name, key, make, again=()):
     """Row `key` of table `name`: the one on file, or ``make()``, a dict, which is then put on file.
 
     `again`: beginnings of the keys of rows that are made anew.
     """
-    known = stored(name)
+    known, started = stored(name), state.cpu()
+    state.run.tables.add(name)
     if key in known and not any(key.startswith(part) for part in again):
         return known[key]
     known[key] = {"row": key} | make()
     TABLES.mkdir(exist_ok=True)
-    with written(TABLES / f"{name}.jsonl") as target:
-        Path(target).write_text("".join(f"{json.dumps(row)}\n" for row in known.values()), encoding="utf-8")
+    state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in known.values()))
+    state.kept(name, key, state.cpu() - started)
     print(f"{name}: {key}", flush=True)
     return known[key]

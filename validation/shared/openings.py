@@ -13,7 +13,7 @@ def planetary_pitting(found):
         "353 Hz measured, "
         "and hardly depends on impacts, while RMS (1.2, 1.3, 1.5 m/s^2), kurtosis and shape factor tell the levels less well",
         f"under the articles' own contact law RMS {many} and peaks {high} m/s^2, of the printed order and size, but an SC of "
-        f"{', '.join(f'{x:.1f}' for x in found.all('sc_simulated'))} Hz, the same for all levels ({found.counted()})",
+        f"{', '.join(f'{x:.1f}' for x in found.all('sc_simulated'))} Hz, the same for all levels",
         "the definition of SC: it averages frequencies from 240 to 320 Hz, so that 349.8 and 352.9 Hz cannot come out "
         "whatever the "
         "machine, while levels hang on load, masses and the path to the sensor, which are not printed",
@@ -31,7 +31,7 @@ def helical_pitting(found):
         "the pit, and that several pits are known by 2 f_r, one large one by f_r",
         f"under the article's own law {yes} of its {len(said)} statements; 2 f_r is {'' if multi else 'not '}the largest "
         "low line of the "
-        f"three pits ({found.counted()})",
+        "three pits",
         "where the pits lie, which S3 does not print: pits on one tooth repeat once a turn and give most at f_r in the "
         "lost contact "
         "line, pits on two teeth nearly opposite give 2 f_r",
@@ -50,7 +50,7 @@ def herringbone_machine(found):
         "damage hardly "
         f"moves, and increments of at most {kurtosis:.2g} % (kurtosis) and {crest:.2g} % (crest factor) of the sun's "
         "angular acceleration "
-        f"({found.counted()}; the stiffness tables are on [their own page](herringbone.md))",
+        "(the stiffness tables are on [their own page](herringbone.md))",
         "sizes of errors, supports and damping, none of them printed: three planets in phase cancel in x, and printed "
         "inertias 6 to 107 "
         "times too large for such gears hold the sun's rotation still",
@@ -71,8 +71,7 @@ def compound_planetary(found):
         f"the frequencies and sidebands, and with the article's beams {beams:.0f} N/um for sun and planet, but ring meshes "
         f"{rings[0]:.2f} and "
         f"{rings[1]:.2f} times as stiff instead of 1.00 and 0.94, a converged stiffness of the same gears of {true:.0f} N/um, "
-        f"{beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to {max(heard):.3g} instead of 3.01 to 5.24 "
-        f"({found.counted()})",
+        f"{beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to {max(heard):.3g} instead of 3.01 to 5.24",
         "the foundation under the teeth, which the article leaves out, its lost table of parameters, and the resonances of "
         "a housing that is "
         "not modelled",

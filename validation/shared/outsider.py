@@ -23,12 +23,10 @@ from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
 from gearfe.files import written
 from gearfe.flexibility import solid as flexibility3d
-from geometry.tooth.profile import arc_at
 
 from .places import TABLES
 
 TABLE = TABLES / "outsider_three.csv"
-PRESSURE = TABLES / "outsider_three_pressure.csv"
 SHARING = TABLES / "outsider_three_sharing.csv"
 SHARED = ("mesh", "pair", "ours [N]", "theirs [N]", "ours z [mm]", "theirs z [mm]")
 COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
@@ -40,7 +38,7 @@ STRIP = ({"per_width": 1.0}, {"per_width": 1.5})  # finer along the contact line
 # of pairs with pits, whose rims follow; with contact springs ten times softer than by default, which cost k less than 0.1 %
 RIMS = ({"per_width": 0.67, "penalty": 50}, {"per_width": 1.0, "refine": 1.4, "penalty": 50})
 ALL_FINER = {"per_width": 1.0, "refine": 1.3}  # everywhere
-SHOWN = "helical, healthy"  # whose pressure is drawn
+SHOWN = "helical, healthy"  # whose load sharing is kept
 ASKED = 0.005  # largest difference asked for where both meshes are converged
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
 
@@ -177,8 +175,6 @@ def contact_row(name, mesh):
         first, second = deck.forces(folder / "pair.dat")
         if name == SHOWN and isinstance(deck, SolidDeck):
             keep_sharing(case, told(mesh), deck.carried(folder / "pair.dat"))
-        if name == SHOWN and mesh == case.meshes[-1] and isinstance(deck, SolidDeck):
-            keep_pressure(case, deck, folder / "pair.frd")
     theirs = (first + second) / 2 / approach / 1e3
     nodes = sum(part.points.shape[1] for part in deck.parts)
     return _row(name, mesh, nodes, seconds, ours, theirs, first / second - 1)
@@ -212,36 +208,6 @@ def keep_sharing(case, mesh, theirs):
         values = load.sum(), force, (load * cells.z).sum() / load.sum(), z
         rows.append(dict(zip(SHARED, (mesh, order, *(f"{v:.5g}" for v in values)), strict=True)))
     _write(rows, SHARING, SHARED)
-
-
-def keep_pressure(case, deck, path):
-    """Nodal contact pressure of CalculiX on the slave flanks, as a table of gear, order, arc [mm], z [mm], pressure [MPa]."""
-    pressure, rows = nodal_pressure(path), []
-    first = (0, deck.parts[0].points.shape[1])
-    for order, (side, faces) in deck.slaves.items():
-        gear, part = (case.pair.gear_1, case.pair.gear_2)[side], deck.parts[side]
-        centre = (0.0, case.pair.centre_2)[side]
-        for node in np.unique(faces).tolist():
-            x, y, z = part.points[:, node]
-            roll = math.sqrt(max(x * x + (y - centre) ** 2 - gear.r_b**2, 0.0))
-            rows.append((side, order, float(arc_at(gear, roll)), z, pressure.get(first[side] + node + 1, 0.0)))
-    with written(PRESSURE) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(("gear", "pair", "arc [mm]", "z [mm]", "pressure [MPa]"))
-        out.writerows([(side, order, f"{s:.5g}", f"{z:.5g}", f"{p:.5g}") for side, order, s, z, p in rows])
-
-
-def nodal_pressure(path):
-    """Contact pressure by node from CalculiX's ``.frd`` file: the fourth value of its last CONTACT block."""
-    found, inside = {}, False
-    for line in Path(path).read_text(encoding="ascii", errors="replace").splitlines():
-        if line.startswith(" -4"):
-            inside = "CONTACT" in line
-        elif inside and line.startswith(" -1"):
-            found[int(line[3:13])] = float(line[13 + 36 : 13 + 48])
-        elif line.startswith(" -3"):
-            inside = False
-    return found
 
 
 def wanted():

@@ -1,93 +1,70 @@
-"""The page of speed against error, from the tables that the three benchmarks write: sections, three dimensions, dynamics."""
+"""Sections and picture of the page of speed against error, of what one run measured."""
 
-import csv
+import math
 from pathlib import Path
 
-import numpy as np
+from matplotlib.figure import Figure
 
 from gearfe.files import written
+from gearfe.pictures.look import MARKS, look
 
-from .places import PAGES, TABLES
+from .places import PAGES
 
-PAGE = PAGES / "speed.md"
 PICTURE = PAGES / "speed.png"
-COLUMNS = ("family", "method", "seconds", "mean error", "max error", "default", "more")
+# of a row of a method: its family, name, seconds, mean and largest error, whether it is the default, anything else
+FAMILY, METHOD, SECONDS, MEAN, MOST, DEFAULT, MORE = range(7)
 PARTS = {
-    "speed_two": ("sections, k over 64 phases", "largest error of k [%]", "seconds for 64 phases"),
-    "speed_three": ("three dimensions, k over 64 phases", "largest error of k [%]", "seconds for 64 phases"),
-    "speed_dynamics": ("vibration, 55 degrees of freedom", "largest error of a mesh force [%]", "seconds per simulated second"),
-}
-HEAD = """# Speed against error
-
-Every method on one case, one thread; which machine, at each table. Errors: relative, of k at each phase against the finest
-solution (2-D: finite elements; 3-D: the energy model at the highest orders), of mesh forces over their range against DOP853 at
-rtol 1e-10. Bold, and circled in the picture: the defaults.
-
-![seconds against error](speed.png)
-"""
-TITLES = {
-    "speed_two": "## Sections (2-D)",
-    "speed_three": "## Three dimensions\n\nMore of it: [speed_three.md](speed_three.md).",
-    "speed_dynamics": "## Integrators\n\nMore of it, and all four machines: [dynamics.md](dynamics.md).",
+    "sections": ("sections, k over 64 phases", "largest error of k [%]", "seconds for 64 phases"),
+    "three": ("three dimensions, k over 64 phases", "largest error of k [%]", "seconds for 64 phases"),
+    "dynamics": ("vibration, 55 degrees of freedom", "largest error of a mesh force [%]", "seconds per simulated second"),
 }
 
 
-def save(part, about, rows):
-    """Write the rows (as `COLUMNS`) of a part and what they were measured on, then the page."""
-    TABLES.mkdir(exist_ok=True)
-    with (TABLES / f"{part}.csv").open("w", encoding="utf-8", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow([*COLUMNS, "about"])
-        for i, row in enumerate(rows):
-            out.writerow([*(f"{v:.4g}" if isinstance(v, float) else v for v in row), about if i == 0 else ""])
-    with written(PAGE) as name:
-        Path(name).write_text(page(), encoding="utf-8")
-    _plot()
-
-
-def load(part):
-    """Rows of a part as dicts; empty if it was never measured."""
-    file = TABLES / f"{part}.csv"
-    return list(csv.DictReader(file.read_text(encoding="utf-8").splitlines())) if file.is_file() else []
-
-
-def page():
-    """Text of the page, from the tables alone."""
-    return "\n".join([HEAD, *(_section(part) for part in PARTS if load(part))])
-
-
-def _section(part):
-    rows = load(part)
-    lines = [TITLES[part], "", rows[0]["about"], "", "| method | seconds | mean error | max error |  |", "|---|---|---|---|---|"]
+def table(rows, more=""):
+    """Lines: methods with their seconds and errors."""
+    lines = [f"| method | seconds | mean error | max error | {more} |", "|---|---|---|---|---|"]
     for row in rows:
-        bold = "**" if row["default"] == "1" else ""
-        errors = [_percent(row[name]) for name in ("mean error", "max error")]
-        lines.append(f"| {bold}{row['method']}{bold} | {float(row['seconds']):.3g} | {' | '.join(errors)} | {row['more']} |")
-    return "\n".join([*lines, ""])
+        bold = "**" if row[DEFAULT] else ""
+        lines.append(
+            f"| {bold}{row[METHOD]}{bold} | {row[SECONDS]:.3g} | {_percent(row[MEAN])} | {_percent(row[MOST])} | {row[MORE]} |"
+        )
+    return lines
 
 
-def _percent(text):
-    value = float(text)
-    return "" if np.isnan(value) else "reference" if value == 0 else f"{100 * value:.2g} %"
+def _percent(value):
+    return "" if value is None else "reference" if value == 0 else f"{100 * value:.2g} %"
 
 
-def _plot():
-    from matplotlib.figure import Figure
+def exponents(found, over):
+    """Lines: CPU seconds over each of the varied numbers, and the exponent of the last step."""
+    lines = ["| varied | values | CPU seconds | exponent |", "|---|---|---|---|"]
+    for name, values in over.items():
+        seconds = found[name]
+        rise = math.log(seconds[-1] / seconds[-2]) / math.log(values[-1] / values[-2])
+        cells = ", ".join(map(str, values)), ", ".join(f"{one:.3g}" for one in seconds)
+        lines.append(f"| {name} | {' | '.join(cells)} | {rise:.1f} |")
+    return lines
 
-    from gearfe.pictures.look import MARKS, look
 
-    parts = [part for part in PARTS if load(part)]
-    figure = Figure(figsize=(5.2 * len(parts), 3.8), layout="constrained")
-    for axes, part in zip(figure.subplots(1, len(parts), squeeze=False)[0], parts, strict=True):
-        rows = [row for row in load(part) if float(row["max error"]) > 0]
-        for number, family in enumerate(dict.fromkeys(row["family"] for row in rows)):
-            line = [(float(row["seconds"]), 100 * float(row["max error"])) for row in rows if row["family"] == family]
+def steps(found):
+    """Lines: seconds of each machine at the step that `simulate` chooses."""
+    lines = ["| machine | step, us | estimate | seconds |", "|---|---|---|---|"]
+    return lines + [f"| {r['name']} | {r['step']:.2g} | {r['estimate']:.1e} | {r['seconds']:.3g} |" for r in found]
+
+
+def plot(found):
+    """Draw seconds against errors of `PARTS`."""
+    figure = Figure(figsize=(5.2 * len(PARTS), 3.8), layout="constrained")
+    for axes, part in zip(figure.subplots(1, len(PARTS)), PARTS, strict=True):
+        rows = [row for row in found[part]["rows"] if row[MOST] > 0]
+        for number, family in enumerate(dict.fromkeys(row[FAMILY] for row in rows)):
+            line = [(row[SECONDS], 100 * row[MOST]) for row in rows if row[FAMILY] == family]
             mark = {"marker": MARKS[number % len(MARKS)], "ms": 4 + 2 * (number >= len(MARKS))}
             mark["mfc"] = "none" if number >= len(MARKS) else None  # after all marks once more, larger and hollow
             axes.loglog(*zip(*line, strict=True), label=family, **mark, **look(number))
         for row in rows:
-            if row["default"] == "1":
-                axes.loglog(float(row["seconds"]), 100 * float(row["max error"]), "o", ms=11, mfc="none", mec="k")
+            if row[DEFAULT]:
+                axes.loglog(row[SECONDS], 100 * row[MOST], "o", ms=11, mfc="none", mec="k")
         title, vertical, horizontal = PARTS[part]
         axes.set_title(title, fontsize=10)
         axes.set_ylabel(vertical)
@@ -95,4 +72,4 @@ def _plot():
         axes.grid(True, which="major", alpha=0.3)
         axes.legend(fontsize=7)
     with written(PICTURE) as name:
-        figure.savefig(name, dpi=90)
+        figure.savefig(Path(name), dpi=90)

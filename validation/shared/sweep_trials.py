@@ -50,7 +50,7 @@ def same(one, other):
     return tables[0].equals(tables[1]) and one.curves().identical(other.curves())
 
 
-def kills(count=20):
+def kills(count=10):
     """A sweep, each case its own block, killed at random moments, each time continued, beside an undisturbed one."""
     drawn = random.Random(20)
     with tempfile.TemporaryDirectory() as name:

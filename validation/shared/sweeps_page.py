@@ -1,38 +1,19 @@
-"""Text of the page `sweeps.md`, from what `validation.make.sweeps` keeps."""
-
-
-def page(kept):
-    """The page, of the parts on file."""
-    sections = {
-        "grid": cost, "new_cracks": new_text, "kills": kills_text, "refusals": refusals_text, "cluster": cluster_text,
-        "estimate": million, "tolerances": tolerances_text,
-    }  # fmt: skip
-    needed = {"estimate": ("grid", "cluster")}
-    lines = ["# Thousands of cases", "", "Made by `python -m validation sweeps`; each part is kept in `tables/sweeps.json`.", ""]
-    for name, section in sections.items():
-        own = [kept.get(part) for part in needed.get(name, (name,))]
-        if all(own):
-            lines += [*section(*own), ""]
-    return "\n".join(lines).rstrip() + "\n"
+"""Sections of the page `sweeps`, of what its parts keep."""
 
 
 def cost(found):
     """What the grid took."""
     total = found["parent_seconds"] + found["worker_seconds"]
-    shown = found["memory"][:: max(1, len(found["memory"]) // 12)]
-    last = found["memory"][-1]
-    shown = shown if shown[-1] is last else [*shown, last]
+    first, most, last = found["memory"]
     where = found["machine"].replace(", one thread used", "")
-    part = (
-        "" if found["cases"] == 10000 else f" Stopped by hand when {found['cases']} of them were done: the figures are of these."
-    )
     return [
         "## What it costs",
         "",
-        "10 000 cases of `planetary_pitting`, sun and planet: 25 crack levels, 5 angles, 8 loads, 10 bores; `ritz`, 32 phases",
-        f"per mesh cycle over the engagement of the cracked tooth; 2 processes on {where}.{part}",
-        f"The clock says {found['wall'] / 60:.1f} min, at a load average of {found['load_average']:.0f} on two cores",
-        "(2: nothing else ran).",
+        f"{found['cases']:,} cases of `planetary_pitting`, sun and planet: crack levels, angles, loads and bores; `ritz`, 32",
+        "phases per",
+        f"mesh cycle over the engagement of the cracked tooth; 2 processes on {where}. The clock says",
+        f"{found['wall'] / 60:.1f} min,",
+        f"at a load average of {found['load_average']:.0f} on two cores (2: nothing else ran).",
         "",
         "| what | value |",
         "|---|---|",
@@ -41,48 +22,40 @@ def cost(found):
         f"| of it in cases: what one process would need, over what two need | {100 * found['case_seconds'] / total:.1f} % |",
         f"| of it in the process that writes and hands out | {found['parent_seconds']:.1f} s |",
         f"| store | {found['bytes'] / 1e6:.1f} MB in {found['blocks']} files, {found['bytes'] / found['cases']:.0f} B a case |",
+        f"| resident memory of the three processes: first, most, last | {first:.0f}, {most:.0f}, {last:.0f} MB |",
         f"| cases that failed | {found['failed']} |",
         "",
-        "Resident memory of the three processes together. It rises while each process fills its store of solved gears, of 64 MB",
-        "at most (here about 1 MB for each of its blocks); a run that ends before that does not show that it is flat then:",
-        "",
-        "| minutes | MB | blocks done |",
-        "|---|---|---|",
-        *(f"| {seconds / 60:.1f} | {size:.0f} | {blocks} |" for seconds, size, blocks in shown),
+        "Memory rises while each process fills its store of solved gears, of 64 MB at most.",
     ]
 
 
-def new_text(found):
+def new(found):
     """Cases that share nothing."""
     return [
         "## Cracked gears not solved before",
         "",
-        f"{found['cases']} levels, each case another cracked gear, 32 phases per mesh cycle over its",
-        "engagement, mate known. Median of",
+        f"{found['cases']} levels, each case another cracked gear, 32 phases per mesh cycle over its engagement, mate known.",
+        "Median of",
         f"the sweep {1e3 * found['swept']:.0f} ms of processor time, least {1e3 * found['least']:.0f} ms; of single calls of",
         f"`gf.mesh_stiffness` in the same process just after, {1e3 * found['alone']:.0f} ms.",
-        "45 ms were asked for; the speed page, of another machine, has 46 ms for 64 phases of one cycle.",
     ]
 
 
-def kills_text(found):
+def kills(found):
     """Kill -9."""
-    blocks = ", ".join(str(one["blocks"]) for one in found["kills"])
     kept = all(one["kept"] for one in found["kills"])
     return [
         "## Killed",
         "",
         f"A sweep of {found['cases']} cases, each its own block, on one and two processes in turn, killed (SIGKILL) at",
-        f"{len(found['kills'])} random moments and each time",
-        f"started again. Blocks in the folder after each kill: {blocks}. Every file there stayed as it was, byte for byte:",
-        f"**{'yes' if kept else 'NO'}**. {found['left_for_the_last']} cases were left for the last start. The",
-        "store is that of an",
-        f"undisturbed sweep, all rows and curves bit for bit, {found['cases']} cases:",
-        f"**{'yes' if found['same'] else 'NO'}**.",
+        f"{len(found['kills'])} random moments and each time started again. Every file there stayed as it was, byte for byte:",
+        f"{_yes(kept)}. {found['left_for_the_last']} cases were left for the last start. The store is that of an undisturbed",
+        "sweep,",
+        f"all rows and curves bit for bit: {_yes(found['same'])}.",
     ]
 
 
-def refusals_text(found):
+def refusals(found):
     """Disks and folders."""
     said = ("full disk", "read-only folder", "foreign folder", "another study", "shard cut in half", "one bit turned")
     return [
@@ -92,110 +65,24 @@ def refusals_text(found):
         "|---|---|",
         *(f"| {name} | {found[name]} |" for name in said),
         "",
-        f"The full disk kept {found['kept']} finished cases; with more space the same call went on, and its",
-        "store is that of an",
-        f"undisturbed sweep: **{'yes' if found['same'] else 'NO'}**. With the damaged file deleted, its block",
-        "was computed again and",
-        f"the store is the same: **{'yes' if found['mended'] else 'NO'}**.",
+        f"The full disk kept {found['kept']} finished cases; with more space the same call went on, and its store is that of an",
+        f"undisturbed sweep: {_yes(found['same'])}. With the damaged file deleted, its block was computed again and the store",
+        "is the",
+        f"same: {_yes(found['mended'])}.",
     ]
 
 
-def cluster_text(found):
+def cluster(found):
     """Dask."""
     return [
         "## A cluster that loses a worker",
         "",
-        f"A Dask scheduler and three worker processes; one was killed when {found['killed_after']} of",
-        f"{found['cases']} cases were done.",
-        "Rows and curves are those of one local process, bit for bit:",
-        f"**{'yes' if found['same'] else 'NO'}**. The scheduler spends",
+        f"A Dask scheduler and three worker processes; one was killed when {found['killed_after']} of {found['cases']} cases",
+        "were",
+        f"done. Rows and curves are those of one local process, bit for bit: {_yes(found['same'])}. The scheduler spends",
         f"{1e3 * found['scheduler_seconds']:.2f} ms of processor time on a task.",
     ]
 
 
-def million(grid, cluster):
-    """The paper estimate."""
-    cases, nodes, cores, block = 1e6, 100, 32, 32
-    each = grid["case_seconds"] / grid["cases"]
-    writing = grid["parent_seconds"] / grid["blocks"]
-    tasks = cases / block
-    work, handing, keeping = cases * each / (nodes * cores), tasks * cluster["scheduler_seconds"], tasks * writing
-    first = max((work, "computing"), (handing, "the scheduler"), (keeping, "the one process that writes"))
-    return [
-        "## A million cases on 100 nodes, on paper",
-        "",
-        f"From the figures above, not tried: {nodes} nodes of {cores} cores, cases like those of the grid in",
-        f"{tasks:.0f} blocks.",
-        "",
-        "| what | how much | seconds |",
-        "|---|---|---|",
-        f"| computing | {1e3 * each:.1f} ms a case, {cases * each / 3600:.1f} h on {nodes * cores} cores | {work:.0f} |",
-        f"| scheduler | {1e3 * cluster['scheduler_seconds']:.2f} ms a task | {handing:.0f} |",
-        f"| receiving, writing, flushing | {1e3 * writing:.1f} ms of processor time a block, start included | {keeping:.0f} |",
-        f"| store | {grid['bytes'] / grid['cases'] * cases / 1e9:.2f} GB in {tasks:.0f} files | |",
-        "",
-        f"The three run side by side, so that the longest decides: {first[1]}, {first[0]:.0f} s, besides the",
-        "start of the workers (some",
-        "seconds of imports on each, more from a slow shared disk). Where writing comes first, larger blocks",
-        "(`block = 512`) divide",
-        "the cost by 16 and lose more at a kill; where cases take seconds (three dimensions, vibration) computing decides.",
-    ]
-
-
-def tolerances_text(found):
-    """The worked example."""
-    states = found["states"]
-    noises = (0.001, 0.003, 0.01)
-    lines = [
-        "## How sure can a 10 % crack be told from manufacturing scatter?",
-        "",
-        f"{found['cases']} cases: 128 draws of a sun-planet pair within tolerances, each healthy, with a",
-        "crack of level 0.1 and of 0.3",
-        "(of the tooth's thickness; 0.5 reaches the centre-line) in the sun. What is drawn, independently:",
-        "profile shifts of both gears",
-        "(standard deviation 0.005 modules, that is 10 um), profile slopes of both (3 um, cut at 6 um), bore",
-        "and face width of the sun",
-        "(+- 0.01 mm, +- 0.1 mm), the modulus of the sun's steel (1 %), the load (2 %). They are assumptions",
-        "of a usual quality, not",
-        "measured on a lot. `ritz`, 32 phases, the engagement of the damaged tooth.",
-        "",
-        "![bands of stiffness and histograms of its mean](sweeps_tolerances.png)",
-        "",
-        "*Bands hold nine of ten machines.* Chance that a cracked machine drawn at random has the lower",
-        "stiffness (the larger",
-        "transmission error) than a healthy one drawn at random; 50 % is a coin:",
-        "",
-        "| state | mean k | scatter | loss of mean k by the crack | by mean k | by least k | by te peak-to-peak |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for state, row in states.items():
-        loss = "" if state == "healthy" else f"{100 * row['loss']:.2f} +- {100 * row['loss_spread']:.2f} %"
-        chances = (1 - row["k_mean"], 1 - row["k_min"], row["te_peak_to_peak"])
-        told = " | ".join("" if state == "healthy" else f"{100 * one:.0f} %" for one in chances)
-        lines.append(f"| {state} | {row['mean'] / 1e6:.1f} N/um | {100 * row['spread']:.1f} % | {loss} | {told} |")
-    lines += [
-        "",
-        "With a record of the same machine when it was healthy, scatter of manufacture falls out, and what",
-        "is left is that of two",
-        "measurements, each with an independent normal error of mean k:",
-        "",
-        "| state | " + " | ".join(f"error {100 * noise:g} %" for noise in noises) + " |",
-        "|---" * (1 + len(noises)) + "|",
-        *(
-            f"| {state} | " + " | ".join(f"{100 * row[f'own {noise}']:.1f} %" for noise in noises) + " |"
-            for state, row in states.items()
-            if state != "healthy"
-        ),
-        "",
-        "Where the scatter of the healthy pair's mean k comes from: Sobol indices of",
-        f"{found['indices_cases']} further cases (first order,",
-        "95 % interval by bootstrap; total). Indices of so small a sample are rough: intervals that reach",
-        "below zero say no more than",
-        "'small'.",
-        "",
-        "| drawn | first order | 95 % | total | 95 % |",
-        "|---|---|---|---|---|",
-    ]
-    for name, (first, low, high, total, bottom, top) in sorted(found["indices"].items(), key=lambda item: -item[1][3]):
-        lines.append(f"| `{name}` | {first:.2f} | {low:.2f} to {high:.2f} | {total:.2f} | {bottom:.2f} to {top:.2f} |")
-    return lines
+def _yes(holds):
+    return "**yes**" if holds else "**NO**"

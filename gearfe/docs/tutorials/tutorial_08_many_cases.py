@@ -54,7 +54,7 @@ print(f"{type(failed).__name__}: {failed}")
 # Where may a formula be used?
 # ----------------------------
 # ``error_map`` draws gears at random, by a fixed seed, and compares the closed forms with the converged energy model. Eight pairs
-# are a taste; the map in :doc:`/_made/validation/map` has two thousand.
+# are a taste; the map in :doc:`/_made/validation/map` has many more.
 
 found = gf.error_map(8, phases=12, workers=1)
 for name in ("textbook", "published", "coupled"):

@@ -34,7 +34,7 @@ def bent(gear, sector, number, crack, width):
     def folds(points):
         return np.linalg.det(jacobians(points, sector.triangles, bulges, CHECKED).transpose(0, 3, 1, 2)).min() <= 0
 
-    bulges, outline = sector.edge_bulges(), np.unique(np.array(list(sector.bulge)))
+    bulges, outline = sector.edge_bulges, np.unique(np.array(list(sector.bulge)))
     line = np.array(sector.faces[number])
     return follow(gear, crack, width, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
 

@@ -45,10 +45,10 @@ def join(gear, panels, healthy):
         at, one = pushes[tooth], panels[tooth]
         own = (one.own + one.own.T) / 2
         between[at, at] += np.block([[own, one.open_own.T], [one.open_own, one.open_open]])
-    index = {t: np.arange(pushes[t].start, pushes[t].start + n) for t in teeth}
+    index = {t: slice(pushes[t].start, pushes[t].start + n) for t in teeth}
     faces = np.concatenate([np.arange(pushes[t].start + n, pushes[t].stop) for t in teeth])
-    influence = {(i, j): between[np.ix_(index[i], index[j])] for i in teeth for j in teeth}
-    opening = {t: between[np.ix_(faces, index[t])] for t in teeth}
+    influence = {(i, j): between[index[i], index[j]].copy() for i in teeth for j in teeth}
+    opening = {t: between[faces, index[t]] for t in teeth}
     mutual = between[np.ix_(faces, faces)]
     return influence, opening | {"influence": (mutual + mutual.T) / 2}
 

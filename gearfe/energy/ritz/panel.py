@@ -69,7 +69,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain", tilt=0.0
     numbers, count, chain = numbering(sector, order)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     edge = _unknowns(np.append(sides, chain(sector.held)))
-    bulges = sector.edge_bulges()
+    bulges = sector.edge_bulges
     parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))

@@ -226,7 +226,7 @@ def _gram(sector, order, triangles, points, shift=None):
     N are the functions of the `triangles`, with their vertices at `points`.
     """
     basis, corners = table(order), sector.triangles[:, triangles]
-    bulges = sector.edge_bulges()[..., triangles]
+    bulges = sector.edge_bulges[..., triangles]
     (xx, xy), (yx, yy) = jacobians(points, corners, bulges, order).transpose(1, 2, 0, 3)
     area = xx * yy - xy * yx
     first, second = basis.slope

@@ -71,7 +71,9 @@ def _healthy(gear, material, _, neighbours, state, order, refine, cache):
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
     near, own, leans = _own_tooth(gear, influence[0, 0])
-    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, leans={0: leans})
+    return Flexibility(
+        gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, basis=_basis(gear), leans={0: leans}
+    )
 
 
 def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
@@ -97,7 +99,7 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
     unknowns = sum(p.unknowns for p in panels.values())
-    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, leans)
+    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, _basis(gear), leans)
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
@@ -166,8 +168,12 @@ def _carry(places):
 @keeping(64)
 def _knots(gear):
     """Arcs of the splines' knots, and the matrix from values at the loads to values there."""
-    places = np.linspace(-1, 1, KNOTS)
-    return _arcs(gear, places), _carry(places)
+    return _arcs(gear, np.linspace(-1, 1, KNOTS)), _between()
+
+
+@keeping(1)
+def _between():
+    return _carry(np.linspace(-1, 1, KNOTS))
 
 
 def _spline(gear, influence):
@@ -175,9 +181,15 @@ def _spline(gear, influence):
     return RectBivariateSpline(arcs, arcs, matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 
 
+@keeping(64)
+def _basis(gear):
+    """Spline from values at the loads to those at an arc: what a tooth's S(s, s') is carried by."""
+    return CubicSpline(*_knots(gear))
+
+
 def _own_tooth(gear, influence):
-    """Splines S(s, s) and S(s, s') of a tooth, from the smooth influence between its loads, and what `leaning` gives."""
+    """Spline S(s, s), S(s, s') between the loads along the normal, and what `leaning` gives, from the influence of all loads."""
     (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
-    near = CubicSpline(arcs, np.einsum("ki,ij,kj->k", matrix, between, matrix))
+    near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
     at, tilted = _leans(gear), np.diag(influence)[PLACES:]
-    return near, _spline(gear, (influence + influence.T) / 2), leaning(at, near(at), tilted[::2], tilted[1::2])
+    return near, (between + between.T) / 2, leaning(at, near(at), tilted[::2], tilted[1::2])

@@ -62,12 +62,15 @@ def test_unloaded_side_is_the_mirror_image():
     assert_allclose(one * [[-1], [1]], two)
 
 
-def test_seam_has_two_faces_and_one_tip():
+@pytest.mark.parametrize("side", ["loaded", "unloaded"])
+def test_seam_has_two_faces_and_one_tip(side):
     gear = PAIR.gear_1
     sizes = {"fillet_size": 0.2, "size": 0.8, "far_size": 1.8}
-    mesh = section(gear, {0: stations(gear, 0.2)}, **sizes, cracks=[gf.Crack(level=0.3)])
+    crack = gf.Crack(level=0.3, side=side)
+    mesh = section(gear, {0: stations(gear, 0.2)}, **sizes, cracks=[crack])
     left, right = mesh.seams[0].faces
     points = mesh.mesh.doflocs
+    assert_allclose(points[:, left[[0, -1]]], crack_path(gear, crack), atol=1e-9)
     assert_allclose(points[:, left], points[:, right], atol=1e-12)
     assert left[-1] == right[-1]
     assert not set(left[:-1]) & set(right[:-1])

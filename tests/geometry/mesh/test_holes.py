@@ -123,7 +123,6 @@ def test_what_is_cut_is_what_the_pits_take(name, beta):
     assert made.faces["pits"].size
 
 
-@pytest.mark.slow
 def test_the_helix_turns_no_tet_inside_out():
     """This coarse mesh has flat tets that the turn would invert; it is made anew."""
     pair = gf.load_scene("helical_pitting").pair()

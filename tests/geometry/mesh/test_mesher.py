@@ -1,4 +1,7 @@
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -61,9 +64,17 @@ def test_session_is_closed_after_an_error():
     assert not gmsh.isInitialized()
 
 
-def test_missing_gmsh_names_the_packages(monkeypatch):
-    import sys
+@pytest.mark.skipif(os.name != "posix", reason="no signals to keep")
+def test_a_closed_pipe_is_an_error_after_a_session_as_before():
+    """gmsh takes back that Python ignores SIGPIPE: a killed worker of a sweep then ended the whole program without a word."""
+    code = "import os; from geometry.mesh import mesher\nwith mesher.gmsh_session():\n    pass\n"
+    code += "one, two = os.pipe(); os.close(one); os.write(two, b'x')"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "BrokenPipeError" in done.stderr
 
+
+def test_missing_gmsh_names_the_packages(monkeypatch):
     monkeypatch.setitem(sys.modules, "gmsh", None)
     with pytest.raises(RuntimeError, match="libglu1-mesa"), mesher.gmsh_session():
         pass
@@ -74,3 +85,13 @@ def test_same_tooth_twice_is_refused():
     roll = outline.stations(gear, 0.5)
     with pytest.raises(ValueError, match="not distinct"):
         section_mesh.section(gear, {0: roll, 5: roll}, fillet_size=0.5, size=1.0, far_size=1.0)
+
+
+def test_edges_are_as_long_as_asked_where_they_are_fine():
+    """0.1 from 4 to 6, no longer than 1 anywhere, and from one to the next no more than a quarter of an edge longer."""
+    steps = np.diff(places := outline.spaced(0.0, 10.0, 1.0, [(4.0, 6.0, 0.1)]))
+    inside = (places[:-1] >= 4) & (places[1:] <= 6)
+    assert_allclose(steps[inside], 0.1, rtol=0.05)
+    assert inside.sum() in (19, 20)
+    assert steps.max() < 1.05
+    assert (np.maximum(steps[1:] / steps[:-1], steps[:-1] / steps[1:]) < 1.3).all()

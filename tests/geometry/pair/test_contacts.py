@@ -71,3 +71,17 @@ def test_pitches_beyond_the_path_are_those_where_corners_come_near(more, count):
         gaps = [contacts.approach(pair, roll, nominal, driver=driver).gap for _, roll, driver in contacts.corners_of(pair)]
         near = np.flatnonzero((np.array(gaps) < 0.02 * 2.0).any(axis=0))  # two hundredths of the module
         assert near.size == 0 or math.ceil(0.02 * (near[-1] + 1)) <= beyond
+
+
+def test_corners_touch_in_their_own_half_of_the_cycle():
+    """Tip of the pinion and form point of the wheel at the end, the others at the start; the swapped pair has it mirrored."""
+    rack = RACK | {"tip_radius": 0.1}
+    one, two = gf.Gear(z=14, r_bore=4.0, **rack), gf.Gear(z=15, r_bore=4.0, **rack)
+    for pair in (gf.GearPair(one, two), gf.GearPair(two, one)):
+        found = pair.contacts(np.arange(8) / 8)
+        middle = sum(pair.path) / 2
+        for number, gap in enumerate(found.corner_gap, start=1):
+            there = np.isfinite(gap)
+            assert there.any(), number
+            late = found.nominal[there] > middle
+            assert late.all() if number in (1, 4) else not late.any()

@@ -114,3 +114,15 @@ def test_rack_tip_radius_is_capped_with_a_warning():
 def test_impossible_gears_are_refused(change, message):
     with pytest.raises(ValueError, match=message):
         gf.Gear(**({"z": 25} | RACK | change))
+
+
+@pytest.mark.parametrize("beta", [-30, 0, 15])
+@pytest.mark.parametrize("x", [-0.3, 0.0, 0.5])
+def test_teeth_are_as_thick_as_the_shifted_rack_leaves_them(beta, x):
+    """On the reference circle half a pitch and, across the helix, 2 x m_n tan(alpha_n); normal to flanks pi m_n cos(alpha_n)."""
+    gear = gf.Gear(z=30, x=x, m_n=2.0, alpha_n=math.radians(20), b=20.0, beta=math.radians(beta), r_bore=10.0)
+    thickness = 2 * gear.r * gear.half_thickness(gear.r)
+    across = (math.pi / 2 + 2 * x * math.tan(gear.alpha_n)) * gear.m_n
+    assert thickness * math.cos(gear.beta) == pytest.approx(across, rel=1e-12)
+    assert gear.p_bt * math.cos(gear.beta_b) == pytest.approx(math.pi * gear.m_n * math.cos(gear.alpha_n), rel=1e-12)
+    assert math.tan(gear.beta_b) == pytest.approx(gear.r_b * gear.twist_rate, rel=1e-12)

@@ -1,0 +1,48 @@
+"""Contacts that move along the flanks to where they yield less, and crack faces that overlap."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.contact.plane import OVERLAP, _closing
+from gearfe.contact.sliding import sliding
+from geometry.tooth.profile import arc_at
+
+RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
+
+
+def softer_upwards(gear, change):
+    """Flexibility that grows by so much per length of the flank, whichever tooth."""
+    return SimpleNamespace(gear=gear, matrix=lambda roll, teeth: change * arc_at(gear, roll)[..., None])
+
+
+@pytest.mark.parametrize("changes", [(3e-6, 0.0), (0.0, 3e-6), (3e-6, 3e-6), (3e-6, -1e-6)])
+def test_contacts_slide_to_where_both_flanks_yield_less(changes):
+    """Up the pinion is down the wheel: the pair changes by the difference, and what is gained is P S' x + x**2 / (2 R)."""
+    pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+    found = pair.contacts([0.2, 0.7], extended=False)
+    bodies = [softer_upwards(gear, change) for gear, change in zip((pair.gear_1, pair.gear_2), changes, strict=True)]
+    contact = SimpleNamespace(pair=pair, found=found, flexibility=bodies, radius=found.radius, opening_at=lambda *_: None)
+    load, along, radius = 100.0, changes[0] - changes[1], found.radius
+    moved = -radius * load * along / 2
+    gained = -(load * along * moved + moved**2 / (2 * radius))
+    got = sliding(contact) * load**2
+    there = np.isfinite(found.gap)
+    assert there.sum() >= 3
+    assert_allclose(got[there], gained[there], rtol=1e-9, atol=1e-15)
+    assert (got[~there] == 0).all()
+
+
+def test_faces_that_overlap_anywhere_are_closing():
+    slight = -0.5 * OVERLAP
+    for opening, closes in (
+        ([1.0, 0.5, 0.1], False),
+        ([1.0, 0.5, -0.1], True),
+        ([-1.0, -0.5, -0.1], True),
+        ([1.0, slight], False),
+    ):
+        assert _closing(np.array([opening])).tolist() == [closes]

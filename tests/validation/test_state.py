@@ -1,0 +1,214 @@
+"""Which rows are of the present code: a project of one page, whose job imports one module and reads one file of data."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from validation.shared import places, state
+
+MODULE = '"""One."""\n\n\ndef one():\n    """Give 1."""\n    return 1  # that is one\n'
+MAKE = """
+import time
+from pathlib import Path
+from validation.shared.kept_rows import kept
+from validation.shared.places import PAGES, ROOT, TABLES
+
+def run(parts=()):
+    from gearfe.used import one
+    more = float((ROOT / "gearfe" / "data.csv").read_text())
+    with (TABLES / "cracks.csv").open("w") as file:
+        file.write("name,value\\nfirst,")
+        file.flush()
+        time.sleep(more)
+        file.write(f"{one()}\\nsecond,2\\n")
+    (PAGES / "cracks.md").write_text("# How much?\\n\\nMuch.\\n")
+"""
+KEPT = "from validation.shared.kept_rows import kept\n\n\ndef run(parts=()):\n"
+KEPT += "    for name in ('one', 'two'):\n        print(kept('dynamics_rows', name, lambda: {'value': 1}, parts))\n"
+KEPT += "\n\ndef reference():\n    for name in ('three', 'four'):\n        kept('dynamics_far', name, lambda: {'value': 1})\n"
+
+
+@pytest.fixture
+def project(tmp_path):
+    home = places.HOME
+    for folder in ("gearfe", "geometry", "tests", "validation/make", "validation/pages/tables"):
+        (tmp_path / folder).mkdir(parents=True)
+        (tmp_path / folder / "__init__.py").touch()
+    shutil.copytree(home / "shared", tmp_path / "validation" / "shared", ignore=shutil.ignore_patterns("arbiter", "__pycache__"))
+    for name in ("__init__.py", "__main__.py"):
+        shutil.copy(home / name, tmp_path / "validation")
+    text = re.sub(
+        "PAGES = QUESTIONS.*?\n}", "PAGES = {'cracks': '', 'dynamics': ''}", (home / "__main__.py").read_text(), flags=re.S
+    )
+    text = re.sub(
+        "CONTINUED = {.*?\n}",
+        "CONTINUED = {'cracks': ('cracks.csv',), 'dynamics --reference': ('dynamics_far.jsonl',)}",
+        text,
+        flags=re.S,
+    )
+    (tmp_path / "validation/__main__.py").write_text(text)
+    for name, text in {
+        "gearfe/used.py": MODULE,
+        "gearfe/idle.py": MODULE,
+        "gearfe/data.csv": "0\n",
+        "validation/make/cracks.py": MAKE,
+        "validation/make/dynamics.py": KEPT,
+    }.items():
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+def told(project, *words, code=0):
+    """What `python -m validation` prints in the project; its exit code is asserted."""
+    own = {name: value for name, value in os.environ.items() if not name.startswith(("GIT_", "GEARFE_"))}
+    command = [sys.executable, "-m", "validation", *words]
+    done = subprocess.run(command, cwd=project, env=own | {"PYTHONPATH": ""}, capture_output=True, text=True, check=False)
+    assert done.returncode == code, done.stdout + done.stderr
+    return done.stdout + done.stderr
+
+
+def old(project):
+    """Rows of the page that `--stale` calls old."""
+    lines = [line.split() for line in told(project, "--stale").splitlines() if line.startswith("cracks ")]
+    assert len(lines) <= 1
+    return int(lines[0][1]) if lines else 0
+
+
+def first_line(project):
+    return (project / "validation" / "pages" / "cracks.md").read_text().partition("\n")[0]
+
+
+REWORDED = (
+    (" that is one", " still one"),
+    ("Give 1.", "Give one, and say so."),
+    ("\n\n\n", "\n\n\n\n"),
+    ("    return", "\n    return"),
+)
+
+
+@pytest.mark.parametrize(
+    ("file", "changes", "rows"),
+    [
+        pytest.param("gearfe/used.py", REWORDED, 0, id="comment, docstring and form of a module"),
+        pytest.param("gearfe/used.py", [("return 1", "return True")], 2, id="line of a module imported in a function"),
+        pytest.param("gearfe/idle.py", [("return 1", "return 2")], 0, id="line of a module not imported"),
+        pytest.param("gearfe/data.csv", [("0", "0.001")], 2, id="data that was read"),
+        pytest.param("validation/make/cracks.py", [("second,2", "second,3")], 2, id="module of the page"),
+        pytest.param("validation/shared/renew.py", [("import os", "import math, os")], 0, id="what only keeps and writes"),
+    ],
+)
+def test_rows_are_old_when_what_they_used_means_something_else(project, file, changes, rows):
+    told(project, "cracks")
+    assert old(project) == 0
+    assert first_line(project) == "2 of 2 rows on the present code"
+    for was, now in changes:
+        text = (project / file).read_text()
+        assert was in text
+        (project / file).write_text(text.replace(was, now))
+    assert old(project) == rows
+    assert first_line(project) == f"{2 - rows} of 2 rows on the present code"
+
+
+def test_a_module_that_changes_while_a_job_runs_makes_it_fail(project):
+    (project / "validation/make/cracks.py").write_text(MAKE + '    (ROOT / "gearfe" / "used.py").touch()\n')
+    assert "gearfe/used.py changed while cracks was computed" in told(project, "cracks", code=1)
+    assert old(project) == 1
+
+
+def test_a_page_that_was_never_computed_is_old(project):
+    assert old(project) == 1
+    told(project, "cracks")
+    assert "dynamics " in told(project, "--stale")
+    assert "dynamics" in told(project, "--stale", "--age", "30", code=1).partition("old for more than")[2]
+
+
+def test_rows_that_are_kept_are_recorded_one_by_one(project):
+    told(project, "dynamics")
+    told(project, "dynamics", "--reference")
+    (project / "validation/make/dynamics.py").write_text(KEPT.replace("'value': 1", "'value': 2"))
+    assert "4 of     4 rows old" in told(project, "--stale")
+    told(project, "dynamics", "two")
+    told(project, "dynamics", "--reference", "four")
+    assert "2 of     4 rows old" in told(project, "--stale")
+    told(project, "renew", "dynamics", "--minutes", "1")
+    assert "dynamics" not in told(project, "--stale")
+    for name in ("rows", "far"):
+        lines = (project / f"validation/pages/tables/dynamics_{name}.jsonl").read_text().splitlines()
+        assert [json.loads(line)["value"] for line in lines] == [2, 2]
+
+
+def test_age_counts_only_what_is_old(project):
+    for words in (["cracks"], ["dynamics"], ["dynamics", "--reference"]):
+        told(project, *words)
+    path = project / "validation/pages/tables/state.jsonl"
+    path.write_text(path.read_text().replace(time.strftime("%Y-%m-%d", time.gmtime()), "2020-01-01"))
+    told(project, "--stale", "--age", "30")
+    (project / "gearfe/used.py").write_text(MODULE.replace("1", "2"))
+    late = told(project, "--stale", "--age", "30", code=1).partition("old for more than")[2]
+    assert "cracks" in late
+    assert "--stale" in late  # the page still says that its rows are of the present code
+    assert first_line(project) == "2 of 2 rows on the present code"  # asked for an age it changes nothing
+
+
+@pytest.mark.parametrize("killed", [None, signal.SIGTERM, signal.SIGKILL], ids=["time is over", "stopped", "killed"])
+def test_renewing_that_is_stopped_leaves_whole_files(project, killed):
+    told(project, "cracks")
+    folder = project / "validation" / "pages"
+    kept = {path: path.read_text() for path in folder.rglob("*") if path.is_file()}
+    (project / "gearfe/data.csv").write_text("30\n")  # seconds that it waits with half a table written
+    command = [sys.executable, "-m", "validation", "renew", "--minutes", "5" if killed else "0.05"]
+    started = time.monotonic()
+    with subprocess.Popen(
+        command, cwd=project, env=os.environ | {"PYTHONPATH": ""}, stdout=subprocess.PIPE, text=True
+    ) as process:
+        if killed:
+            while not [path for path in half_written(project) if path.read_text().endswith("first,")]:
+                assert time.monotonic() - started < 200
+                time.sleep(0.05)
+            process.send_signal(killed)
+        said = process.communicate()[0]
+    assert process.returncode == {None: 0, signal.SIGTERM: 1, signal.SIGKILL: -signal.SIGKILL}[killed]
+    assert killed or "cracks: stopped" in said
+    if not killed:
+        kept[folder / "cracks.md"] = kept[folder / "cracks.md"].replace("2 of 2", "0 of 2")
+    assert {path: path.read_text() for path in kept} == kept
+    assert killed == signal.SIGKILL or not half_written(project)
+
+
+def half_written(project):
+    return list(Path(project, "validation").glob(".pages.*/pages/tables/cracks.csv"))
+
+
+def test_renew_computes_what_is_old(project):
+    told(project, "cracks")
+    (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
+    assert "cracks: computed again" in told(project, "renew", "--minutes", "1")
+    assert "first,5" in (project / "validation/pages/tables/cracks.csv").read_text()
+    assert old(project) == 0
+
+
+def test_of_two_lines_of_a_job_the_later_counts(monkeypatch, tmp_path):
+    monkeypatch.setattr(places, "TABLES", tmp_path)
+    lines = [{"job": "cracks", "table": "", "date": f"2026-11-0{day}", "rows": day} for day in (2, 3, 1)]
+    (tmp_path / "state.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert state.read()[0]["cracks", ""]["rows"] == 3
+
+
+def test_first_lines_of_pages_agree_with_the_state():
+    assert state.stamp(write=False) == [], "run python -m validation --stale"
+
+
+def test_every_row_that_is_kept_has_its_line_in_the_state():
+    """A line of a row that is gone is deleted by hand; a row without one is computed anew."""
+    jobs, _ = state.read()
+    lines = {(table, job.partition(" ")[2].removeprefix("--reference ")) for job, table in jobs if table.endswith(".jsonl")}
+    kept = {path.name: path.read_text().splitlines() for path in places.TABLES.glob("*.jsonl") if path.stem != "state"}
+    assert lines == {(name, json.loads(row)["row"]) for name, rows in kept.items() for row in rows}

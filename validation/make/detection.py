@@ -1,0 +1,30 @@
+"""The page `detection`: cracks among the scatter of manufacture and of machines."""
+
+from ..shared import page
+from ..shared.kept_rows import stored
+from . import dataset, tolerances
+
+HOW = """
+`python -m validation detection` makes this page from `tables/detection.jsonl`; `... detection all` computes both parts anew (the
+classifier needs scikit-learn). All machines are simulated, and their scatter is assumed.
+"""
+
+
+def answer():
+    """The first line."""
+    state = stored("detection")["tolerances"]["states"]["10 % crack"]
+    return (
+        f"A crack of 10 % of the tooth's thickness lowers the mean stiffness by {100 * state['loss']:.1f} % where manufacture "
+        "scatters it "
+        f"by {100 * state['spread']:.1f} %: the mean tells it no better than {100 * (1 - state['k_mean']):.0f} %, the least "
+        "stiffness "
+        f"of the engagement {100 * (1 - state['k_min']):.0f} %, and two measurements of one machine, each 0.3 % off, "
+        f"{100 * state['own 0.003']:.1f} %."
+    )
+
+
+def run(parts=()):
+    """Write the page; `parts`: ``tolerances``, ``classifier`` or ``all``, to compute anew."""
+    again = page.anew(parts)
+    sections = tolerances.section(again), dataset.section(again)
+    page.write("detection", answer(), HOW.strip().splitlines(), *sections)

@@ -1,0 +1,206 @@
+"""What is old, how long it takes, and computing it again within a given time."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from contextlib import suppress
+from datetime import date
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from . import places, slow, state
+
+AT_ONCE, A_ROW = 60.0, 5.0  # CPU seconds of rows that one process computes, so that a stop loses little; of one of unknown cost
+
+
+class Job(NamedTuple):
+    """What `python -m validation` computes at once."""
+
+    words: tuple[str, ...]  # page and part
+    rows: int
+    old: bool
+    date: str  # empty: never computed
+    seconds: float | None  # of the processor; None: unknown
+    days: int | None = None  # since when it is old; None: unknown, and longer than any age
+    row: bool = False  # whether it is one of the rows that a page computes by their names
+
+
+def jobs(wanted, rows):
+    """All jobs: those of the state that are still wanted, and what is wanted and not in it.
+
+    Parameters
+    ----------
+    wanted : iterable of str
+        Pages, and parts of pages that are computed by themselves, with a space between.
+    rows : iterable of str
+        Pages that compute some of their rows by their names.
+    """
+    (lines, told), out = state.read(), {}
+    wanted = [*wanted, *(f"slow {file}" for file in slow.files())]
+    pages = {name.partition(" ")[0] for name in wanted} - {"slow"}
+    for (name, _), line in lines.items():
+        page, _, part = name.partition(" ")
+        if name not in wanted and page not in pages:
+            continue
+        words = (page, part) if part and (name in wanted or page in rows) else (page,)
+        if part.startswith("--reference "):
+            words = (page, *part.split(" ", 1))
+        old = not state.present(line, told)
+        one = Job(
+            words,
+            line["rows"],
+            old,
+            line["date"],
+            line.get("cpu"),
+            days_old(line, told) if old else 0,
+            len(words) > 1 and name not in wanted,
+        )
+        out[words] = _both(out[words], one) if words in out else one
+    there = {" ".join(words) for words in out} | {" ".join(words[:-1]) for words in out if words[0] in rows}
+    never = [tuple(name.split(" ", 1)) for name in wanted if name not in there]
+    return [*out.values(), *(Job(words, 1, True, "", None, _days_there(*words)) for words in never)]
+
+
+def _both(one, two):
+    """Rows of the same name in two tables of a page are computed together."""
+    days = None if None in (one.days, two.days) else max(one.days, two.days)
+    seconds = None if None in (one.seconds, two.seconds) else one.seconds + two.seconds
+    return Job(one.words, one.rows + two.rows, one.old or two.old, min(one.date, two.date), seconds, days, one.row)
+
+
+def days_old(line, told):
+    """Days between the first commit after that of a line that touched one of its files and the present one.
+
+    Counted between commits, not by the clock, so that the same commit always gets the same answer. Without files or history:
+    since the day of the line itself.
+    """
+    since = _touched(line["commit"].rstrip("+"), line["files"], tuple(state.files_of(line, told))) if "files" in line else ""
+    return (date.fromisoformat(_head()) - date.fromisoformat(since or line["date"][:10])).days
+
+
+def _days_there(page, part=""):
+    """Days since a page or a file of slow tests was added; None if that is not known."""
+    added = state.git("log", "--diff-filter=A", "--format=%cs", "--", part if page == "slow" else f"validation/make/{page}.py")
+    return (date.fromisoformat(_head()) - date.fromisoformat(added.split()[-1])).days if added else None
+
+
+@cache
+def _touched(commit, _, files):
+    return state.git("log", "--reverse", "--format=%cs", f"{commit}..HEAD", "--", *files).partition("\n")[0] if commit else ""
+
+
+@cache
+def _head():
+    return state.git("log", "-1", "--format=%cs") or date.today().isoformat()
+
+
+def report(found):
+    """Lines that say what is old, page by page, and how long it takes to compute it again."""
+    lines, old = [], [one for one in found if one.old]
+    for page in sorted({one.words[0] for one in old}):
+        own = [one for one in old if one.words[0] == page]
+        rows = sum(one.rows for one in found if one.words[0] == page)
+        dates = sorted(one.date[:10] for one in own if one.date)
+        never = sum(not one.date for one in own)
+        text = f"{page:24s} {sum(one.rows for one in own):5d} of {rows:5d} rows old, {cost(own)}"
+        text += f", of {dates[0]}{f' to {dates[-1]}' if dates[-1] != dates[0] else ''}" if dates else ""
+        lines.append(text + (f", {never} never computed" if never else ""))
+    total = f"{sum(one.rows for one in old)} of {sum(one.rows for one in found)} rows are old: {cost(old)} to compute again"
+    return [*lines, f"{total}; everything takes {cost(found)}"]
+
+
+def cost(found):
+    """CPU seconds of jobs, as far as they are known."""
+    known = [one.seconds for one in found if one.seconds is not None]
+    text = f"{sum(known):.0f} CPU s"
+    return text if len(known) == len(found) else f"{text} and {len(found) - len(known)} jobs of unknown cost"
+
+
+def too_old(found, most):
+    """What is old for longer than `most` days; what was never computed is as old as it is there."""
+    return [one for one in found if one.old and (one.days is None or one.days > most)]
+
+
+def renew(found, minutes, continued):
+    """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
+
+    A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
+    stopped or fails leaves nothing behind: a job writes beside the pages; its files are moved there, each whole, the state last.
+
+    Parameters
+    ----------
+    found : list of Job
+    minutes : float
+        Of the clock.
+    continued : dict of str to tuple of str
+        By job: tables that it would continue where they lie; it is given none of them. One that lies elsewhere than other
+        tables is left alone: delete it by hand to compute it again.
+    """
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # so that it ends its job, too
+    end, failed, longer = time.monotonic() + 60 * minutes, [], []
+    waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
+    while waiting:
+        job, left = waiting.pop(0), end - time.monotonic()
+        without = continued.get(" ".join(job.words), ())
+        if left <= 0 or (job.seconds or 0.0) > left or any(Path(name).is_absolute() for name in without):
+            longer.append(job)
+            continue
+        words, load = list(job.words), job.seconds or A_ROW
+        while job.row and waiting and waiting[0].row and waiting[0].words[:-1] == job.words[:-1]:
+            load += waiting[0].seconds or A_ROW
+            if load > min(left, AT_ONCE):
+                break
+            words.append(waiting.pop(0).words[-1])
+        code, told = alone(words, left, without)
+        outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
+        name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
+        print(f"{name}: {outcome}", flush=True)
+        if code:
+            print("\n".join(told[-15:]), flush=True)
+            failed.append(name)
+    if any(job.old for job in longer):
+        print(f"old, and left for another time: {cost([job for job in longer if job.old])}")
+    state.stamp()
+    return failed
+
+
+def alone(words, seconds, without=()):
+    """Exit code (None: stopped) and printed lines of a job in a process of its own; what it wrote is kept if it ended well."""
+    with tempfile.TemporaryDirectory(prefix=".pages.", dir=places.HOME) as folder:
+        beside = Path(folder) / "pages"
+        shutil.copytree(places.PAGES, beside)
+        for name in without:
+            (beside / "tables" / name).unlink(missing_ok=True)
+        command = [sys.executable, "-m", "validation", *words]
+        own = {"cwd": places.ROOT, "env": os.environ | {"GEARFE_PAGES": str(beside)}, "start_new_session": True}
+        with subprocess.Popen(command, **own, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+            try:
+                told = process.communicate(timeout=seconds)[0]
+            except BaseException as error:
+                with suppress(ProcessLookupError):
+                    os.killpg(process.pid, signal.SIGKILL)
+                process.wait()
+                if isinstance(error, subprocess.TimeoutExpired):
+                    return None, []
+                raise
+        if process.returncode == 0:
+            move(beside, places.PAGES)
+        return process.returncode, told.splitlines()
+
+
+def move(source, target):
+    """Replace each file that differs, whole, and last the lines of the state that do."""
+    lines, told = state.read(source / "tables")
+    for path in source.rglob("*"):
+        place = target / path.relative_to(source)
+        if path.is_file() and path.name != "state.jsonl" and (not place.is_file() or path.read_bytes() != place.read_bytes()):
+            place.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(path, place)
+    with state.changed() as (known, known_told):
+        known_told |= told
+        known |= {job: line for job, line in lines.items() if line["date"] >= known.get(job, line)["date"]}
