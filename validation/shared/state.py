@@ -238,9 +238,9 @@ def ended(seconds, tables=()):
     Its rows are those of `tables`, else those of the tables that it wrote, but for rows kept one by one, else of its Markdown.
     """
     page, _, part = run.job.partition(" ")
-    there = {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
-    tables = tables or [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
-    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in tables)
+    there = tables or {path for path in map(Path, run.wrote) if path.parent == places.TABLES and path.is_file()}
+    whole = [path for path in there if path.suffix in (".csv", ".jsonl") and path.stem not in (*run.tables, "state")]
+    rows = sum(len(path.read_text(encoding="utf-8").splitlines()) - (path.suffix == ".csv") for path in whole)
     shown = part if (places.PAGES / f"{part}.md").is_file() else page
     text = places.PAGES / f"{shown}.md"
     if not rows and not run.tables and text.is_file():
