@@ -23,7 +23,13 @@ ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "th
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
     "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
-    "outlines --reference": ("outlines.csv", "outlines_three.csv", "outlines_unloaded.csv"),
+    "outlines --reference": (
+        "outlines.csv",
+        "outlines_fresh.csv",
+        "outlines_plane.csv",
+        "outlines_three.csv",
+        "outlines_unloaded.csv",
+    ),
     "sample --reference": ("sample_three.jsonl",),
     "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
 }

@@ -153,7 +153,8 @@ def _table(pair, materials, line_load, end, span, cache):
     zone = np.maximum(TIP_ZONE * pair.gear_1.m_n, (1 + BEYOND) * width).tolist()
     # on the path flanks touch beside a tip that is in a fillet: corners and hats are then those of the plane
     both = (mesh.found.corner[:, column] > 0) & (nominal > pair.path[0]) & (nominal < pair.path[1])
-    taking, _, beside = (np.where(both, values[:, column], 0) for values in mesh.corners(line_load, np.isfinite(mesh.found.gap)))
+    reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
+    taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(both, reached[2], 0)
     taking = taking.astype(int) | (1 << (touches - 1))
     at = np.flatnonzero(there).tolist()
     made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], finest, float(beside[i])) for i in at])

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from geometry.kept import keeping
 from geometry.pair.contacts import approach
 from geometry.tooth.profile import arc_at, roll_at_arc
-from geometry.tooth.side import on_fillet
+from geometry.tooth.side import on_fillet, side
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
+from ..flexibility.plane import towards
 
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
@@ -143,16 +144,18 @@ def _host(one):
 def _on_side(contact, wanted, host):
     """Rows along the side of one gear."""
     found, pair = contact.found, contact.pair
-    gear = (pair.gear_1, pair.gear_2)[host]
+    gear, mate = (pair.gear_1, pair.gear_2)[:: 1 if host == 0 else -1]
     knots = [_placed(contact, one, host) for one in wanted]
     count = [own.shape[1] for own in knots]
     at = np.repeat([one.phase for one in wanted], count), np.repeat([one.column for one in wanted], count)
     roll = roll_at_arc(gear, np.concatenate([own.mean(axis=0) for own in knots]))
     own = {"flanks": contact.flanks, "order": found.order[at[1]], "driver": host == 0}
-    gap, met, *arms = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
+    gap, met, *directions = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
+    arms, out = directions[:2], directions[2:]
     rate = (arms[0] + arms[1]) / 2
     sense = 1 if host == 0 else -1
-    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate])
+    forces = [_parts(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
+    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate, *np.concatenate(forces)])
     cuts = np.cumsum(count)[:-1]
     there = np.split(np.isfinite(gap), cuts)
     parts = [own[:, on] for own, on in zip(np.split(values, cuts, axis=1), there, strict=True)]
@@ -161,19 +164,31 @@ def _on_side(contact, wanted, host):
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
-    out, log = [], np.log(gear.m_n)  # local is what happens within about a module
-    for one, hats, on, part, *smooth in zip(wanted, knots, there, parts, *bodies, strict=True):
-        roll_1, roll_2, gaps, *turns, slow = part
+    made, log = [], np.log(gear.m_n)  # local is what happens within about a module
+    for one, hats, on, part, *smooth, tooth in zip(wanted, knots, there, parts, *bodies, order.tolist(), strict=True):
+        roll_1, roll_2, gaps, *turns, slow = part[:6]
         kernel = _standing(contact, one, host)[1][np.ix_(on, on)] if _alone(one) else hat_logarithm(hats[:, on], hats[:, on])
         influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
-        for coefficient, own, turn in zip(contact.coefficients, smooth, turns, strict=True):
-            influence = influence + np.outer(turn, turn) * (own - coefficient * log)
+        leaning = zip(
+            contact.flexibility, smooth, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1) / slow, turns, strict=True
+        )
+        for coefficient, (flexible, *own) in zip(contact.coefficients, leaning, strict=True):
+            influence = influence + towards(flexible, *own, coefficient * log)
         numbers, fillet = _numbers(one), np.zeros(gaps.size, dtype=bool)
-        for tip, mate, place in ((1, pair.gear_2, roll_2), (2, pair.gear_1, roll_1)):
+        for tip, other, place in ((1, pair.gear_2, roll_2), (2, pair.gear_1, roll_1)):
             if tip in numbers:
-                fillet |= on_fillet(mate, place)
-        out.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
-    return out
+                fillet |= on_fillet(other, place)
+        made.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
+    return made
+
+
+def _parts(gear, roll, arm, out):
+    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
+    radius = side(gear, roll)[0]
+    across = np.minimum(gear.r_b / radius, 1.0)
+    inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
+    round_ = arm * gear.r_b / radius
+    return np.array([round_ * across + out * inside, out * across - round_ * inside])
 
 
 def _alone(one):

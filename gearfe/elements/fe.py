@@ -27,7 +27,7 @@ from geometry.tooth.profile import arc_at, flank_normal
 
 from ..flexibility.hats import FLANK_EDGES, SPAN, hat_knots, wider
 from ..flexibility.hertz import half_plane, hat_logarithm
-from ..flexibility.plane import Flexibility, SeamFaces
+from ..flexibility.plane import BELOW, TILT, Flexibility, SeamFaces, leaning
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
@@ -49,25 +49,29 @@ class Hats:
         return self.knots.mean(axis=0)
 
 
-def hats(section_, tooth, *, corner=False):
+def hats(section_, tooth, *, corner=False, tilt=0.0):
     """Hat pressures with unit resultant along the loaded flank of `tooth`, a top on every second inner vertex.
 
-    With `corner`, a last, one-sided hat has its top at the tip corner.
+    With `corner`, a last, one-sided hat has its top at the tip corner. With `tilt` [rad] from the normal towards the outside of
+    the gear, only the three hats of `_leans`.
     """
     gear, roll = section_.gear, section_.roll[tooth % section_.gear.z]
     arc = arc_at(gear, roll)
     knots = hat_knots(arc, corner=corner)
+    first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
+    if tilt:
+        own = _leans(gear, knots)
+        knots, first = knots[:, own], first[own]
 
     def height(s):
         start, top, stop = knots[:, :, None, None]
         fall = np.where(stop > top, (stop - s) / np.where(stop > top, stop - top, 1.0), 1.0)
         return np.maximum(np.minimum((s - start) / (top - start), fall), 0.0) * 2 / (stop - start)
 
-    first = np.minimum(SPAN * np.arange(knots.shape[1]), roll.size - 1 - 2 * SPAN)
-    return Hats(knots, flank_load(section_, tooth, height, first, 2 * SPAN))
+    return Hats(knots, flank_load(section_, tooth, height, first, 2 * SPAN, tilt))
 
 
-def flank_load(section_, tooth, pressure, first, count):
+def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
     """Consistent nodal forces ``(2 nodes, n)`` [N/mm] of pressures on the loaded flank of `tooth`.
 
     Parameters
@@ -80,6 +84,8 @@ def flank_load(section_, tooth, pressure, first, count):
         First flank edge each pressure acts on.
     count : int
         Number of edges each pressure acts on.
+    tilt : float
+        Of the pressures from the normal towards the outside of the gear [rad].
     """
     gear, mesh = section_.gear, section_.mesh
     tooth %= gear.z
@@ -89,7 +95,7 @@ def flank_load(section_, tooth, pressure, first, count):
     nodes = edge_nodes(mesh, section_.flank[tooth])
     length = np.hypot(*np.einsum("dne,np->dep", mesh.doflocs[:, nodes], slopes)) * weights
     rolls = (roll[:-1, None] + roll[1:, None]) / 2 + (roll[1:, None] - roll[:-1, None]) / 2 * points
-    normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z)
+    normal = turned(flank_normal(gear, rolls), 2 * np.pi * tooth / gear.z + tilt)
     edge = np.asarray(first)[:, None] + np.arange(count)
     height = pressure(arc_at(gear, rolls[edge]))
     force = -np.einsum("np,hep,hep,dhep->nhed", shapes, height, length[edge], normal[:, edge])
@@ -148,12 +154,34 @@ def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.
     mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
     body = Body(mesh.mesh, material, state=state)
     on = {0: hats(mesh, 0, corner=True)} | {tooth: hats(mesh, tooth) for tooth in range(1, neighbours + 1)}
-    influence, at = _between(body, [one.load for one in on.values()])
-    loaded = on[0]
-    near, own = own_tooth(loaded, influence[at[0], at[0]], half_plane(material, state))
+    tilted = _tilted(mesh, 0)
+    influence, at = _between(body, [one.load for one in (*on.values(), *tilted)])
+    loaded, c = on[0], half_plane(material, state)
+    near, own = own_tooth(loaded, influence[at[0], at[0]], c)
+    leans = _leaning(gear, loaded, influence, at[0], at[-2:], c)
     far = {(0, k): RectBivariateSpline(loaded.arc, on[k].arc, influence[at[0], at[k]]) for k in on if k}
     limits = loaded.arc[0], loaded.arc[-1]
-    return Flexibility(gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded))
+    return Flexibility(
+        gear, {0: near}, far, {0: own}, limits, refine, 2 * mesh.mesh.doflocs.shape[1], basis=basis(loaded), leans={0: leans}
+    )
+
+
+def _tilted(mesh, tooth):
+    """The hats of `_leans` of a flank, tilted either way."""
+    return [hats(mesh, tooth, corner=True, tilt=tilt) for tilt in (TILT, -TILT)]
+
+
+def _leans(gear, knots):
+    """Numbers of the hats at the foot of a flank, `BELOW` the tip and at the tip."""
+    away = knots[1, -1] - knots.mean(axis=0)
+    return [0, int(np.argmin(np.abs(away[1:-1] - min(BELOW * gear.m_n, away[0] / 2)))) + 1, knots.shape[1] - 1]
+
+
+def _leaning(gear, on, influence, plain, tilted, coefficient):
+    """What `leaning` gives of a tooth with hats `on`, from the influence of all loads and where these and the tilted ones are."""
+    own = _leans(gear, on.knots)
+    local, found = coefficient * np.diag(hat_logarithm(on.knots[:, own], on.knots[:, own])), np.diag(influence)
+    return leaning(on.arc[own], found[plain][own] - local, *(found[one] - local for one in tilted))
 
 
 def _between(body, loads):
@@ -184,13 +212,20 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
     body = Body(mesh.mesh, material, state=state)
     on = {tooth: hats(mesh, tooth, corner=True) for tooth in solved}
     faces = _face_columns(mesh)
-    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces])
-    at, opened = dict(zip(solved, at, strict=False)), at[-1]
+    tilted = [one for tooth in solved for one in _tilted(mesh, tooth)]
+    influence, at = _between(body, [*(on[tooth].load for tooth in solved), faces, *(one.load for one in tilted)])
+    pairs = zip(solved, at[len(solved) + 1 :: 2], at[len(solved) + 2 :: 2], strict=True)
+    leaned = {tooth: own for tooth, *own in pairs}
+    at, opened = dict(zip(solved, at, strict=False)), at[len(solved)]
     opening = {tooth: influence[opened, at[tooth]] for tooth in solved}
     apart = influence[opened, opened]
     stiffness = np.linalg.inv(apart)
-    near, own, far = {}, {}, {}
+    near, own, far, leans = {}, {}, {}, {}
     for tooth in solved:
+        shut = influence.copy()
+        for one in (at[tooth], *leaned[tooth]):
+            shut[one, one] -= influence[opened, one].T @ stiffness @ influence[opened, one]
+        leans[tooth] = _leaning(gear, on[tooth], shut, at[tooth], leaned[tooth], half_plane(material, state))
         for other in solved:
             glued = influence[at[tooth], at[other]] - opening[tooth].T @ stiffness @ opening[other]
             if other == tooth:
@@ -199,7 +234,7 @@ def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state=
                 far[tooth, other] = RectBivariateSpline(on[tooth].arc, on[other].arc, glued)
     seam = SeamFaces({t: CubicSpline(on[t].arc, opening[t].T) for t in solved}, apart, stiffness)
     limits = on[solved[0]].arc[0], on[solved[0]].arc[-1]
-    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]))
+    return Flexibility(gear, near, far, own, limits, refine, faces.shape[0], healthy, seam, basis(on[solved[0]]), leans)
 
 
 def _face_columns(mesh):

@@ -28,6 +28,7 @@ def plane_arrays(found: Flexibility) -> dict[str, NDArray]:
         out |= {f"{at}/x": x, f"{at}/y": y, f"{at}/c": spline.get_coeffs()}
     out |= {f"own/{tooth}/b": values for tooth, values in found.own.items()}
     out |= {"basis/x": found.basis.x, "basis/c": found.basis.c}
+    out |= {f"leans/{tooth}/b": value for tooth, value in found.leans.items()}
     if found.seam is not None:
         out |= {"seam/influence": found.seam.influence, "seam/stiffness": found.seam.stiffness}
         for tooth, spline in found.seam.opening.items():
@@ -48,6 +49,8 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     far = {key: _surface(part) for key, part in tree.parts("far", 2)}
     own, basis = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("own", 1)}, _curve(tree.below("basis"))
     _check(all(values.shape == basis.c.shape[2:] * 2 for values in own.values()), "a tooth's own")
+    leans = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("leans", 1)}
+    _check(all(value.shape == (3, 3) for value in leans.values()), "leaning loads")
     seam = None
     if tree.has("seam"):
         opening = {tooth: _curve(part) for (tooth,), part in tree.parts("seam/opening", 1)}
@@ -58,7 +61,7 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     limits = tuple(tree.take("limits", 1))
     _check(len(limits) == 2 and limits[0] < limits[1] and near and near.keys() == own.keys(), "teeth")
     healthy, fine = tree.healthy(gear, plane_from), float(tree.take("fine", 0))
-    found = Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam, basis)
+    found = Flexibility(gear, near, far, own, limits, fine, tree.whole("dofs"), healthy, seam, basis, leans)
     return _all_used(found, arrays, plane_arrays)
 
 

@@ -1,7 +1,8 @@
 """`Flexibility`: what a gear gives to its contacts, wherever it came from."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,40 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
+
+NEAREST = 0.001  # to a tip corner that a flexibility is told apart [m_n]
+TILT = 0.2  # of the two loads at each of three places that tell how a tooth yields across the normal [rad]
+BELOW = 0.1  # the tip: the place between both ends of the flank [m_n]
+
+
+def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike) -> NDArray[np.float64]:
+    """How a tooth yields across its normal, from the smooth flexibility under loads tilted by `TILT` either way.
+
+    With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
+
+    Parameters
+    ----------
+    arc : ndarray, shape (3,)
+        Places of the loads: at the foot of the flank, `BELOW` the tip and at the tip [mm].
+    normal, ahead, back : ndarray, shape (3,)
+        Under loads along the involute's normal n, and tilted towards t and away from it [mm per N/mm].
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Arcs, S_nt and S_tt [mm per N/mm].
+    """
+    plain, plus, minus = (np.asarray(values, dtype=float) for values in (normal, ahead, back))
+    across = (plus - minus) / (2 * math.sin(2 * TILT))
+    along = ((plus + minus) / 2 - plain * math.cos(TILT) ** 2) / math.sin(TILT) ** 2
+    return np.array([np.asarray(arc, dtype=float), across, along])
+
+
+def _logarithmic(arc, places, least):
+    """A variable of the arc in which `leaning` changes evenly between its places: towards the tip's wedge a logarithm."""
+    _, middle, tip = places
+    left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
+    return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +106,9 @@ class Flexibility:
         The cracks; the splines above then are those with the cracks glued shut.
     basis : spline or None
         Over the arc of a flank: the k functions by which `own` is carried.
+    leans : dict of int to ndarray, shape (3, 3)
+        Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
+        loads off its normal by their torque.
     """
 
     gear: Gear
@@ -83,6 +121,7 @@ class Flexibility:
     healthy: "Flexibility | None" = None
     seam: SeamFaces | None = None
     basis: Any = None
+    leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
 
     def near_of(self, tooth: int) -> Any:
         """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
@@ -110,6 +149,10 @@ class Flexibility:
                 found = found + slope + slope.T
             out.append(found)
         return out
+
+    def leans_of(self, tooth: int) -> NDArray[np.float64] | None:
+        """What `leaning` gives of a tooth; None if it is not known."""
+        return self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
 
     def _whole(self):
         return self if self.healthy is None else self.healthy
@@ -139,3 +182,39 @@ class Flexibility:
             own, theirs = on.nonzero()
             out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
         return out
+
+
+def towards(
+    flexible: Flexibility,
+    smooth: NDArray[np.float64],
+    roll: NDArray[np.float64],
+    tooth: int,
+    force: NDArray[np.float64],
+    torque: NDArray[np.float64],
+    local: float,
+) -> NDArray[np.float64]:
+    """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts on one tooth whose forces are not along its normals.
+
+    Parameters
+    ----------
+    flexible : Flexibility
+    smooth : ndarray, shape (n, n)
+        What its `Flexibility.within` gives.
+    roll : ndarray, shape (n,)
+    tooth : int
+    force : ndarray, shape (2, n)
+        Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
+    torque : ndarray, shape (n,)
+        Its torque over that of a unit load along the normal.
+    local : float
+        Taken from S(s, s') for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is local.
+    """
+    leans = flexible.leans_of(tooth)
+    if leans is None:
+        return np.outer(torque, torque) * (smooth - local)
+    least = NEAREST * flexible.gear.m_n
+    at, places = (_logarithmic(arc, leans[0], least) for arc in (arc_at(flexible.gear, roll), leans[0]))
+    across, along = (np.interp(at, places, values) for values in leans[1:])
+    (normal, tangent), between = force, (along[:, None] + along) / 2
+    mixed = np.outer(normal * across, tangent)
+    return np.outer(normal, normal) * (smooth - local) + mixed + mixed.T + np.outer(tangent, tangent) * (between - local)

@@ -19,10 +19,9 @@ conventions, one at each end.
 r_b, the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a gap of 6 um). In general let it pass both centres at
 ``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a
 shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F
-d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth bends by torque: its deflection as a
-turn of the flank times r_b is that of a force along its own involute normal with the same torque, ``(q / rate) F``; the local
-deflection belongs to ``N = F / rate``. Both count by as much more of an approach as they take to be closed, again ``q / rate``
-and ``1 / rate`` (`gearfe.contact.rows`; ``tests/contact/test_pose.py`` for its size against CalculiX).
+d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth yields along and across its own
+involute normal to both parts of N (`gearfe.flexibility.plane.Flexibility.towards`); other teeth feel its torque, ``(q / rate)
+F``. All count by ``1 / rate`` as much more of an approach (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
 
 **Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
 mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shift of the phase by half the approach.
@@ -94,12 +93,15 @@ class Met(NamedTuple):
     """Where points touch the other side: approach `gap` and place `roll` there [mm].
 
     `arm`, `met_arm`: at how many of their base radii the contact normal passes the centres of the point's own gear and the other.
+    `out`, `met_out`: what part of a unit force points away from these centres, on the gear it acts on.
     """
 
     gap: NDArray[np.float64]
     roll: NDArray[np.float64]
     arm: NDArray[np.float64]
     met_arm: NDArray[np.float64]
+    out: NDArray[np.float64]
+    met_out: NDArray[np.float64]
 
 
 def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Contacts:
@@ -283,12 +285,13 @@ def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: b
 def facing(pair, roll, nominal, driver, turns=None):
     """What points of a side face with both gears moved on from `nominal` by a length on the line of action [mm].
 
-    Gives `opposite`, and the arms at which the met normal passes the point's own centre and the other, over their base radii (1
-    on the line of action). `turns` is ``pair.turn(nominal)``, if it is known.
+    Gives `opposite`, the arms at which the met normal passes the point's own centre and the other, over their base radii (1 on
+    the line of action), and the parts of a unit force on either gear that point away from its centre. `turns` is
+    ``pair.turn(nominal)``, if it is known.
     """
     gears, centres, mirror = (pair.gear_1, pair.gear_2), (0.0, pair.centre_2), (1, pair.outward)
     pushes = (1, -pair.outward)  # sense of a force along the line of action around the two centres
-    own, other = (0, 1) if driver else (1, 0)
+    own, other, sense = (0, 1, -1) if driver else (1, 0, 1)  # it acts on the wheel, its reaction on the pinion
     turns, mate = pair.turn(nominal) if turns is None else turns, gears[other]
     radius, angle = side(gears[own], roll)
     ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
@@ -302,6 +305,9 @@ def facing(pair, roll, nominal, driver, turns=None):
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
         across = pushes[other] * (met.arm * y + met.lean * x) / away**2  # of the met normal, across the centre line
         arm = pushes[own] * (pushes[other] * met.arm - apart * across) / r_b
-        return base * ((behind + math.pi) % (2 * math.pi) - math.pi), met.roll, arm, met.arm / base
+        up = pushes[other] * (met.lean * y - met.arm * x) / away**2  # and along the centre line
+        out = sense * (across * x + up * (y - apart)) / radius
+        gap = base * ((behind + math.pi) % (2 * math.pi) - math.pi)
+        return gap, met.roll, arm, met.arm / base, out, -sense * pushes[other] * met.lean / away
 
     return distances

@@ -44,7 +44,7 @@ class Panel:
     unknowns: int
 
 
-def panel(gear, sector, material, roll, *, order, state="plane strain"):
+def panel(gear, sector, material, roll, *, order, state="plane strain", tilt=0.0):
     """Reduce a sector to its sides.
 
     Parameters
@@ -57,6 +57,8 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     order : int
         Polynomial order of the displacements.
     state : {"plane strain", "plane stress"}
+    tilt : float or ndarray, shape (n,)
+        By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
 
     Returns
     -------
@@ -68,7 +70,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     edge = _unknowns(np.append(sides, chain(sector.held)))
     bulges = sector.edge_bulges
-    parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio))
+    parts, extra = _loads(gear, sector, bulges, chain, roll, order, (modulus, ratio), tilt)
     m, n = 2 * sides.size, roll.size
     parts.append(_apart(sector, chain, 2 * n))
     rows, columns, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
@@ -79,7 +81,7 @@ def panel(gear, sector, material, roll, *, order, state="plane strain"):
     total = condense(local, _unknowns(numbers.T).reshape(local.shape[:2]), centre, load, edge, leaf=GROUP)
     loads, reads, faces = (edge.size + np.arange(first, stop) for first, stop in ((0, n), (n, 2 * n), (2 * n, 2 * n + k)))
     if n:
-        where, inward, tip_side = _frames(gear, roll)
+        where, inward, tip_side = _frames(gear, roll, tilt)
         pinned = flamant.displacement(_matched(gear, sector, order), where, inward, tip_side, modulus, ratio)
         total[:, loads] += total[:, : edge.size] @ pinned.transpose(2, 0, 1).reshape(edge.size, n)
     turn = _polar(gear, sides.size // 2)
@@ -150,10 +152,11 @@ def _polar(gear, nodes):
     return out
 
 
-def _frames(gear, roll):
-    """Places ``(2, n)`` of loads on the flank, their directions into it, and the tangents towards the tip."""
+def _frames(gear, roll, tilt=0.0):
+    """Places ``(2, n)`` of loads on the flank, their directions into it, and the tangents towards the tip, both tilted."""
     radius, angle = flank(gear, roll)
-    inward = -flank_normal(gear, roll)
+    normal = -flank_normal(gear, roll)
+    inward = np.cos(tilt) * normal + np.sin(tilt) * np.array([normal[1], -normal[0]])
     return np.array([radius * np.sin(angle), radius * np.cos(angle)]), inward, gear.outward * np.array([inward[1], -inward[0]])
 
 
@@ -184,7 +187,7 @@ def _apart(sector, chain, first):
     return rows.astype(np.int64), columns.astype(np.int64), forces
 
 
-def _loads(gear, sector, bulges, chain, roll, order, elastic):
+def _loads(gear, sector, bulges, chain, roll, order, elastic, tilt):
     """Forces of the singular fields' tractions and reads of the flank, and what the fields add to the reads ``(n, n)``.
 
     Of the first two unknowns, columns (loads 0 to n, then reads) and values.
@@ -192,7 +195,7 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic):
     n = roll.size
     if n == 0:
         return [], np.zeros((0, 0))
-    where, inward, tip_side = _frames(gear, roll)
+    where, inward, tip_side = _frames(gear, roll, tilt)
     gauss, weight = GAUSS
     start, stop, bulge = _boundary(sector, bulges)
     ends = sector.points[:, start], sector.points[:, stop]
@@ -213,7 +216,9 @@ def _loads(gear, sector, bulges, chain, roll, order, elastic):
     with np.errstate(divide="ignore", invalid="ignore"):  # a load at itself, which is taken as zero
         moved = flamant.displacement(where, where, inward, tip_side, *elastic)
         field = np.einsum("dji,di->ij", moved, inward) + 2 / (math.pi * elastic[0]) * np.log(np.abs(arc[:, None] - arc))
-    np.fill_diagonal(field, 0.0)
+    field[~np.isfinite(field)] = 0.0  # loads at one place that lean differently are not read by each other
+    leans = (1 + elastic[1]) / (math.pi * elastic[0]) * np.sin(tilt) ** 2  # the surface then is not at right angles to the load
+    np.fill_diagonal(field, leans)
     return [(rows, columns, force.ravel()), (read_rows, read_columns, read.ravel())], field
 
 

@@ -17,13 +17,13 @@ from geometry.kept import keeping
 from geometry.mesh.sector import sector
 from geometry.tooth.profile import arc_at, roll_at_arc
 
-from ...flexibility.plane import Flexibility, SeamFaces
+from ...flexibility.plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
 from ...flexibility.solved import solved_gears
 from .join import join
 from .panel import panel
 
 PLACES = 16  # loads on each flank
-NEAREST = 0.001  # of them to the tip corner, and to the form point 20 times as much [m_n]
+FOOT = 20 * NEAREST  # of them to the form point; to the tip corner it is `NEAREST` [m_n]
 HATS = 2  # times finer hats at corners than those of `fe`
 KNOTS = 48  # of the splines that carry their polynomial
 
@@ -70,8 +70,10 @@ def _healthy(gear, material, _, neighbours, state, order, refine, cache):
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
-    near, own = _own_tooth(gear, influence[0, 0])
-    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, basis=_basis(gear))
+    near, own, leans = _own_tooth(gear, influence[0, 0])
+    return Flexibility(
+        gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, basis=_basis(gear), leans={0: leans}
+    )
 
 
 def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
@@ -86,32 +88,42 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
     influence, opening = join(gear, panels, one)
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
-    near, own, far = {}, {}, {}
+    near, own, far, leans = {}, {}, {}, {}
     for i in teeth:
         for j in teeth:
             glued = influence[i, j] - opening[i].T @ stiffness @ opening[j]
             if i == j:
-                near[i], own[i] = _own_tooth(gear, glued)
+                near[i], own[i], leans[i] = _own_tooth(gear, glued)
             elif (j - i) % gear.z <= gear.z // 2:
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
-    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t].T) for t in teeth}, between, stiffness)
+    seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
     unknowns = sum(p.unknowns for p in panels.values())
-    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, _basis(gear))
+    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, _basis(gear), leans)
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`; the other arguments as of `flexibility`."""
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under six tilted ones: at `_leans`, both ways.
+
+    The other arguments are as of `flexibility`.
+    """
 
     def solve():
-        return panel(gear, sector(gear, cracks, refine=refine), material, _places(gear), order=order, state=state)
+        rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
+        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 3)
+        return panel(gear, sector(gear, cracks, refine=refine), material, rolls, order=order, state=state, tilt=tilt)
 
     return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
 
 
 def _limits(gear):
-    nearest = NEAREST * gear.m_n
-    return arc_at(gear, gear.roll_f) + 20 * nearest, arc_at(gear, gear.roll_a) - nearest
+    return arc_at(gear, gear.roll_f) + FOOT * gear.m_n, arc_at(gear, gear.roll_a) - NEAREST * gear.m_n
+
+
+def _leans(gear):
+    """Arcs of the tilted loads, as of `leaning`."""
+    low, high = _limits(gear)
+    return np.array([low, max(high - BELOW * gear.m_n, (low + high) / 2), high])
 
 
 def _scale(gear):
@@ -166,7 +178,7 @@ def _between():
 
 def _spline(gear, influence):
     arcs, matrix = _knots(gear)
-    return RectBivariateSpline(arcs, arcs, matrix @ influence @ matrix.T)
+    return RectBivariateSpline(arcs, arcs, matrix @ influence[:PLACES, :PLACES] @ matrix.T)
 
 
 @keeping(64)
@@ -176,6 +188,8 @@ def _basis(gear):
 
 
 def _own_tooth(gear, influence):
-    """Spline S(s, s) of a tooth, and S(s, s') between its loads, from the smooth influence between these."""
-    arcs, matrix = _knots(gear)
-    return CubicSpline(arcs, ((matrix @ influence) * matrix).sum(axis=1)), (influence + influence.T) / 2
+    """Spline S(s, s), S(s, s') between the loads along the normal, and what `leaning` gives, from the influence of all loads."""
+    (arcs, matrix), between = _knots(gear), influence[:PLACES, :PLACES]
+    near = CubicSpline(arcs, ((matrix @ between) * matrix).sum(axis=1))
+    at, tilted = _leans(gear), np.diag(influence)[PLACES:]
+    return near, (between + between.T) / 2, leaning(at, near(at), tilted[::2], tilted[1::2])

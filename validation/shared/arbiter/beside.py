@@ -6,31 +6,31 @@ from itertools import groupby
 import gearfe as gf
 
 from .cases import LOADED, loaded_case
-from .kept import STEEL, rows_on_file
+from .kept import STEEL, TABLE, rows_on_file
 
 
-def beside(method, seeds=None):
-    """For every row on file (of `seeds`, if given): the row, and k of `method` [N/(mm um)] beside it.
+def beside(method, seeds=None, given=LOADED, table=TABLE):
+    """For every row in `table` of the cases `given` (or of some `seeds`): the row, and k of `method` [N/(mm um)] beside it.
 
     Yields
     ------
     (dict, dict)
         The row on file, and ``k``, ``estimate``, ``difference`` [%]; or ``refused``, why gearfe gives no curve.
     """
-    cases = {str(row[0]): row for row in LOADED}
-    for seed, rows in groupby(rows_on_file(), key=lambda row: row["seed"]):
+    cases = {str(row[0]): row for row in given}
+    for seed, rows in groupby(rows_on_file(table), key=lambda row: row["seed"]):
         if seed not in cases or (seeds is not None and int(seed) not in seeds):
             continue
         rows = list(rows)
         pair, flanks, load, cracks, phases = loaded_case(cases[seed])
         damage = {name: some for name, some in zip(("pinion", "wheel"), cracks, strict=True) if some}
-        given = None if flanks is None else dict(zip(("pinion", "wheel"), flanks, strict=True))
+        modified = None if flanks is None else dict(zip(("pinion", "wheel"), flanks, strict=True))
         width = min(pair.gear_1.b, pair.gear_2.b)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
                 curve = gf.mesh_stiffness(
-                    pair, load * width, gf.Material(*STEEL), phases=phases, method=method, damage=damage or None, flanks=given,
+                    pair, load * width, gf.Material(*STEEL), phases=phases, method=method, damage=damage or None, flanks=modified,
                     error=True, cache=False,
                 )  # fmt: skip
             except (ValueError, RuntimeError) as error:

@@ -46,9 +46,9 @@ class Body:
         held = self._held(rim)
         self.nodes, self.triangles = self._mesh(rim, held, chains)
         on = np.arange(rim.shape[1] // 2, (rim.shape[1] + held.shape[1]) // 2)
-        fixed = np.unique(np.concatenate([on, [self._middle(a, b) for a, b in zip(on, np.roll(on, -1), strict=True)]]))
+        self.fixed = np.unique(np.concatenate([on, [self._middle(a, b) for a, b in zip(on, np.roll(on, -1), strict=True)]]))
         self._unfold()
-        self.solve = solver(stiffness(self.nodes, self.triangles, young, nu), fixed)
+        self.solve = solver(stiffness(self.nodes, self.triangles, young, nu), self.fixed)
 
     def _unfold(self):
         """Make curved edges straight again where a triangle would fold (coarse fillets of far teeth)."""

@@ -10,17 +10,17 @@ from ..places import TABLES
 from .cases import LOADED, loaded_case
 from .pressing import pressed
 
-TABLE = TABLES / "outlines.csv"
+TABLE, FRESH = TABLES / "outlines.csv", TABLES / "outlines_fresh.csv"
 STEEL = (206e3, 0.3)  # Young's modulus [MPa], Poisson's ratio of all loaded cases
 FIELDS = ("seed", "kind", "pair", "flanks", "crack", "load_N_mm", "phase_48", "k_N_um_mm", "mesh_error_percent", "approach_um")
 FIELDS += ("least_gap_um", "shares", "places", "edge", "unknowns", "cpu_s")
 
 
-def rows_on_file():
+def rows_on_file(table=TABLE):
     """Rows of the table, dicts of texts."""
-    if not TABLE.is_file():
+    if not table.is_file():
         return []
-    with TABLE.open(encoding="utf-8", newline="") as file:
+    with table.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -72,10 +72,10 @@ def case_rows(row):
     return out
 
 
-def reference():
-    """Press all of `LOADED` that are not on file (resumable: a stop loses one case at most)."""
-    for row in LOADED:
-        known = rows_on_file()
+def reference(rows=LOADED, table=TABLE):
+    """Press all of `rows` that are not on file (resumable: a stop loses one case at most)."""
+    for row in rows:
+        known = rows_on_file(table)
         if any(old["seed"] == str(row[0]) for old in known):
             continue
         try:
@@ -83,9 +83,9 @@ def reference():
         except RuntimeError as error:
             print(f"{row[0]}: {error}", flush=True)
             continue
-        TABLE.parent.mkdir(exist_ok=True)
-        with written(TABLE) as target, open(target, "w", encoding="utf-8", newline="") as file:
-            table = csv.DictWriter(file, FIELDS, lineterminator="\n")
-            table.writeheader()
-            table.writerows(known + new)
+        table.parent.mkdir(exist_ok=True)
+        with written(table) as target, open(target, "w", encoding="utf-8", newline="") as file:
+            out = csv.DictWriter(file, FIELDS, lineterminator="\n")
+            out.writeheader()
+            out.writerows(known + new)
         print(f"outlines: {row[0]} {new[0]['pair']}, {sum(float(one['cpu_s']) for one in new):.1f} s of CPU", flush=True)
