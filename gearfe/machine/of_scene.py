@@ -82,7 +82,7 @@ def build_machine(
     if not len(loads) or not all(math.isfinite(one) and one > 0 for one in loads):
         raise ValueError(f"loads = {loads}, but give multiples of the meshes' own forces, one or more, above 0")
     build, play = MACHINES[model][contact], scene.machine.get("backlash_um")
-    own = own_forces(build(scene, None, phases=ROUGH, method=method, loads=None))
+    own = own_forces(build(scene, case, phases=ROUGH, method=method, loads=None))
     several = {name: ([force * one for one in loads], force) for name, force in own.items()}
     out = build(scene, case, phases=phases, method=method, loads=several)
     stated = {name: pair.force for name, pair in scene.pairs.items() if name in own}

@@ -40,10 +40,12 @@ def curves(name, pair, case, options):
     """Stiffness of a scene's pair over one cycle, and over its damaged tooth's engagement (None if healthy), by one method.
 
     `options` are those of `mesh_stiffness`, and ``loads``: by the pair's name the loads [N] it is solved under and the one it
-    works at on average. Several make laws of force, one makes curves; None: curves under the load that the scene states.
+    works at on average. Several make laws of force, one makes curves; None: curves without damage under the load that the scene
+    states.
     Without the part of shafts that hold its gears: a machine has bearings of its own.
     """
-    damage, given = pair.damage.get(case, {}), options["loads"]
+    given = options["loads"]
+    damage = {} if given is None else pair.damage.get(case, {})
     options = {key: value for key, value in options.items() if key != "loads"}
     if options["method"] == "auto" and any(isinstance(one, Pit) or not one.through for found in damage.values() for one in found):
         options = options | {"method": "ritz3d"}

@@ -76,7 +76,12 @@ def test_interrupted_work_leaves_one_line_and_no_file(tmp_path, tmp_path_factory
     target = tmp_path / "k.csv"
     command = [*COMMAND, "stiffness", "planetary_pitting", "--method", "fe", "--refine", "8", "-o", str(target)]
     environment = ENVIRONMENT | {"GEARFE_CACHE": str(tmp_path_factory.mktemp("empty"))}
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as process:
+    ignored = signal.signal(signal.SIGINT, signal.default_int_handler)  # a run in the background inherits that it is ignored
+    try:
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+    finally:
+        signal.signal(signal.SIGINT, ignored)
+    with process:
         process.stdout.readline()  # it has begun
         time.sleep(1.0)
         process.send_signal(signal.SIGINT)

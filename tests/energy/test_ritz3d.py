@@ -106,9 +106,10 @@ def test_plane_strain_is_the_constant_along_the_width():
         solid = [ritz3d.solid_sector(gear, STEEL, own, width=10.0, order=3, axial=0, refine=1.0) for own in (cracks, ())]
         want, _ = join(gear, dict(enumerate(plane)), plane[1])
         got, _ = join(gear, dict(enumerate(solid)), solid[1])
-        own = mean @ want[0, 0] @ mean.T + local
+        places = slice(carry.shape[-1])  # the loads after these lean off the normal
+        own = mean @ want[0, 0][places, places] @ mean.T + local
         assert_allclose(got[0, 0][1:, 1:], own[1:, 1:], rtol=4e-3, atol=2e-3 * own.max(), err_msg=str(cracks))
-        across = mean @ want[0, 1] @ mean.T
+        across = mean @ want[0, 1][places, places] @ mean.T
         assert_allclose(got[0, 1], across, rtol=5e-3)
 
 
