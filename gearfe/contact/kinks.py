@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from geometry.pair.contacts import approach
 from geometry.tooth.profile import arc_at, roll_at_arc
 from geometry.tooth.side import on_fillet
 
 from ..flexibility.hertz import half_width, hat_logarithm
-from ..flexibility.plane import towards
-from .rows import Row, along_and_across
+from .rows import Row
 from .sharing import share
 
 REACH = 1.3  # a contact with a kink within so many half widths of the whole load is resolved hat by hat
@@ -59,11 +57,11 @@ def kink_rows(contact, where, line_load):
     width = half_width(line_load, contact.flat_radius[i, column], contact.modulus)
     arcs, slopes = _kinks(contact)
     nearest = np.argmin(np.abs(arcs - middle[:, None]), axis=1)
-    kink, slope, driver = arcs[nearest], slopes[nearest], nearest < len(contact.flanks[0].kinks)
-    rows = _hats(contact, i, column, _tops(middle, ZONE * width, kink), driver)
+    kink, slope = arcs[nearest], slopes[nearest]
+    rows = _hats(contact, i, column, _tops(middle, ZONE * width, kink))
     fit = (slope < 0) | (line_load < STEEP * width * contact.modulus * slope / 2)
     for n in np.flatnonzero(fit).tolist():
-        rows[n] = _fitted(contact, where[n : n + 1], rows[n], line_load, middle[n], ZONE * width[n], kink[n], driver[n : n + 1])
+        rows[n] = _fitted(contact, where[n : n + 1], rows[n], line_load, middle[n], ZONE * width[n], kink[n])
     return {(int(a), int(b)): row for (a, b), row in zip(where, rows, strict=True)}
 
 
@@ -76,7 +74,7 @@ def _kinks(contact):
     return arcs, np.array([step * gear.r_b / max(own, 1e-3 * gear.r_b) for _, own, step, gear in rolls])
 
 
-def _fitted(contact, where, row, line_load, middle, half, kink, driver):
+def _fitted(contact, where, row, line_load, middle, half, kink):
     gear = contact.pair.gear_1
     low, high = sorted(float(arc_at(gear, roll)) for roll in (gear.roll_f, gear.roll_a))
     for _ in range(8):
@@ -89,7 +87,7 @@ def _fitted(contact, where, row, line_load, middle, half, kink, driver):
             half *= 1.6
         else:
             break
-        row = _hats(contact, *where.T, _tops(np.array([middle]), np.array([half]), np.array([kink])), driver)[0]
+        row = _hats(contact, *where.T, _tops(np.array([middle]), np.array([half]), np.array([kink])))[0]
     return row
 
 
@@ -100,33 +98,31 @@ def _tops(middle, half, kink):
     return first[:, None] + np.arange(1, HATS + 1) * step[:, None], step
 
 
-def _hats(contact, i, column, tops, driver):
-    """`Row` of each pair; `driver` (n,) says whether its kink is on the pinion, whose points then meet the wheel's flank."""
+def _hats(contact, i, column, tops):
+    """`Row` of each pair."""
     pair, found = contact.pair, contact.found
     (arc, step), order = tops, found.order[column]
     roll_1 = roll_at_arc(pair.gear_1, arc)
     own = {"start": found.gap[i, column][:, None], "flanks": contact.flanks, "order": order[:, None]}
-    gap, roll_2, *directions = approach(pair, roll_1, found.nominal[i, column][:, None], **own)
-    if not driver.all():
-        back = approach(pair, roll_2, found.nominal[i, column][:, None], driver=False, **own | {"start": gap})[2:]
-        directions = [np.where(driver[:, None], *both) for both in zip(directions, (back[k] for k in (1, 0, 3, 2)), strict=True)]
-    there = np.isfinite(roll_2) & np.isfinite(directions[0])
+    gap, roll_2 = pair.approach(roll_1, found.nominal[i, column][:, None], **own)
+    there = np.isfinite(roll_2)
     for gear, roll in ((pair.gear_1, roll_1), (pair.gear_2, roll_2)):
         there &= gear.outward * (gear.roll_a - roll) > 0
+    bulk = np.zeros((*arc.shape, HATS))
+    for flexible, roll, sense in zip(contact.flexibility, (roll_1, roll_2), (1, -1), strict=True):
+        place = arc_at(flexible.gear, np.where(there, roll, roll[there].mean()))
+        smooth = np.zeros(arc.shape)
+        for k in np.unique(order).tolist():
+            own = order == k
+            smooth[own] = flexible.matrix(roll_at_arc(flexible.gear, place[own])[..., None], [sense * k])[..., 0, 0]
+        bulk += (smooth[:, :, None] + smooth[:, None, :]) / 2  # S at the middle of two places: it is straight over a contact
     unit = np.arange(HATS, dtype=float)
-    even = hat_logarithm(np.array([unit - 1, unit, unit + 1]), np.array([unit - 1, unit, unit + 1]))
-    log, rows = np.log(pair.gear_1.m_n), []  # local is what happens within about a module
-    for n, on in enumerate(there):
-        arms, out = (np.array(directions[k : k + 2])[:, n, on] for k in (0, 2))
-        rate, rolls = arms.mean(axis=0), (roll_1[n, on], roll_2[n, on])
-        influence = sum(contact.coefficients) * (even[np.ix_(on, on)] - np.log(step[n]) + log) / np.outer(rate, rate)
-        cases = zip(contact.flexibility, contact.coefficients, rolls, (1, -1), arms, out, strict=True)
-        for flexible, coefficient, roll, sense, arm, away in cases:
-            tooth = sense * int(order[n])
-            smooth = flexible.matrix(roll[:, None], [tooth])[:, 0, 0]
-            between = (smooth[:, None] + smooth) / 2  # S at the middle of two places: it is straight over a contact
-            force = along_and_across(flexible.gear, roll, arm, away) / rate
-            influence = influence + towards(flexible, between, roll, tooth, force, arm / rate, coefficient * log)
-        fillet = on_fillet(pair.gear_1, rolls[0]) | on_fillet(pair.gear_2, rolls[1])
-        rows.append(Row(*rolls, gap[n, on], influence, *(arms / rate), fillet))
+    even = sum(contact.coefficients) * hat_logarithm(np.array([unit - 1, unit, unit + 1]), np.array([unit - 1, unit, unit + 1]))
+    rows = []
+    for n in range(len(arc)):
+        on = there[n]
+        influence = bulk[n] + even - sum(contact.coefficients) * np.log(step[n])
+        one = np.ones(on.sum())
+        fillet = on_fillet(pair.gear_1, roll_1[n, on]) | on_fillet(pair.gear_2, roll_2[n, on])
+        rows.append(Row(roll_1[n, on], roll_2[n, on], gap[n, on], influence[np.ix_(on, on)], one, one, fillet))
     return rows

@@ -154,7 +154,7 @@ def _on_side(contact, wanted, host):
     arms, out = directions[:2], directions[2:]
     rate = (arms[0] + arms[1]) / 2
     sense = 1 if host == 0 else -1
-    forces = [along_and_across(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
+    forces = [_parts(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
     values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate, *np.concatenate(forces)])
     cuts = np.cumsum(count)[:-1]
     there = np.split(np.isfinite(gap), cuts)
@@ -182,7 +182,7 @@ def _on_side(contact, wanted, host):
     return made
 
 
-def along_and_across(gear, roll, arm, out):
+def _parts(gear, roll, arm, out):
     """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
     radius = side(gear, roll)[0]
     across = np.minimum(gear.r_b / radius, 1.0)

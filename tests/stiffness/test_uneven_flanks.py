@@ -91,14 +91,17 @@ def test_gaps_of_rounded_tips_are_the_least_over_both_flanks(size, phase):
 
 
 def test_a_vanishing_rounding_is_the_sharp_corner():
-    """Rows of hats on a rounded tip and at a sharp corner are found in different ways: 0.3 % at most between them."""
+    """Rows of hats on a rounded tip and at a sharp corner are found in different ways: 0.41 % at most between them.
+
+    Off the path a sharp corner yields across its involute's normal too, which rows on rounded tips leave out (0.3 % without it).
+    """
     phase = np.arange(32) / 32
     sharp, tiny, small = (
         solved(phases=phase),
         solved(both(tip_rounding=1e-3), phases=phase),
         solved(both(tip_rounding=0.1), phases=phase),
     )
-    assert_allclose(tiny.te, sharp.te, rtol=4e-3)
+    assert_allclose(tiny.te, sharp.te, rtol=4.2e-3)
     assert (small.te > sharp.te * (1 - 4e-3)).all()  # what is cut off carries nothing
     inside = (phase > 0.1) & (phase < PAIR.eps_alpha - 1.1)
     assert_allclose(small.te[inside], sharp.te[inside], rtol=1e-3)
