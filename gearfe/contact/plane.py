@@ -171,7 +171,7 @@ class PairContact:
             "gap": np.append(contacts["gap"], np.zeros(m)),
             "coefficient": np.append(contacts["coefficient"], np.zeros(m)),
             "radius": np.append(contacts["radius"], np.ones(m)),
-            "tilt": np.append(contacts["tilt"], np.zeros(m)),
+            "tilt": np.zeros(contacts["tilt"].size + m),  # it is that of open cracks
         }
         force, approach, tangent = self._share(extended, line_load, np.append(np.ones(n), np.zeros(m)))
         return force[:n], approach, tangent

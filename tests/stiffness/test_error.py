@@ -146,3 +146,17 @@ def test_fuzz(method, refine, count):
     curves, refused = fuzz(range(2100, 2100 + count), method, refine)
     print(f"{curves} curves, {refused} refused")
     assert curves >= count / 2
+
+
+def test_a_crack_that_closes_leaves_contacts_where_they_are():
+    """Contacts slide to where a pair yields less, which with its crack open would be far away: a closed one costs ever more k."""
+    pair, force, damage = random_case(2124)
+    (crack,) = damage["wheel"]
+    run = {"phases": np.array([0.9375]), "span": "tooth", "cache": False, "method": "ritz"}
+    found = [
+        gf.mesh_stiffness(pair, force, gf.Material(), damage={"wheel": [replace(crack, level=level)]}, **run)
+        for level in (0.7, 0.8, 0.86, 0.9)
+    ]
+    k = np.array([one.k[0] for one in found])
+    assert all(one.meta["crack_closed_phases"] for one in found)
+    assert (np.diff(k) < -4e-3 * k[0]).all()
