@@ -12,10 +12,13 @@ def test_form_corners_carry_what_calculix_says(name):
     rows = [row for row in rows_of(TABLE) if row["case"] == name]
     assert len(rows) >= 2, "two meshes"
     k, approach, carried, path = ours(name)
+    finest = float(max(rows, key=lambda row: int(row["nodes"]))["theirs"])
+    assert abs(k / finest - 1) < ASKED
     for row in rows:
         assert_allclose(k, float(row["ours"]), rtol=5e-4)
         assert_allclose(1e3 * approach, float(row["approach_um"]), rtol=5e-4)
-        assert abs(k / float(row["theirs"]) - 1) < ASKED, row["mesh"]
+        own = abs(float(row["theirs"]) / finest - 1)  # what CalculiX's coarser mesh is too stiff by, at least
+        assert abs(k / float(row["theirs"]) - 1) < ASKED + own, row["mesh"]
         assert_allclose(carried, float(row["theirs there"]), rtol=0.02)
     assert path < 0.85 * k, "without the corner it would be another number"
 
