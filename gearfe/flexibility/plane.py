@@ -138,13 +138,16 @@ class Flexibility:
         arc = arc_at(self.gear, np.concatenate(rolls))
         at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
-        # in the fillet it goes on straight, both ways at once: what was positive definite stays so
-        rows = {basis: basis(at) + np.outer(depth, basis(self.limits[0], 1)) for basis in {one.basis for one in solved}}
+        rows = {basis: (basis(at), np.outer(depth, basis(self.limits[0], 1))) for basis in {one.basis for one in solved}}
         out, stop = [], 0
         for one, roll, tooth in zip(solved, rolls, teeth, strict=True):
             part, values = slice(stop, stop := stop + roll.size), one.own.get(tooth % self.gear.z, one.own.get(0))
-            here = rows[one.basis][part]
-            out.append(here @ values @ here.T)
+            here, on = (own[part] for own in rows[one.basis])
+            found = here @ values @ here.T
+            if depth[part].any():  # in the fillet it goes on straight
+                slope = on @ values @ here.T
+                found = found + slope + slope.T
+            out.append(found)
         return out
 
     def leans_of(self, tooth: int) -> NDArray[np.float64] | None:
