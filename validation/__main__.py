@@ -30,7 +30,6 @@ CONTINUED = {  # tables that a job continues where they lie: it counts as comput
         "outlines_three.csv",
         "outlines_unloaded.csv",
     ),
-    "sample --reference": ("sample_three.jsonl",),
     "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
 }
 

@@ -1,6 +1,6 @@
 """A part of the page `sample`: pairs in three dimensions, estimates of `fe3d` and `ritz3d`, how far both are from finer ones.
 
-The hexahedra and the finer solutions are values to compare with, computed once by `reference`; `ritz3d` is renewed.
+All three solutions of a pair are one row, of one code: a contact law that changes would show as an error that no estimate means.
 """
 
 import math
@@ -14,9 +14,9 @@ from gearfe.contact.solid import STEP, pair_stiffness3d
 from gearfe.energy.ritz.solid import axial_degree
 from geometry.damage.crack import crack_path
 
-from ..shared.kept_rows import kept, stored
+from ..shared.kept_rows import kept
 
-TABLE, OURS = "sample_three", "sample_three_ritz3d"
+TABLE = "sample_three"
 EACH = 10  # pairs of each kind
 # by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`
 KINDS = {
@@ -39,8 +39,8 @@ TEXT = f"""
 Each pair is solved by the energy model (`ritz3d`, its defaults) and by hexahedra of both whole gears (`fe3d`,
 resolution {KINDS["narrow"][4]:g}, of the wide {KINDS["wide"][4]:g}), both with `error=True`, at {PHASES} random phases, and by a
 finer energy model: order {FINE["order"]} instead of 3, {FINE["refine"]:g} times the resolution, {FURTHER} axial degrees more,
-half the cell length. Hexahedra and finer solutions are kept in `tables/{TABLE}.jsonl` and computed by
-`python -m validation sample --reference`. Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
+half the cell length. The three are of one code in each row of `tables/{TABLE}.jsonl`, which `python -m validation sample ROW`
+computes anew in one to four minutes. Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
 cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4, six
 of ten helical (5 to 28 degrees).
 """
@@ -83,36 +83,20 @@ def drawn(kind, seed):
     return pair, load, {str(rng.choice(["pinion", "wheel"])): [crack]}, np.sort(0.1 + share * (contact - 0.2))
 
 
-def case_of(kind, seed):
-    """Arguments of `mesh_stiffness` of a seed: the pair, force and material; options."""
+def row(kind, seed):
+    """What is kept of a pair: k, estimates, the finer solution at each phase; why not, if a method refuses."""
     pair, load, damage, phases = drawn(kind, seed)
-    run = {"phases": phases, "damage": damage, "error": True, "cache": False}
-    return (pair, load * pair.gear_1.b, gf.Material()), run
-
-
-def brute(kind, seed):
-    """What is kept of the hexahedra and the finer solution: k and estimates at each phase; why not, if a method refuses."""
-    case, run = case_of(kind, seed)
-    pair, damage, phases = case[0], run["damage"], run["phases"]
-    out = {"kind": kind, "pair": named(pair, damage), "load": case[1] / pair.gear_1.b, "phase": phases.tolist()}
+    case, run = (pair, load * pair.gear_1.b, gf.Material()), {"phases": phases, "damage": damage, "error": True, "cache": False}
+    out = {"kind": kind, "pair": named(pair, damage), "load": load, "phase": phases.tolist()}
     try:
+        energy, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
         fine, fine_seconds = timed(lambda: finest(*case, damage, phases))
-        found, seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
+        brute, brute_seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
     except RuntimeError as error:
         return out | {"failed": str(error)}
-    out |= {"fine": fine.tolist(), "fe3d": found.k.tolist(), "fe3d_error": found.error.tolist()}
-    out |= {"coarser": found.meta["error_refine"], "dofs": found.meta["dofs"]}
-    return out | {"seconds": round(fine_seconds + seconds, 1)}
-
-
-def ours(kind, seed):
-    """What is kept of `ritz3d`."""
-    case, run = case_of(kind, seed)
-    try:
-        found, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
-    except RuntimeError as error:
-        return {"failed": str(error)}
-    return {"k": found.k.tolist(), "error": found.error.tolist(), "seconds": round(seconds, 1)}
+    out |= {"fine": fine.tolist(), "ritz3d": energy.k.tolist(), "ritz3d_error": energy.error.tolist(), "fe3d": brute.k.tolist()}
+    out |= {"fe3d_error": brute.error.tolist(), "coarser": brute.meta["error_refine"], "dofs": brute.meta["dofs"]}
+    return out | {"seconds": [round(value, 1) for value in (seconds, fine_seconds, brute_seconds)]}
 
 
 def timed(work):
@@ -138,14 +122,6 @@ def named(pair, damage):
         low, high = crack.width or (0.0, one.b)
         text += f", {gear} cracked {100 * crack.level:.0f} %" + (f" over {(high - low) / one.b:.2f} b" if crack.width else "")
     return text
-
-
-def reference():
-    """Compute the hexahedra and finer solutions that are missing, one of each kind in turn."""
-    for number in range(EACH):
-        for kind in KINDS:
-            seed = _seed(kind, number)
-            kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: brute(kind, seed))
 
 
 def _seed(kind, number):
@@ -180,13 +156,12 @@ def judged(found):
 
 
 def rows(again=()):
-    """Rows of both tables joined: `ritz3d`, its errors and all of the reference; missing or renewed ones are computed."""
+    """All rows, one of each kind in turn; those that are missing, or begin with one of `again`, are computed."""
     out = []
-    for one in stored(TABLE).values():
-        kind, seed = one["row"].split()
-        found = kept(OURS, one["row"], lambda kind=kind, seed=seed: ours(kind, int(seed)), again)
-        failed = {"failed": found["failed"]} if "failed" in found else {}
-        out.append(one | (failed or {"ritz3d": found["k"], "ritz3d_error": found["error"]}))
+    for number in range(EACH):
+        for kind in KINDS:
+            seed = _seed(kind, number)
+            out.append(kept(TABLE, f"{kind} {seed}", lambda kind=kind, seed=seed: row(kind, seed), again))
     return out
 
 
