@@ -15,6 +15,7 @@ from geometry.tooth.profile import arc_at
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width, peak_pressure
 from ..flexibility.section_contact import Solved
+from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import line_contact, line_contacts, stacked
@@ -75,7 +76,12 @@ class PairContact:
         self.found = found = pair.contacts(phase, extended=extended, flanks=flanks)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
-        self.matrix = flexibility[0].matrix(found.roll_1, found.order) + flexibility[1].matrix(found.roll_2, -found.order)
+        matrices = [flexibility[0].matrix(found.roll_1, found.order), flexibility[1].matrix(found.roll_2, -found.order)]
+        self.coefficient, self.turns = np.full(found.gap.shape, sum(self.coefficients)), np.ones((2, *found.gap.shape))
+        if flanks is not None:
+            matrices, self.coefficient, self.turns = leaning(self, matrices)
+        self.matrix = matrices[0] + matrices[1]
+        self.alone = np.diagonal(self.matrix, axis1=1, axis2=2)  # cracks glued shut
         self.radius = self.flat_radius = found.radius
         if any(form.edge for form in flanks or ()):  # on a rounded tip: of the flank beside it, which shares the contact
             beside = pair.relative_radius(found.roll_1, found.roll_2)
@@ -89,7 +95,7 @@ class PairContact:
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found, c, tilt = self.found, sum(self.coefficients), bounded(self, line_load)
+        found, c, tilt = self.found, self.coefficient, bounded(self, line_load)
         # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
@@ -279,9 +285,8 @@ class PairContact:
             turn = values[f"turn_{k}"]
             total = total + turn[:, :, None] * turn[:, None] * self.flexibility[k - 1].matrix(values[f"roll_{k}"], teeth)
         for part, k in zip(parts, near, strict=True):
-            if "influence" in part:
-                own = np.flatnonzero(column == k)
-                total[:, own[:, None], own] = part["influence"]
+            own = np.flatnonzero(column == k)
+            total[:, own[:, None], own] = part["influence"] if "influence" in part else self.alone[phases, k][:, None, None]
         opening = self.opening_at(values["roll_1"], values["roll_2"], order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
@@ -296,6 +301,5 @@ class PairContact:
         """Unknowns ``(phases, 1)`` of one pair with Hertz's logarithm, each of `UNKNOWN`."""
         out = {name: getattr(self.found, name)[phases, column, None] for name in ("roll_1", "roll_2", "gap")}
         out |= {"radius": self.radius[phases, column, None], "tilt": tilt[phases, column, None]}
-        out |= {"coefficient": np.full(phases.size, sum(self.coefficients))[:, None]}
-        one = np.ones((phases.size, 1))
-        return out | {"turn_1": one, "turn_2": one, "fillet": np.zeros(one.shape, dtype=bool)}
+        out |= {"coefficient": self.coefficient[phases, column, None], "fillet": np.zeros((phases.size, 1), dtype=bool)}
+        return out | dict(zip(("turn_1", "turn_2"), self.turns[:, phases, column, None], strict=True))

@@ -12,13 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.kept import keeping
-from geometry.pair.contacts import approach
+from geometry.pair.contacts import TIP
 from geometry.tooth.profile import arc_at, roll_at_arc
-from geometry.tooth.side import on_fillet, side
+from geometry.tooth.side import on_fillet
 
 from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import hat_logarithm
 from ..flexibility.plane import towards
+from .directions import met
 
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
@@ -143,52 +144,61 @@ def _host(one):
 
 def _on_side(contact, wanted, host):
     """Rows along the side of one gear."""
-    found, pair = contact.found, contact.pair
-    gear, mate = (pair.gear_1, pair.gear_2)[:: 1 if host == 0 else -1]
     knots = [_placed(contact, one, host) for one in wanted]
+    at = [(one.phase, one.column) for one in wanted]
+    kernels = [_standing(contact, one, host)[1] if _alone(one) else None for one in wanted]
+    tips = [[tip in _numbers(one) for tip in TIP] for one in wanted]
+    return hat_rows(contact, at, knots, kernels, host, tips)
+
+
+def hat_rows(contact, at, knots, kernels, host, tips):
+    """Rows of hats on the side of one gear.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    at : sequence of (int, int)
+        Number of the phase and column of the pair of each row.
+    knots : sequence of ndarray, shape (3, n)
+        Start, top and end of the hats on the arc of the side [mm].
+    kernels : sequence of (ndarray, shape (n, n), or None)
+        `gearfe.flexibility.hertz.hat_logarithm` of the knots, if it is known.
+    host : int
+        Whose side it is: 0 the pinion's, 1 the wheel's.
+    tips : sequence of (bool, bool)
+        Whether the tips of pinion and wheel may press into the mate's fillet.
+
+    Returns
+    -------
+    list of Row
+    """
+    found, pair = contact.found, contact.pair
+    gear = (pair.gear_1, pair.gear_2)[host]
     count = [own.shape[1] for own in knots]
-    at = np.repeat([one.phase for one in wanted], count), np.repeat([one.column for one in wanted], count)
+    each = tuple(np.repeat(values, count) for values in np.array(at).T)
     roll = roll_at_arc(gear, np.concatenate([own.mean(axis=0) for own in knots]))
-    own = {"flanks": contact.flanks, "order": found.order[at[1]], "driver": host == 0}
-    gap, met, *directions = approach(pair, roll, found.nominal[at], start=found.gap[at], **own)
-    arms, out = directions[:2], directions[2:]
-    rate = (arms[0] + arms[1]) / 2
-    sense = 1 if host == 0 else -1
-    forces = [_parts(one, *case) for one, *case in zip((gear, mate), (roll, met), arms, out, strict=True)][::sense]
-    values = np.array([*(roll, met)[::sense], gap, *((arm / rate) for arm in arms[::sense]), rate, *np.concatenate(forces)])
+    gap, other, way = met(contact, each, roll, host)
+    values = np.array([*(roll, other)[:: 1 if host == 0 else -1], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
     cuts = np.cumsum(count)[:-1]
     there = np.split(np.isfinite(gap), cuts)
     parts = [own[:, on] for own, on in zip(np.split(values, cuts, axis=1), there, strict=True)]
-    order = found.order[[one.column for one in wanted]]
+    order = found.order[[column for _, column in at]]
     bodies = [
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
     made, log = [], np.log(gear.m_n)  # local is what happens within about a module
-    for one, hats, on, part, *smooth, tooth in zip(wanted, knots, there, parts, *bodies, order.tolist(), strict=True):
-        roll_1, roll_2, gaps, *turns, slow = part[:6]
-        kernel = _standing(contact, one, host)[1][np.ix_(on, on)] if _alone(one) else hat_logarithm(hats[:, on], hats[:, on])
-        influence = sum(contact.coefficients) * (kernel + log) / np.outer(slow, slow)
-        leaning = zip(
-            contact.flexibility, smooth, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1) / slow, turns, strict=True
-        )
+    rows = zip(knots, kernels, there, parts, tips, order.tolist(), *bodies, strict=True)
+    for hats, kernel, on, part, reach, tooth, *within in rows:
+        roll_1, roll_2, gaps, *turns, rate = part[:6]
+        kernel = hat_logarithm(hats[:, on], hats[:, on]) if kernel is None else kernel[np.ix_(on, on)]
+        influence = sum(contact.coefficients) * (kernel + log) / np.outer(rate, rate)
+        leaning = zip(contact.flexibility, within, part[:2], (tooth, -tooth), part[6:].reshape(2, 2, -1), turns, strict=True)
         for coefficient, (flexible, *own) in zip(contact.coefficients, leaning, strict=True):
             influence = influence + towards(flexible, *own, coefficient * log)
-        numbers, fillet = _numbers(one), np.zeros(gaps.size, dtype=bool)
-        for tip, other, place in ((1, pair.gear_2, roll_2), (2, pair.gear_1, roll_1)):
-            if tip in numbers:
-                fillet |= on_fillet(other, place)
+        fillet = reach[0] & on_fillet(pair.gear_2, roll_2) | reach[1] & on_fillet(pair.gear_1, roll_1)
         made.append(Row(roll_1, roll_2, gaps, influence, *turns, fillet))
     return made
-
-
-def _parts(gear, roll, arm, out):
-    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
-    radius = side(gear, roll)[0]
-    across = np.minimum(gear.r_b / radius, 1.0)
-    inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
-    round_ = arm * gear.r_b / radius
-    return np.array([round_ * across + out * inside, out * across - round_ * inside])
 
 
 def _alone(one):

@@ -54,7 +54,7 @@ def bounded(contact, line_load):
 
 
 def left_out(contact, line, closing, beyond):
-    """Part of the approach ``(phases,)`` by which gaps off the path are unsure: bent teeth also move along each other.
+    """Part of the approach ``(phases,)`` that is unsure: bent teeth also move along each other, and chamfers take material.
 
     A tooth's tip bends across its centre-line, so that a part tan(alpha_w) of the approach is movement u along the flanks. On the
     path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
@@ -70,11 +70,32 @@ def left_out(contact, line, closing, beyond):
     """
     found, (start, end) = contact.found, contact.pair.path
     off = (line > 0) & ((found.nominal < start) | (found.nominal > end))
-    if not off.any():
+    softer = _cut_away(contact, line)
+    if not (off.any() or softer.any()):
         return np.zeros(closing.size)
     closed = closing[:, None] - beyond
     stiff = np.where(line > 0, line / np.maximum(closed, 1e-3 * closing[:, None]), 0.0)
     u, gap = math.tan(contact.pair.alpha_w) * closing[:, None], np.where(off, np.maximum(found.gap, 0.0), 0.0)
     changed = np.where(off, (np.sqrt(2 * contact.radius * gap) * u + u**2 / 2) / contact.radius, 0.0)
     changed = np.minimum(changed, np.where(off, closed, 0.0))  # no gap is unsure by more than it is closed
-    return (stiff * changed).sum(axis=1) / stiff.sum(axis=1) / closing
+    return (stiff * (changed + softer)).sum(axis=1) / stiff.sum(axis=1) / closing
+
+
+def _cut_away(contact, line):
+    """How much more contacts at the ridge of a chamfer may yield than half-planes do ``(phases, pairs)`` [mm].
+
+    The flexibility is that of the tooth without it. What is left is a wedge, narrower than a half-plane by the angle at which the
+    flank turns; where it is stressed, from the contact's width to the chamfer's, it is softer by about that part of two right
+    angles.
+    """
+    found, out = contact.found, np.zeros(line.shape)
+    for form, coefficient, roll in zip(contact.flanks or (), contact.coefficients, (found.roll_1, found.roll_2), strict=False):
+        if form.edge is None or form.edge.kink <= 0:
+            continue
+        gear, start = form.gear, form.edge.start
+        arc, ridge, tip = (arc_at(gear, place) for place in (roll, start, gear.roll_a))
+        width = half_width(np.maximum(line, 1e-9 * line.max()), contact.flat_radius, contact.modulus)
+        part = math.atan(form.edge.kink * gear.r_b / start) / math.pi
+        on = (line > 0) & (np.abs(arc - ridge) < width)
+        out += np.where(on, coefficient * part * (np.log(np.maximum((tip - ridge) / width, 1.0)) + 0.5) * line, 0.0)
+    return out

@@ -25,15 +25,14 @@ from geometry.mesh.outline import GROWTH, stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import arc_at, flank_normal
 
-from ..flexibility.hats import FLANK_EDGES, SPAN, hat_knots, wider
+from ..flexibility.hats import SPAN, hat_knots, wider
 from ..flexibility.hertz import half_plane, hat_logarithm
 from ..flexibility.plane import BELOW, TILT, Flexibility, SeamFaces, leaning
 from .elasticity import GAUSS_3, Body, edge_nodes, edge_shapes
 
 # default edge lengths in modules: loaded flank, its tip corner and lower end, flanks that are only read, fillets, the
 # three next teeth, all other teeth
-EDGES = FLANK_EDGES | {"read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
-CRACKED_LOW = 0.01  # at the lower end of the flanks of a cracked gear, where the deflection then changes faster [m_n]
+EDGES = {"flank": 0.04, "tip": 0.0005, "low": 0.01, "read": 0.2, "fillet": 0.1, "near": 0.4, "far": 0.9}
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,8 +118,6 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
     edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
-    if cracks:
-        edge["low"] = CRACKED_LOW * gear.m_n / refine
     longest = abs(arc_at(gear, gear.roll_a) - arc_at(gear, gear.roll_f)) / (8 * SPAN)  # a bicubic spline needs hats enough
     even = {"span": SPAN, "growth": GROWTH / refine}  # or the graded ends would be equally coarse at any resolution
     fine = stations(gear, min(edge["flank"], longest), tip=edge["tip"], low=edge["low"], **even)
@@ -172,9 +169,11 @@ def _tilted(mesh, tooth):
 
 
 def _leans(gear, knots):
-    """Numbers of the hats at the foot of a flank, `BELOW` the tip and at the tip."""
+    """Numbers of the hats at the foot of a flank, half-way up, `BELOW` the tip and at the tip."""
     away = knots[1, -1] - knots.mean(axis=0)
-    return [0, int(np.argmin(np.abs(away[1:-1] - min(BELOW * gear.m_n, away[0] / 2)))) + 1, knots.shape[1] - 1]
+    below = min(BELOW * gear.m_n, away[0] / 2)
+    inner = [int(np.argmin(np.abs(away[1:-1] - place))) + 1 for place in ((away[0] + below) / 2, below)]
+    return [0, *inner, knots.shape[1] - 1]
 
 
 def _leaning(gear, on, influence, plain, tilted, coefficient):

@@ -50,7 +50,7 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
     own, basis = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("own", 1)}, _curve(tree.below("basis"))
     _check(all(values.shape == basis.c.shape[2:] * 2 for values in own.values()), "a tooth's own")
     leans = {tooth: part.take("b", 2) for (tooth,), part in tree.parts("leans", 1)}
-    _check(all(value.shape == (3, 3) for value in leans.values()), "leaning loads")
+    _check(all(value.shape == (3, 4) for value in leans.values()), "leaning loads")
     seam = None
     if tree.has("seam"):
         opening = {tooth: _curve(part) for (tooth,), part in tree.parts("seam/opening", 1)}

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 SPAN = 2  # edges of the flank on either side of a hat's top; its kinks fall on ends of edges
-FLANK_EDGES = {"flank": 0.05, "tip": 0.0005, "low": 0.02}  # edges in modules: of the flank, at its tip corner, at its lower end
 TIP_ZONE = 0.35  # arc below the tip corner [m_n] in which a contact can be resolved hat by hat
 
 

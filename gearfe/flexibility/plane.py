@@ -12,7 +12,7 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
 NEAREST = 0.001  # to a tip corner that a flexibility is told apart [m_n]
-TILT = 0.2  # of the two loads at each of three places that tell how a tooth yields across the normal [rad]
+TILT = 0.2  # of the two loads at each of four places that tell how a tooth yields across the normal [rad]
 BELOW = 0.1  # the tip: the place between both ends of the flank [m_n]
 
 
@@ -23,14 +23,14 @@ def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike
 
     Parameters
     ----------
-    arc : ndarray, shape (3,)
-        Places of the loads: at the foot of the flank, `BELOW` the tip and at the tip [mm].
-    normal, ahead, back : ndarray, shape (3,)
+    arc : ndarray, shape (4,)
+        Places of the loads: at the foot of the flank, half-way, `BELOW` the tip and at the tip [mm].
+    normal, ahead, back : ndarray, shape (4,)
         Under loads along the involute's normal n, and tilted towards t and away from it [mm per N/mm].
 
     Returns
     -------
-    ndarray, shape (3, 3)
+    ndarray, shape (3, 4)
         Arcs, S_nt and S_tt [mm per N/mm].
     """
     plain, plus, minus = (np.asarray(values, dtype=float) for values in (normal, ahead, back))
@@ -41,7 +41,7 @@ def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike
 
 def _logarithmic(arc, places, least):
     """A variable of the arc in which `leaning` changes evenly between its places: towards the tip's wedge a logarithm."""
-    _, middle, tip = places
+    middle, tip = places[-2:]
     left = np.maximum(tip - np.maximum(arc, middle), 0.0) + least
     return np.minimum(arc - middle, 0.0) + np.log((tip - middle + least) / left)
 
@@ -106,7 +106,7 @@ class Flexibility:
         The cracks; the splines above then are those with the cracks glued shut.
     basis : spline or None
         Over the arc of a flank: the k functions by which `own` is carried.
-    leans : dict of int to ndarray, shape (3, 3)
+    leans : dict of int to ndarray, shape (3, 4)
         Of each solved tooth what `leaning` gives: t is the tangent away from the gear's centre. Without it a tooth yields to
         loads off its normal by their torque.
     """
@@ -150,9 +150,13 @@ class Flexibility:
             out.append(found)
         return out
 
-    def leans_of(self, tooth: int) -> NDArray[np.float64] | None:
-        """What `leaning` gives of a tooth; None if it is not known."""
-        return self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
+    def yields_across(self, roll: NDArray[np.float64], tooth: int) -> NDArray[np.float64] | None:
+        """S_nt and S_tt of `leaning` ``(2, ...)`` [mm per N/mm] at roll lengths of a tooth; None if they are not known."""
+        leans = self.leans.get(tooth % self.gear.z, self._whole().leans.get(0))
+        if leans is None:
+            return None
+        at, places = (_logarithmic(arc, leans[0], NEAREST * self.gear.m_n) for arc in (arc_at(self.gear, roll), leans[0]))
+        return np.array([np.interp(at, places, values) for values in leans[1:]])
 
     def _whole(self):
         return self if self.healthy is None else self.healthy
@@ -209,12 +213,10 @@ def towards(
     local : float
         Taken from S(s, s') for loads of any direction [mm per N/mm]: what else than the half-plane's logarithm is local.
     """
-    leans = flexible.leans_of(tooth)
+    leans = flexible.yields_across(roll, tooth)
     if leans is None:
         return np.outer(torque, torque) * (smooth - local)
-    least = NEAREST * flexible.gear.m_n
-    at, places = (_logarithmic(arc, leans[0], least) for arc in (arc_at(flexible.gear, roll), leans[0]))
-    across, along = (np.interp(at, places, values) for values in leans[1:])
+    across, along = leans
     (normal, tangent), between = force, (along[:, None] + along) / 2
     mixed = np.outer(normal * across, tangent)
     return np.outer(normal, normal) * (smooth - local) + mixed + mixed.T + np.outer(tangent, tangent) * (between - local)

@@ -261,6 +261,8 @@ def approach(
         gap = gap + np.where(facing_it, step, np.nan)  # else the flanks face away: no contact
         if not (np.abs(step) >= (SQUARED if mate is None else EXACT) * pair.p_bt).any():
             break
+    if mate is not None:
+        arms = distances(sense * (gap / 2 - back), mate.slope(met))[2:]
     there = np.abs(step) < SETTLED * pair.p_bt
     return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))
 
@@ -297,17 +299,18 @@ def facing(pair, roll, nominal, driver, turns=None):
     ahead, apart = turns[own] + mirror[own] * angle, centres[own] - centres[other]
     r_b, base = gears[own].r_b, mate.r_b
 
-    def distances(moved):
+    def distances(moved, slope=0.0):
         x, y = cartesian(radius, ahead + pushes[own] * moved / r_b)
         y = y + apart
         away, seen = np.hypot(x, y), np.arctan2(x, y)
         met = place(mate, away)
         behind = mirror[other] * (seen - turns[other] - pushes[other] * moved / base) - met.angle
-        across = pushes[other] * (met.arm * y + met.lean * x) / away**2  # of the met normal, across the centre line
-        arm = pushes[own] * (pushes[other] * met.arm - apart * across) / r_b
-        up = pushes[other] * (met.lean * y - met.arm * x) / away**2  # and along the centre line
+        met_arm, lean = met.arm - slope * met.lean, met.lean + slope * met.arm  # a modified flank's normal is turned
+        across = pushes[other] * (met_arm * y + lean * x) / away**2  # of the met normal, across the centre line
+        arm = pushes[own] * (pushes[other] * met_arm - apart * across) / r_b
+        up = pushes[other] * (lean * y - met_arm * x) / away**2  # and along the centre line
         out = sense * (across * x + up * (y - apart)) / radius
         gap = base * ((behind + math.pi) % (2 * math.pi) - math.pi)
-        return gap, met.roll, arm, met.arm / base, out, -sense * pushes[other] * met.lean / away
+        return gap, met.roll, arm, met_arm / base, out, -sense * pushes[other] * lean / away
 
     return distances

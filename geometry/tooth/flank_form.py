@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .modified import Flank
 
 LARGEST = 0.1  # m_n: the tooth's flexibility is that of the unmodified tooth
+STEP = 1e-6  # m_n: over which a slope is taken
 STARTS = ("diameter", "roll", "angle")  # how the start of a relief can be given
 
 
@@ -150,6 +151,15 @@ class FlankForm:
         if self.flank.eccentricity and self._tooth is not None:
             out = out + self._off_centre(at, n)
         return out
+
+    def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
+        """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
+
+        At a kink it is the mean of both sides.
+        """
+        at, step = np.asarray(roll, dtype=float), STEP * self.gear.m_n
+        rise = (self.removed(at + step) - self.removed(at - step)) / (2 * step)
+        return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
 
     def _wear(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
         return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any

@@ -1,13 +1,14 @@
 """Kinks of modified flanks: how far the flank turns there, and rows as long as what is pressed."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.kinks import _kinks, kink_rows, near_kink
+from gearfe.contact.kinks import _nearest, kink_rows, near_kink
 from gearfe.contact.plane import PairContact
 from gearfe.contact.sharing import share
 from gearfe.energy.ritz.plane import flexibility
@@ -34,18 +35,21 @@ def test_a_relief_turns_the_flank_outwards(wheel):
     forms = flank_forms(pair, dict(zip(("pinion", "wheel"), flanks, strict=True)))
     contact = PairContact.__new__(PairContact)
     contact.pair, contact.flanks = pair, forms
-    arcs, slopes = _kinks(contact)
-    for gear, form, slope in zip(gears, forms, slopes, strict=True):
+    rolls = np.array([[gear.roll_f, gear.roll_a - gear.outward * 4.1] for gear in gears])  # one touch near each gear's kink
+    contact.found = SimpleNamespace(roll_1=rolls[0, ::-1, None], roll_2=rolls[1, :, None])
+    hosts, _, kinks, slopes = _nearest(contact, np.array([0, 1]), np.array([0, 0]))
+    assert hosts.tolist() == [0, 1]
+    for gear, form, kink, slope in zip(gears, forms, kinks, slopes, strict=True):
         start = gear.roll_a - gear.outward * 4.0
+        assert_allclose(kink, arc_at(gear, start))
         roll = start + 1e-3 * gear.outward * np.array([-1.0, 0.0, 1.0])
         radius, angle = flank(gear, roll)
         left = [_left(cartesian(radius, angle - removed)) for removed in (form.removed(roll) / gear.r_b, 0.0)]
         assert_allclose(slope, gear.outward * (left[0] - left[1]), rtol=2e-3)
-    assert_allclose(arcs[0], arc_at(pair.gear_1, pair.gear_1.roll_a - 4.0))
 
 
 def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
-    """The load of the flank would press far more than the rounding's start does: such rows are fitted, not cut by Hertz."""
+    """The load of the flank would press far more than the rounding's start does: hats are as short as Hertz's contact on it."""
     steel, load = gf.Material(E=207e3, nu=0.3), 50.0
     forms = flank_forms(PAIR, {name: gf.Flank(tip_rounding=0.02) for name in ("pinion", "wheel")})
     bodies = [flexibility(gear, steel) for gear in (PAIR.gear_1, PAIR.gear_2)]
@@ -54,4 +58,4 @@ def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
     assert rows
     for row in rows.values():
         pressed = np.flatnonzero(share(row.influence, row.gap, load)[0] > 0)
-        assert pressed.size >= 3  # of a row that is not fitted: 1
+        assert pressed.size >= 3

@@ -24,13 +24,13 @@ GEARS = [
 @pytest.mark.parametrize("gear", GEARS, ids=["undercut", "ring"])
 @pytest.mark.parametrize("angle", [0.1, -0.07])
 def test_a_tooth_yields_to_the_direction_of_a_force(gear, angle):
-    mesh = fe.mesh_gear(gear, refine=2.0)
+    mesh = fe.mesh_gear(gear, refine=1.4)
     on = fe.hats(mesh, 0, corner=True, tilt=angle)
     found = np.diag(Body(mesh.mesh, STEEL).between(on.load.tocoo()))
     want = found - half_plane(STEEL) * np.diag(hat_logarithm(on.knots, on.knots))
     parts = np.array([[math.cos(angle)], [math.sin(angle)]])
     for found, part in ((ritz.flexibility(gear, STEEL), 0.02), (fe.flexibility(gear, STEEL), 0.03)):
-        for arc, one in zip(on.arc[:2], want[:2], strict=True):  # at the tip corner itself meshes differ
+        for arc, one in zip(on.arc[:3], want[:3], strict=True):  # at the tip corner itself meshes differ
             roll = roll_at_arc(gear, np.array([arc]))
             assert_allclose(
                 towards(found, found.within([roll], [0])[0], roll, 0, parts, np.ones(1), 0.0),

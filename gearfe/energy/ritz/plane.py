@@ -103,14 +103,14 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
 
 
 def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`, and under six tilted ones: at `_leans`, both ways.
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
 
     The other arguments are as of `flexibility`.
     """
 
     def solve():
         rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
-        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 3)
+        tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
         return panel(gear, sector(gear, cracks, refine=refine), material, rolls, order=order, state=state, tilt=tilt)
 
     return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
@@ -123,7 +123,8 @@ def _limits(gear):
 def _leans(gear):
     """Arcs of the tilted loads, as of `leaning`."""
     low, high = _limits(gear)
-    return np.array([low, max(high - BELOW * gear.m_n, (low + high) / 2), high])
+    below = max(high - BELOW * gear.m_n, (low + high) / 2)
+    return np.array([low, (low + below) / 2, below, high])
 
 
 def _scale(gear):

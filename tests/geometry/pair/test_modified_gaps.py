@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from geometry.pair.contacts import approach, facing
 from geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -69,3 +70,26 @@ def test_hollow_flanks_are_refused():
     rough = gf.Flank(table=(roll, 0.05 * np.sin(12 * roll) ** 2))
     with pytest.raises(ValueError, match="the modified flanks conform at roll lengths"):
         PAIR.contacts(PHASE, flanks=flank_forms(PAIR, {"pinion": rough}))
+
+
+@pytest.mark.parametrize("ring", [False, True])
+@pytest.mark.parametrize("driver", [True, False])
+def test_arms_are_those_of_flanks_that_lean(ring, driver):
+    """How fast an approach of both gears closes a point, by differences: half of one gear's part and half of the other's."""
+    pair = gf.GearPair(PAIR.gear_1, gf.Gear(z=72, r_rim=125.0, addendum=0.85, tip_radius=0.2, **RACK)) if ring else PAIR
+    gears = pair.gear_1, pair.gear_2
+    forms = flank_forms(pair, {"pinion": gf.Flank(crowning=0.01, slope=0.02), "wheel": gf.Flank(crowning=0.01, slope=-0.02)})
+    own, mate = forms if driver else forms[::-1]
+    gear, sense = gears[not driver], 1 if driver else -1
+    roll = gear.roll_f + np.array([0.2, 0.5, 0.8]) * (gear.roll_a - gear.roll_f)
+    nominal = roll if driver else pair.outward * (pair.length - roll)
+    met = approach(pair, roll, nominal, driver=driver, flanks=forms)
+    distances = facing(pair, roll, nominal, driver)
+
+    def left(gap):
+        distance, there, *_ = distances(sense * (gap / 2 - own.removed(roll)))
+        return distance + own.removed(roll) + mate.removed(there) - gap
+
+    closed = (left(met.gap + 1e-4) - left(met.gap - 1e-4)) / 2e-4
+    assert_allclose(closed, -(1 + met.arm / met.met_arm) / 2, rtol=5e-6)  # squares of slopes are left out
+    assert np.abs(mate.slope(met.roll)).max() > 2e-3

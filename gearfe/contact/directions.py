@@ -1,0 +1,111 @@
+"""Which way the forces of contacts point, on either gear.
+
+A contact pushes along the common normal of both flanks. On the path of contact of involutes that is the line of action. Off it,
+and on modified flanks, which lean away from their involutes by `geometry.tooth.flank_form.FlankForm.slope`, it is not: the force
+has another torque, and the tooth yields to it along and across its own involute's normal.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.pair.contacts import approach
+from geometry.tooth.side import side
+
+
+class Direction(NamedTuple):
+    """Of contacts ``(n,)`` whose forces F along the line of action are what all contacts of a pair share (see `Contacts`).
+
+    `rate`: how fast a shared approach closes them, F over the force along their normal. `turns` ``(2, n)``: the torque on pinion
+    and wheel over that of the same F on the path. `parts` ``(2, 2, n)``: on pinion and wheel, what part of the force for a unit F
+    points along the involute's normal, and along the tangent away from the gear's centre.
+    """
+
+    rate: NDArray[np.float64]
+    turns: NDArray[np.float64]
+    parts: NDArray[np.float64]
+
+
+def met(contact, at, roll, host):
+    """What places of a gear's side touch: gap, place on the other gear [mm], and `Direction` of the force.
+
+    The force has the normal of the side that is met: give the places of the gear that has the edge, if one has.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    at : (ndarray of int, ndarray of int)
+        Number of the phase and column of the pair of each place, shapes like that of `roll`.
+    roll : ndarray
+        Places on the side of the `host`, 0 the pinion, 1 the wheel [mm].
+    host : int
+
+    Returns
+    -------
+    gap, other : ndarray
+        nan where nothing is met.
+    direction : Direction
+    """
+    pair, found = contact.pair, contact.found
+    own = {"start": found.gap[at], "flanks": contact.flanks, "order": found.order[at[1]]}
+    gap, other, *forces = approach(pair, roll, found.nominal[at], driver=host == 0, **own)
+    sense = 1 if host == 0 else -1
+    arms, out = np.array(forces[:2][::sense]), np.array(forces[2:][::sense])
+    rate = arms.mean(axis=0)
+    parts = [_parts(*one) for one in zip((pair.gear_1, pair.gear_2), (roll, other)[::sense], arms, out, strict=True)]
+    return gap, other, Direction(rate, arms / rate, np.array(parts) / rate)
+
+
+def _parts(gear, roll, arm, out):
+    """Parts ``(2, n)`` of unit forces along the involute's normal and the tangent away from the centre, as of `Met`."""
+    radius = side(gear, roll)[0]
+    across = np.minimum(gear.r_b / radius, 1.0)
+    inside = -gear.outward * np.sqrt(1 - across**2)  # of the normal: how far it points away from the centre
+    round_ = arm * gear.r_b / radius
+    return np.array([round_ * across + out * inside, out * across - round_ * inside])
+
+
+def leaning(contact, matrices):
+    """What modified flanks change where single contacts stand: their forces lean away from the involutes' normals.
+
+    Parameters
+    ----------
+    contact : gearfe.contact.plane.PairContact
+    matrices : sequence of two ndarray, shape (phases, pairs, pairs)
+        Smooth flexibility of pinion and wheel between contacts along the involutes' normals [mm per N/mm].
+
+    Returns
+    -------
+    matrices : list of ndarray
+        Between the contacts as they are.
+    coefficient : ndarray, shape (phases, pairs)
+        Of the half-planes' logarithm [mm per N/mm].
+    turns : ndarray, shape (2, phases, pairs)
+        As of `Direction`.
+    """
+    found, out = contact.found, []
+    where = np.isfinite(found.gap)
+    _, _, way = met(contact, where.nonzero(), found.roll_1[where], 0)
+    rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))
+    rate[where], turns[:, where], parts[:, 0], parts[:, :, where] = way.rate, way.turns, 1.0, way.parts
+    log, diagonal = np.log(contact.pair.gear_1.m_n), np.arange(found.order.size)
+    places = zip(
+        contact.flexibility, contact.coefficients, matrices, (found.roll_1, found.roll_2), (1, -1), turns, parts, strict=True
+    )
+    for flexible, coefficient, matrix, roll, sense, turn, (normal, tangent) in places:
+        local, own = coefficient * log, np.diagonal(matrix, axis1=1, axis2=2)
+        total = turn[:, :, None] * turn[:, None] * matrix
+        for k, order in enumerate(found.order.tolist()):
+            leans = flexible.yields_across(roll[:, k], sense * order)
+            smooth = own[:, k] - local
+            if leans is None:
+                total[:, k, k] = turn[:, k] ** 2 * smooth
+            else:
+                across, along = leans
+                total[:, k, k] = (
+                    normal[:, k] ** 2 * smooth + 2 * normal[:, k] * tangent[:, k] * across + tangent[:, k] ** 2 * (along - local)
+                )
+        total[:, diagonal, diagonal] += local / rate**2
+        out.append(total)
+    return out, sum(contact.coefficients) / rate**2, turns
