@@ -59,8 +59,8 @@ def test_light_loads_follow_the_half_planes_logarithm(name, method, first, rtol)
     """One contact: lte / F = S + c (ln(2 / a) + 1/2) / b, with a as the root of F; 0.03 N does not close the next pair's gap.
 
     In the section F is what the force N along the flanks' common normal does for both gears, and N closes less than the approach
-    by the same part. Where a flank leans away from its involute by C' of the roll length, that part is 1 - C' on its gear. In three
-    dimensions forces keep the involutes' normals, and the gaps of cells 1e-14 mm, which from 1e-4 N on is little.
+    by the same part. Where a flank leans away from its involute by C' of the roll length, that part is 1 - C' on its gear. In 3-D
+    forces keep the involutes' normals, and the gaps of cells 1e-14 mm, which from 1e-4 N on is little.
     """
     curves = solved(name, np.array([0.4, 0.5, 0.6, 0.8]), method=method)[first:10]
     way = np.array([1e3 * one.lte / one.meta["force_N"] for one in curves])  # mm/N
