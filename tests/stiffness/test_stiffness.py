@@ -96,13 +96,9 @@ def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_
     assert_allclose(fast.share[0], [share[k] for k in fast.order], atol=2e-3)
 
 
-SLOW = [pytest.param(*one, marks=pytest.mark.slow) for one in ((100.0, 0.635), (300.0, 0.99))]
-
-
-@pytest.mark.parametrize(("line_load", "phase"), [(300.0, 0.62), *SLOW])
-def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel, phase, line_load):
-    fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
-    full = full_contact(pair, line_load, phase, (steel, steel), per_width=12)
+def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel):
+    fast = gf.mesh_stiffness(pair, 300.0 * 20.0, steel, phases=[0.62])
+    full = full_contact(pair, 300.0, 0.62, (steel, steel), per_width=12)
     assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 
