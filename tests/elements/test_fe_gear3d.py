@@ -37,7 +37,7 @@ def pair_of(b=4.0, beta=0.2):
 
 def curve_of(steel, damage=None, pair=None, force=400.0, **options):
     return gf.mesh_stiffness(
-        pair or pair_of(), force, steel, damage=damage, **({"method": "fe3d", "refine": 0.6, "phases": 4} | options)
+        pair or pair_of(), force, steel, damage=damage, **({"method": "fe3d", "refine": 0.4, "phases": 4} | options)
     )
 
 

@@ -28,10 +28,9 @@ def stiffer(machine):
     return replace(machine, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in machine.springs))
 
 
-@pytest.mark.parametrize("case", ["damaged", "supports 100 times stiffer"])
-def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage, case):
-    machine = spur(spur_stage, case == "damaged")
-    machine = stiffer(machine) if case.startswith("supports") else machine
+def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage):
+    """Damaged, on supports 100 times as stiff as usual."""
+    machine = stiffer(spur(spur_stage, damaged=True))
     got = simulate(machine, 0.005)
     want = simulate(machine, 0.005, dt=got.time[1], method="DOP853", rtol=1e-9)
     true = max(difference(got, want))
