@@ -89,18 +89,6 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
-def test_part_width_is_seen_from_the_right_end(steel):
-    """The mirrored pair with its crack at the other end."""
-    crack = gf.Crack(level=0.5, width=(0.0, 1.5))
-    other = gf.Crack(level=0.5, width=(2.5, 4.0))
-    one = curve_of(steel, {"wheel": [crack]}, phases=np.array([0.2, 0.7]))
-    mirrored = curve_of(steel, {"wheel": [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-    wrong = curve_of(steel, {"wheel": [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-    assert_allclose(one.k, mirrored.k, rtol=1e-9)
-    assert np.abs(one.k / wrong.k - 1).max() > 2e-3
-
-
-@pytest.mark.slow
 def test_herringbone_halves_have_their_own_cracks(steel):
     run = {"face": "herringbone", "groove": 1.0, "pair": pair_of(9.0), "force": 800.0, "phases": np.array([0.3, 0.6])}
     half = [curve_of(steel, damage, phases=run["phases"]).k for damage in (None, {"pinion": [gf.Crack(level=0.5)]})]
