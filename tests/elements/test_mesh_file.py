@@ -93,7 +93,6 @@ def test_a_close_up_looks_into_pits_wherever_they_are(tmp_path, ring, side):
     assert (picture[..., 0] > picture[..., 2] + 0.2).mean() > 0.02  # orange
 
 
-@pytest.mark.slow
 def test_a_close_up_shows_the_crack(tmp_path):
     from matplotlib.image import imread
 
