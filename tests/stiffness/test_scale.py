@@ -116,12 +116,10 @@ def test_hexahedra_of_another_size_are_alike():
         found = solid_flexibility(small, STEEL, cracks, healthy=healthy, **run)
         return found.near | found.far
 
-    one = influences(1.0)
-    for s in SCALES:
-        other = influences(s)
-        assert set(other) == set(one)
-        for key, values in one.items():
-            assert_allclose(other[key], values, atol=1e-6 * np.abs(values).max(), rtol=0, err_msg=f"{key}, {s:g} times as large")
+    one, other = influences(1.0), influences(25.0)
+    assert set(other) == set(one)
+    for key, values in one.items():
+        assert_allclose(other[key], values, atol=1e-6 * np.abs(values).max(), rtol=0, err_msg=str(key))
 
 
 @pytest.mark.parametrize("s", SCALES)
