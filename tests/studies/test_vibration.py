@@ -61,7 +61,7 @@ def test_what_cannot_run_is_refused():
 
 def test_command_line(tmp_path, capsys):
     out, plot = tmp_path / "r.npz", tmp_path / "s.png"
-    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.2"]
+    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.3"]
     assert main([*command, "-o", str(out), "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text
