@@ -73,5 +73,6 @@ def share_inside(seeds, fine, least, count=64):
     return np.mean(found < told)
 
 
+@pytest.mark.slow
 def test_other_ring_pairs():
     assert share_inside(range(1150, 1158), {"order": 6, "refine": 2.0}, 400) >= 0.99

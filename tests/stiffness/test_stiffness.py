@@ -81,7 +81,7 @@ def test_default_resolution_is_within_half_a_percent(pair, steel, curve):
     assert_allclose(curve.k, fine.k, rtol=2e-3)
 
 
-@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.05), (100.0, 0.75), (300.0, 0.55), (300.0, 0.9)])
+@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.75), (300.0, 0.55)])
 def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_load):
     fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
     full = full_contact(pair, line_load, phase, (steel, steel))
