@@ -196,14 +196,19 @@ def _own(pair, side, face, groove, pits):
 
 
 def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, *, extended=True, flanks=None):
-    """`Contact3D` at `phases`, or at the one of 16 where pair `order` carries most; damage numbered in each gear's own frame."""
+    """`Contact3D` at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one.
+
+    Damage is numbered in each gear's own frame.
+    """
     options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
     options["flanks"] = flanks
     if phases is not None:
         return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
     end = pair.eps_alpha + overlap(pair, face, groove)
     found = pair_stiffness3d(pair, force, materials, -order + end * (np.arange(16) + 0.5) / 16, **options)
-    best = int(found.load[:, found.order == order].sum(axis=1).argmax())
+    carried = found.load[:, found.order == order].sum(axis=1)
+    alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases
+    best = int(alike[alike.size // 2])
     numbers = {name: getattr(found, name)[[best]] for name in ("phase", "k", "approach", "load", "unloaded")}
     return replace(found, cells=(found.cells[best],), **numbers)
 

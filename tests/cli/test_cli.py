@@ -60,17 +60,6 @@ def test_render_makes_a_picture_of_stress(tmp_path, capsys):
     assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
 
 
-@pytest.mark.slow
-def test_render_shows_a_pitted_tooth_in_three_dimensions(tmp_path, capsys):
-    path = tmp_path / "tooth.png"
-    assert main(["render", "helical_pitting", "--case", "minor", "--refine", "0.5", "--phase", "1.2", "-o", str(path)]) == 0
-    from matplotlib.image import imread
-
-    picture = imread(path)
-    assert np.unique((picture[..., :3] * 8).astype(int).reshape(-1, 3), axis=0).shape[0] > 50, "colours, not a blank"
-    assert "N on this tooth" in capsys.readouterr().out
-
-
 def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
     import meshio
 
@@ -81,14 +70,6 @@ def test_render_opens_a_crack_and_says_how_far(tmp_path, capsys):
     assert set(found.cells_dict) == {"triangle6"}
     assert {"displacement [mm]", "stress [MPa]", "von Mises stress [MPa]"} == set(found.point_data)
     assert np.isfinite(found.point_data["stress [MPa]"]).all()
-
-
-@pytest.mark.slow
-def test_render_shows_contact_lines(tmp_path, capsys):
-    path = tmp_path / "contact.png"
-    assert main(["render", "planetary_pitting", "--case", "mild", "--what", "contact", "--phase", "0.7", "-o", str(path)]) == 0
-    assert path.read_bytes().startswith(b"\x89PNG")
-    assert "largest pressure" in capsys.readouterr().out
 
 
 def test_scenes_and_info(capsys):

@@ -36,30 +36,4 @@ def test_coarser_meshes_are_stiffer(key):
     assert np.abs(away).max() < 0.01
 
 
-def finest(name, case):
-    """Stored k, and that of the healthy pair, of the finest mesh up to `MAIN`."""
-    refine = MAIN if (name, case, MAIN) in KNOWN else COARSE
-    return KNOWN[name, case, refine]["k"], KNOWN[name, "healthy", refine]["k"]
-
-
 HARD = [("12/20", "7 pits"), ("17/ring 42", "crack 60 %")]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "case"), HARD)
-def test_the_energy_model_and_its_loss_by_damage_are_those_of_the_hexahedra(name, case):
-    """k within half a percent in the mean and 1 % at every phase; the loss within 5 % of itself where it is largest."""
-    pair = pairs_three.pairs()[name][1]
-    curves = {own: pairs_three.model_curve(pair, own) for own in ("healthy", case)}
-    damaged, healthy = finest(name, case)
-    for own, want in (("healthy", healthy), (case, damaged)):
-        k, apart = curves[own]
-        away = (k / want - 1)[apart]
-        print(own, "mean", away.mean(), "largest", np.abs(away).max())
-        assert apart.sum() > 10
-        assert abs(away.mean()) < 5e-3
-        assert np.abs(away).max() < 1e-2
-    k, apart = curves[case]
-    loss, at_most, mean = pairs_three.drop(healthy[apart], damaged[apart], curves["healthy"][0][apart], k[apart])
-    print("drop", loss, "of itself", at_most, "mean", mean)
-    assert abs(at_most) < 0.05

@@ -81,9 +81,9 @@ def test_the_pose_holds_in_three_dimensions():
 
 @pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX (ccx) is not installed: apt-get install calculix-ccx")
 @pytest.mark.slow
-@pytest.mark.parametrize(("phase", "pose"), [(0.65, "pinion"), (0.95, "wheel")])
-def test_calculix_in_the_same_pose(pair, phase, pose, tmp_path):
+def test_calculix_in_the_same_pose(pair, tmp_path):
     """Nonlinear contact with large displacements, the same gears turned."""
+    phase, pose = 0.95, "wheel"
     curve = solved(pair, phase, pose)
     deck = gf.write_contact_inp(tmp_path / "pair.inp", pair, phase, curve.lte[0] * 1e3, LOAD, (STEEL, STEEL), pose=pose)
     subprocess.run(["ccx", "-i", "pair"], cwd=tmp_path, capture_output=True, timeout=600, check=False)

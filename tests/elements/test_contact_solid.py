@@ -213,17 +213,6 @@ def test_what_pairs_carry_is_read_from_forces_and_moments(tmp_path):
 needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")
 
 
-@needs_ccx
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["line load, helical", "line load, crack 50 %"])
-def test_calculix_under_a_line_load(name):
-    row = outsider.line_row(name, {"refine": 0.6})
-    print(f"{name}: {100 * outsider.apart(row):+.2f} %")
-    assert abs(outsider.apart(row)) < outsider.ASKED
-    on_file = outsider.stored().get((name, row["mesh"]))
-    assert on_file is None or math.isclose(float(row["theirs"]), float(on_file["theirs"]), rel_tol=1e-4)
-
-
 def test_nodes_of_modified_flanks_lie_on_them():
     """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
     pair = pair_of(15.0)

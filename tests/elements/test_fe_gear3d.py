@@ -11,9 +11,8 @@ import gearfe as gf
 from gearfe.elements import fe3d, solver
 from gearfe.elements.crack_zones import zone_forces
 from gearfe.elements.fe_gear3d import solid_flexibility
-from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.halfspace import half_space
-from gearfe.flexibility.solid import PLACES, hats, own_distance, solved_teeth
+from gearfe.flexibility.solid import PLACES, hats, solved_teeth
 from gearfe.stiffness import cache
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -24,47 +23,11 @@ LEVELS = (COARSE | {"section": 1.0}, COARSE | {"refine": 0.6, "section": 1.0})
 SMALL = replace(GEAR, z=9, x=0.5, b=2.0, r_bore=4.0)
 
 
-def line_loads(found):
-    """Displacement of each patch under an even load on it, half-space included, and of the next tooth's [mm per N/mm]."""
-    at = np.arange(PLACES) * (found.degree + 1)
-    own = found.near[0] + found.kernel * own_distance(found.gear, found.width, found.degree)
-    return np.diag(own)[at], np.diag(found.far[0, 1])[at]
-
-
-@pytest.mark.slow
-def test_patches_move_as_in_the_energy_model(steel):
-    """To within the step from one mesh to the next and the model's own error, in parts of the largest displacement."""
-    gear, cracks = replace(GEAR, beta=0.35), (gf.Crack(level=0.5),)
-    healthy = solid_flexibility(gear, steel, **LEVELS[0])
-    levels = [solid_flexibility(gear, steel, cracks, healthy=healthy, **options) for options in LEVELS]
-    model = flexibility3d(gear, steel, cracks, axial=DEGREE + 4)
-    kept = (np.arange(PLACES)[:, None] * (model.degree + 1) + np.arange(DEGREE + 1)).ravel()
-    model = replace(
-        model,
-        degree=DEGREE,
-        near={t: b[np.ix_(kept, kept)] for t, b in model.near.items()},
-        far={t: b[np.ix_(kept, kept)] for t, b in model.far.items()},
-    )
-    coarse, fine, want = (np.array(line_loads(found)) for found in (*levels, model))
-    step = np.abs(fine - coarse).max() / want.max()
-    away = np.abs(fine - want).max() / want.max()
-    print("step", step, "difference", away, "of the next tooth's", fine[1] / want[1] - 1)
-    assert step < 0.02
-    assert away < step + 2e-3
-
-
-def test_only_the_teeth_that_share_load_are_solved(steel):
+def test_only_the_teeth_that_share_load_are_solved():
     assert solved_teeth(GEAR, (), 2) == [0, 1, 2]
     assert solved_teeth(GEAR, (), 30) == list(range(12))
     assert solved_teeth(GEAR, (gf.Crack(level=0.3, tooth=3),), 1) == [2, 3, 4]
     assert solved_teeth(GEAR, (gf.Crack(level=0.3),), 1) == [0, 1, 11]
-    found = solid_flexibility(SMALL, steel, **COARSE)
-    assert set(found.near) == {0}
-    assert set(found.far) == {(0, 1)}
-    assert found.kernel == half_space(steel)
-    size = PLACES * (DEGREE + 1)
-    assert found.near[0].shape == (size, size)
-    assert_allclose(found.near[0], found.near[0].T, atol=1e-9 * np.abs(found.near[0]).max())
 
 
 def pair_of(b=4.0, beta=0.2):
@@ -74,7 +37,7 @@ def pair_of(b=4.0, beta=0.2):
 
 def curve_of(steel, damage=None, pair=None, force=400.0, **options):
     return gf.mesh_stiffness(
-        pair or pair_of(), force, steel, damage=damage, **({"method": "fe3d", "refine": 0.6, "phases": 4} | options)
+        pair or pair_of(), force, steel, damage=damage, **({"method": "fe3d", "refine": 0.4, "phases": 4} | options)
     )
 
 
@@ -88,6 +51,12 @@ def test_a_solved_gear_is_found_on_the_disk(steel, tmp_path, monkeypatch):
     assert line.startswith("z = 9, b = 2 mm: ")
     assert "unknowns, about" in line
     assert line.endswith("GB free")
+    assert set(first.near) == {0}
+    assert set(first.far) == {(0, 1)}
+    assert first.kernel == half_space(steel)
+    size = PLACES * (DEGREE + 1)
+    assert first.near[0].shape == (size, size)
+    assert_allclose(first.near[0], first.near[0].T, atol=1e-9 * np.abs(first.near[0]).max())
     assert cache.solved_solid(SMALL, steel, **run) is first
     cache.clear()  # a new process
     again = cache.solved_solid(SMALL, steel, **run)
@@ -117,18 +86,6 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     assert_allclose(again[0].k, curve.k, rtol=1e-12)
     assert (again[1].k > again[0].k).all()
     cache.clear()
-
-
-@pytest.mark.slow
-def test_part_width_is_seen_from_the_right_end(steel):
-    """The mirrored pair with its crack at the other end."""
-    crack = gf.Crack(level=0.5, width=(0.0, 1.5))
-    other = gf.Crack(level=0.5, width=(2.5, 4.0))
-    one = curve_of(steel, {"wheel": [crack]}, phases=np.array([0.2, 0.7]))
-    mirrored = curve_of(steel, {"wheel": [other]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-    wrong = curve_of(steel, {"wheel": [crack]}, pair=pair_of(beta=-0.2), phases=np.array([0.2, 0.7]))
-    assert_allclose(one.k, mirrored.k, rtol=1e-9)
-    assert np.abs(one.k / wrong.k - 1).max() > 2e-3
 
 
 @pytest.mark.slow

@@ -119,10 +119,9 @@ def test_a_deck_with_folded_elements_is_not_written():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["cut", "filled"])
-def test_decks_with_pits_do_not_fold(tmp_path, kind):
+def test_decks_with_pits_do_not_fold(tmp_path):
     """At refine 1.7, with longer tets, CalculiX stopped at one across the form circle of an undamaged tooth."""
     pair, damage = outsider.pair_of(15.0), {"pinion": outsider.pits()}
-    options = {"face": "helical", "damage": damage, "pits": kind, "per_width": 1.0, "refine": 1.7}
+    options = {"face": "helical", "damage": damage, "pits": "filled", "per_width": 1.0, "refine": 1.7}
     deck = gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, 0.016, 300.0, (STEEL, STEEL), **options)
     assert all(jacobians(part.points, part.cells).min() > 0 for part in deck.parts)

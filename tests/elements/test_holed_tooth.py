@@ -13,6 +13,7 @@ from skfem.helpers import ddot, eye, sym_grad, trace
 import gearfe as gf
 from gearfe.elements.hexahedron import assemble
 from gearfe.elements.tetrahedron import nodal_stress, second_order, tet_stiffness
+from gearfe.stress import holed
 from gearfe.stress.fields import write_vtu
 from gearfe.stress.holed import pressed_tooth, tooth_field
 from geometry.damage.pit import pit_row
@@ -81,8 +82,6 @@ def pressed():
 def test_the_load_is_that_of_the_contact(pressed):
     """Its axial part and moment are those of a force at right angles to the flank; the reactions balance it."""
     pair, made = pressed
-    from gearfe.stress import holed
-
     nodes, _, number = second_order(made.sector.points, made.sector.cells)
     lines = holed._lines(pair, made.contact.cells[0], 0, 0, 0)
     force = holed._pressure(made.sector, nodes, number, lines, holed.SPREAD * HELICAL.m_n).reshape(-1, 3).T
@@ -126,6 +125,15 @@ def test_damage_of_two_gears_is_refused():
 def test_a_load_without_width_is_refused(steel):
     with pytest.raises(ValueError, match="give spread > 0"):
         pressed_tooth(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, {"pinion": [pit(GEAR)]}, phases=[0.5], spread=0.0)
+
+
+def test_the_second_half_is_drawn_in_the_mirror():
+    """A pit there, turned the other way, is that of the first half."""
+    pair = gf.GearPair(*(replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))))
+    one, two = (holed._own(pair, 0, "herringbone", 2.0, (pit(HELICAL, z=z, angle=a),)) for z, a in ((2.0, 0.5), (10.0, -0.5)))
+    assert (one[1], two[1]) == (0, 1)
+    assert two[0] == one[0]
+    assert two[2] == one[2]
 
 
 @pytest.mark.slow

@@ -23,7 +23,6 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 SPUR = gf.Gear(z=18, r_bore=9.0, b=6.0, **RACK)
 HELICAL = replace(SPUR, beta=math.radians(16))
-RING = gf.Gear(z=48, r_rim=60.0, b=6.0, beta=math.radians(16), tip_radius=0.3, addendum=0.85, **RACK)
 HAT = 5  # the patch that is looked at
 
 
@@ -36,13 +35,13 @@ def compliance(gear, crack, *, order=2, modes=3):
     return join(gear, panels, healthy)[0][0, 0][np.ix_(at, at)]
 
 
-@pytest.mark.parametrize("gear", [HELICAL, pytest.param(RING, marks=pytest.mark.slow)], ids=["helical", "ring"])
-def test_a_front_that_hardly_slopes_is_one_parallel_to_the_teeth(gear):
+def test_a_front_that_hardly_slopes_is_one_parallel_to_the_teeth():
     """The section that moves with the front gives what a section with that crack gives."""
-    want = compliance(gear, gf.Crack(level=0.35))
-    assert_allclose(compliance(gear, gf.Crack(level=0.5, ends=(0.7, 0.7))), want, rtol=1e-12, err_msg="an even one is meshed so")
+    want = compliance(HELICAL, gf.Crack(level=0.35))
+    even = gf.Crack(level=0.5, ends=(0.7, 0.7))
+    assert_allclose(compliance(HELICAL, even), want, rtol=1e-12, err_msg="an even one is meshed so")
     pinned = gf.Crack(level=0.5, ends=(1.0, 1.0 - 1e-9))
-    assert_allclose(compliance(gear, pinned), compliance(gear, gf.Crack(level=0.5)), rtol=2e-3)
+    assert_allclose(compliance(HELICAL, pinned), compliance(HELICAL, gf.Crack(level=0.5)), rtol=2e-3)
 
 
 def test_what_cubics_lack_at_the_tip_is_known_of_fronts_too():
@@ -54,18 +53,6 @@ def test_what_cubics_lack_at_the_tip_is_known_of_fronts_too():
     )
     print(f"what the crack adds differs by {100 * ((steep - none) / (flat - none) - 1):.3f} %")
     assert_allclose(steep - none, flat - none, rtol=2e-3)
-
-
-@pytest.mark.slow
-def test_what_a_crack_that_runs_out_adds_is_that_of_finer_bodies():
-    crack, rack = gf.Crack(length=1.2, width=(0.0, 6.0), ends=(1.0, 0.0), rounded=True), RACK | {"b": 8.0}
-    pair, added = gf.GearPair(*(gf.Gear(z=z, r_bore=0.5 * z, **rack) for z in (19, 31))), []
-    for order, refine in ((3, 1.0), (4, 1.5)):
-        run = {"method": "ritz3d", "phases": [0.3, 0.75], "order": order, "refine": refine}
-        healthy, cracked = (gf.mesh_stiffness(pair, 800.0, STEEL, damage=own, **run).k for own in (None, {"pinion": [crack]}))
-        added.append(1 / cracked - 1 / healthy)
-    print(np.round(100 * (added[0] / added[1] - 1), 2), "% of what the crack adds")
-    assert_allclose(added[0], added[1], rtol=3e-3)
 
 
 def test_a_front_seen_from_the_other_end():

@@ -2,7 +2,6 @@
 
 Invariants: ``0 < k`` within the range of teeth, forces that add up, symmetry under exchange of the gears, nothing stiffer by
 damage, continuity in the inputs, error estimates that cover the difference of methods.
-Profiles: quick in the ordinary run, slow (4000 examples) with ``-m slow``.
 """
 
 import math
@@ -11,7 +10,6 @@ import warnings
 from importlib import resources
 
 import numpy as np
-import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from judge import unsound
@@ -20,13 +18,6 @@ import gearfe as gf
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 KEPT = {"deadline": None, "database": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
-
-
-def profiles(quick, slow):
-    """Parameters of a test: `quick` examples in the ordinary run, `slow` ones where asked for."""
-    sizes = {"quick": quick, "slow": slow}
-    marks = {"quick": [], "slow": [pytest.mark.slow]}
-    return [pytest.param(settings(max_examples=most, **KEPT), id=name, marks=marks[name]) for name, most in sizes.items()]
 
 
 ANY = st.one_of(st.floats(), st.integers(), st.text(max_size=3), st.none(), st.booleans(), st.lists(st.floats(), max_size=3))
@@ -65,13 +56,12 @@ def stiffness(pair, force, method, **options):
         return gf.mesh_stiffness(pair, force, STEEL, method=method, **options)
 
 
-def run(check, profile, **drawn):
-    """Judge `check` on what is drawn, with a profile."""
-    profile(given(**drawn)(check))()
+def run(check, examples, **drawn):
+    """Judge `check` on so many draws."""
+    settings(max_examples=examples, **KEPT)(given(**drawn)(check))()
 
 
-@pytest.mark.parametrize("profile", profiles(100, 1500))
-def test_any_gears_and_loads(profile):
+def test_any_gears_and_loads():
     """Of any two gears under any force: a sound curve, the same with the gears exchanged, or an error that says why."""
     told = {"answered": 0, "refused": 0}
 
@@ -93,12 +83,11 @@ def test_any_gears_and_loads(profile):
         swapped = stiffness(gf.GearPair(pair.gear_2, pair.gear_1, pair.a), force, "textbook", phases=[pair.eps_alpha - phase])
         np.testing.assert_allclose(swapped.k, curve.k, rtol=1e-9)
 
-    run(check, profile, one=GEARS, two=GEARS, force=FORCES, phase=st.floats(0, 1))
+    run(check, 100, one=GEARS, two=GEARS, force=FORCES, phase=st.floats(0, 1))
     assert min(told.values()) > 5, told
 
 
-@pytest.mark.parametrize("profile", profiles(4, 16))
-def test_the_energy_model_keeps_its_invariants(profile):
+def test_the_energy_model_keeps_its_invariants():
     """Exchange of the gears, a crack that softens, a slightly other input that changes little."""
 
     def check(one, two, force, phase, level, gap):
@@ -120,12 +109,11 @@ def test_the_energy_model_keeps_its_invariants(profile):
         assert (less < curve.k * 1.002).all(), "a crack softens"
         assert (more < less * 1.002).all(), "a deeper one more"
 
-    run(check, profile, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
+    run(check, 4, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
         level=st.floats(0.1, 0.4), gap=st.floats(0.05, 0.3))  # fmt: skip
 
 
-@pytest.mark.parametrize("profile", profiles(1, 8))
-def test_estimates_cover_the_difference_of_methods(profile):
+def test_estimates_cover_the_difference_of_methods():
     """Finite elements and the energy model are no further apart than both estimates together."""
 
     def check(one, two, force, phase, level, fine):
@@ -142,7 +130,7 @@ def test_estimates_cover_the_difference_of_methods(profile):
         apart, covered = abs(fe.k[0] - ritz.k[0]) / ritz.k[0], (fe.error[0] + ritz.error[0]) / ritz.k[0]
         assert apart <= covered, f"{100 * apart:.3f} % apart, estimates together {100 * covered:.3f} %"
 
-    run(check, profile, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
+    run(check, 1, one=SENSIBLE, two=SENSIBLE, force=st.floats(10.0, 5000.0), phase=st.floats(0.05, 0.95),
         level=st.floats(0.0, 0.7), fine=st.floats(0.5, 1.0))  # fmt: skip
 
 
@@ -150,8 +138,7 @@ PAIR = made({"z": 21, "x": 0.0, "bore": 0.4}, {"z": 31, "x": 0.0, "bore": 0.4})
 HEALTHY = {}
 
 
-@pytest.mark.parametrize("profile", profiles(3, 10))
-def test_pits_of_any_size_and_depth(profile):
+def test_pits_of_any_size_and_depth():
     """A pit of any depth lies between none and a deep one, and k falls with the depth without a jump."""
     options = {"method": "ritz3d", "phases": [0.5]}
 
@@ -165,12 +152,11 @@ def test_pits_of_any_size_and_depth(profile):
         assert (np.diff(k) < 2e-6 * k[0]).all(), k
         assert k[1] - k[2] < 1e-3 * k[1], "continuous in the depth"
 
-    run(check, profile, radius=st.floats(20.0, 22.0), z=st.floats(0.0, 20.0), along=st.floats(0.05, 1.5),
+    run(check, 3, radius=st.floats(20.0, 22.0), z=st.floats(0.0, 20.0), along=st.floats(0.05, 1.5),
         across=st.floats(0.05, 6.0), angle=st.floats(-1.5, 1.5), depth=st.floats(-5.0, -1.0).map(lambda p: 10**p))  # fmt: skip
 
 
-@pytest.mark.parametrize("profile", profiles(100, 1500))
-def test_anything_in_place_of_a_number(profile):
+def test_anything_in_place_of_a_number():
     """Dataclasses and `mesh_stiffness` refuse what is no number with a ValueError that names it, never another exception."""
     calls = {
         **{f"gear {name}": lambda v, n=name: gear(**({"z": 21, "x": 0.0, "bore": 0.4} | {n: v})) for name in ("x", "b", "addendum")},  # noqa: E501
@@ -192,15 +178,14 @@ def test_anything_in_place_of_a_number(profile):
             else:
                 assert not unsound(result)
 
-    run(check, profile, name=st.sampled_from(sorted(calls)), value=ANY)
+    run(check, 100, name=st.sampled_from(sorted(calls)), value=ANY)
 
 
 SCENE = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text(encoding="utf-8")
 LINES = [k for k, line in enumerate(SCENE.splitlines()) if " = " in line]
 
 
-@pytest.mark.parametrize("profile", profiles(25, 400))
-def test_scenes_with_any_value(tmp_path, profile):
+def test_scenes_with_any_value(tmp_path):
     """A built-in scene with one value replaced is a scene, or a ValueError that names the file."""
 
     def check(place, value):
@@ -235,11 +220,10 @@ def test_scenes_with_any_value(tmp_path, profile):
         "[[1]]",
         "10_000_000",
     ]
-    run(check, profile, place=st.sampled_from(LINES), value=st.sampled_from(values))
+    run(check, 25, place=st.sampled_from(LINES), value=st.sampled_from(values))
 
 
-@pytest.mark.parametrize("profile", profiles(25, 600))
-def test_files_of_any_bytes(tmp_path, profile):
+def test_files_of_any_bytes(tmp_path):
     """Readers refuse files of any bytes with one line that names the file, or read numbers that are finite."""
     heads = [
         b"",
@@ -263,5 +247,5 @@ def test_files_of_any_bytes(tmp_path, profile):
                 else:
                     assert not isinstance(found, gf.Signal) or np.isfinite(found.values).all()
 
-    run(check, profile, suffix=st.sampled_from([".csv", ".txt", ".npz", ".mat"]), head=st.sampled_from(heads),
+    run(check, 25, suffix=st.sampled_from([".csv", ".txt", ".npz", ".mat"]), head=st.sampled_from(heads),
         body=st.one_of(st.binary(max_size=200), st.text("0123456789.,;-e \n\t", max_size=80).map(str.encode)))  # fmt: skip

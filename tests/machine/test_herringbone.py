@@ -60,15 +60,13 @@ def test_cancelling_lines_leave_those_of_single_planets(herringbone_stage):
     assert (lines(response, "sunL.x", 80 / 3, (17, 19)) > 1e3 * lines(response, "sunL.x", 80.0, (6,))).all()
 
 
-@pytest.mark.parametrize("case", ["damaged", "bearings 100 times stiffer"])
-def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage, case):
-    """DOP853 against the fast path at 25 us: errors below 1e-3 of the range.
+def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage):
+    """DOP853 against the fast path at 25 us, a damaged tooth, bearings 100 times as stiff: errors below 1e-3 of the range.
 
-    With stiff bearings the axial motion, by then 0.03 um, is a mode whose period is three steps: below 4e-3.
+    The axial motion, by then 0.03 um, is a mode whose period is three steps: below 4e-3.
     """
-    damage = {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})} if case == "damaged" else None
-    options = {"bearing": 1e10, "tilt": 1e7} if case.startswith("bearings") else {}
-    machine = herringbone(herringbone_stage, damage, **options)
+    damage = {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})}
+    machine = herringbone(herringbone_stage, damage, bearing=1e10, tilt=1e7)
     assert len(machine.dofs) == 55
     got = simulate(machine, 0.005, dt=2.5e-5, every=4)
     want = simulate(machine, 0.005, dt=1e-4, method="DOP853", rtol=1e-8)
@@ -76,7 +74,7 @@ def test_fast_path_is_the_reference_on_55_degrees_of_freedom(herringbone_stage, 
     errors = np.abs(got.q - want.q).max(axis=0)
     for kind in ("theta", ".x", ".y", ".z", "tilt_x", "tilt_y"):  # directions of one unit
         same = [i for i, name in enumerate(machine.dofs) if name.endswith(kind)]
-        limit = 4e-3 if kind == ".z" and case.startswith("bearings") else 1e-3
+        limit = 4e-3 if kind == ".z" else 1e-3
         assert (errors[same] < limit * spans[same].max()).all(), kind
     name = "force sun_planet1L"
     assert np.abs(got[name] - want[name]).max() < 1e-3 * np.ptp(want[name])

@@ -20,10 +20,10 @@ def test_order_of_the_fast_path_and_the_reference():
     """Smooth stiffness and error: fourth order, and the same as RK45 and DOP853, which share nothing with it but the tables."""
     fine = 1e8 * (1 + 0.2 * np.cos(2 * math.pi * np.arange(1024) / 1024))
     machine = two_masses(stiffness=fine, error=((1e-6, 500.0, 0.3),))
-    want = simulate(machine, 0.004, dt=1e-4, method="DOP853", rtol=1e-10)
-    other = simulate(machine, 0.004, dt=1e-4, method="RK45", rtol=1e-6)
+    want = simulate(machine, 0.002, dt=1e-4, method="DOP853", rtol=1e-10)
+    other = simulate(machine, 0.002, dt=1e-4, method="RK45", rtol=1e-6)
     assert worst(other, want) < 1e-4
-    errors = [worst(simulate(machine, 0.004, dt=dt, every=round(1e-4 / dt)), want) for dt in (1e-4, 5e-5, 2.5e-5)]
+    errors = [worst(simulate(machine, 0.002, dt=dt, every=round(1e-4 / dt)), want) for dt in (1e-4, 5e-5, 2.5e-5)]
     rates = np.log2(np.array(errors[:-1]) / errors[1:])
     assert (rates > 3.5).all(), (errors, rates)
     assert errors[-1] < 1e-5
@@ -43,10 +43,11 @@ MACHINES = {
 @pytest.mark.parametrize("kind", MACHINES)
 def test_every_law_and_load_is_integrated_as_by_the_reference(kind):
     """DOP853 shares the tables and the law with the fast path, not the exponential steps, nor how contact is located."""
-    got = simulate(MACHINES[kind], 0.004, dt=5e-6, every=10)
-    want = simulate(MACHINES[kind], 0.004, dt=5e-5, method="DOP853", rtol=1e-9)
+    got = simulate(MACHINES[kind], 0.002, dt=5e-6, every=10)
+    want = simulate(MACHINES[kind], 0.002, dt=5e-5, method="DOP853", rtol=1e-9)
     assert worst(got, want) < (5e-5 if kind == "pulses and a film" else 1e-6)
     assert got.stats["losses"] == want.stats["losses"]
+    assert want.stats["losses"] > 0 or kind != "loses contact"
 
 
 def test_energy_of_free_vibration_over_1000_periods():

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE, WAVE, herringbone, tooth, two_masses
+from machines import SHAPE, WAVE, tooth, two_masses
 from numpy.testing import assert_allclose
 from scipy.linalg import expm
 
@@ -28,23 +28,15 @@ def stiffer(machine):
     return replace(machine, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in machine.springs))
 
 
-@pytest.mark.parametrize("case", ["damaged", "supports 100 times stiffer"])
-def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage, case):
-    machine = spur(spur_stage, case == "damaged")
-    machine = stiffer(machine) if case.startswith("supports") else machine
+def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage):
+    """Damaged, on supports 100 times as stiff as usual."""
+    machine = stiffer(spur(spur_stage, damaged=True))
     got = simulate(machine, 0.005)
     want = simulate(machine, 0.005, dt=got.time[1], method="DOP853", rtol=1e-9)
     true = max(difference(got, want))
     assert true < 1e-3
     assert true < 1.5 * got.stats["error"]
     assert got.stats["error"] < 1e-3
-
-
-@pytest.mark.slow
-def test_herringbone_within_a_thousandth_of_the_reference(herringbone_stage):
-    machine = herringbone(herringbone_stage, {"sun": (0, {"sun_planet": tooth(6e8 * SHAPE, 0.3, 1.5)})})
-    got = simulate(machine, 0.005)
-    assert max(difference(got, simulate(machine, 0.005, dt=got.time[1], method="DOP853", rtol=1e-9))) < 1e-3
 
 
 def test_contact_loss_within_a_hundredth_of_the_reference():

@@ -58,6 +58,32 @@ def test_surface_of_the_tooth_points_outwards():
     np.testing.assert_allclose(volume, 1.0, rtol=1e-12)
 
 
+def test_the_tooth_is_shown_with_some_of_its_body():
+    """Of a column of cubes along the radius those within two modules below the root circle, and no deeper ones."""
+    from types import SimpleNamespace
+
+    import numpy as np
+
+    from gearfe.reports.tooth import shown_tooth
+
+    for body in ({"r_bore": 5.0}, {"r_rim": 60.0, "tip_radius": 0.2, "addendum": 0.8}):
+        gear = gf.Gear(z=40, m_n=2.0, alpha_n=0.35, b=1.0, **body)
+        radius = gear.r_f - gear.outward * np.arange(-4.0, 13.0)  # from the tooth down into the body
+        corners = np.array([[0, 1, 0, 1], [0, 0, 0, 0], [0, 0, 1, 1]], dtype=float)
+        points = np.hstack([corners + np.array([[0.0], [r], [0.0]]) for r in radius])
+        low = 4 * np.arange(radius.size - 1)
+        tets = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]]).T
+        cells = (tets[:, :, None] + low).reshape(4, -1)
+        moved = np.ones_like(points)
+        field = SimpleNamespace(cells=cells, points=points, moved=moved, mises=points[1])
+        shown, faces, mises = shown_tooth(SimpleNamespace(sector=SimpleNamespace(gear=gear)), field, 0.25)
+        depth = gear.outward * (gear.r_f - (shown[1] - 0.25)) / gear.m_n
+        assert depth.min() == -2.0
+        assert depth.max() == 2.0
+        assert faces.max() == mises.size - 1
+        np.testing.assert_allclose(mises, shown[1] - 0.25)
+
+
 def test_unknown_case_and_suffix_are_refused_before_work(tmp_path):
     with pytest.raises(ValueError, match="no case 'worn'"):
         find("planetary_pitting", "worn")

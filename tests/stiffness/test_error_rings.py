@@ -73,15 +73,6 @@ def share_inside(seeds, fine, least, count=64):
     return np.mean(found < told)
 
 
+@pytest.mark.slow
 def test_other_ring_pairs():
     assert share_inside(range(1150, 1158), {"order": 6, "refine": 2.0}, 400) >= 0.99
-
-
-@pytest.mark.slow
-def test_many_other_ring_pairs():
-    assert share_inside(range(1000, 1016), {"order": 6, "refine": 2.0}, 800) >= 0.99
-
-
-@pytest.mark.slow
-def test_other_ring_pairs_against_finite_elements():
-    assert share_inside(range(3000, 3005), {"method": "fe", "refine": 2.0}, 100, 32) >= 0.99

@@ -8,7 +8,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.full_contact import full_contact
 from geometry.pair.flanks import flank_forms
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -127,18 +126,6 @@ def test_a_revolution_is_its_cycles_one_after_the_other():
     assert np.ptp(found.unloaded) > 5e-6
     with pytest.raises(ValueError, match="give their number in each mesh cycle"):
         solved(flanks, span="revolution", phases=[0.1, 0.2])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("case", [(0.010, 4.7, 1.0, 0.3), (0.030, 4.0, 2.0, 0.55)])
-def test_full_contact_on_modified_flanks(case):
-    """All pressures as unknowns, no Hertz, no kink rows: the independent check."""
-    *shape, phase = case
-    flanks = relieved(*shape)
-    found = solved(flanks, phases=[phase])
-    full = full_contact(PAIR, LOAD / 20, phase, (STEEL, STEEL), flanks=_forms(flanks))
-    assert_allclose(found.te[0], full.approach * 1e-3, rtol=2e-3)
-    assert_allclose(found.share[0], full.force[: found.order.size] / full.force.sum(), atol=2e-3)
 
 
 def test_a_saved_curve_keeps_its_unloaded_error(tmp_path):

@@ -26,7 +26,8 @@ HELICAL = gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=BETA, **RACK), gf.Gear(z=27
 RING = gf.GearPair(gf.Gear(z=31, r_bore=11.4, **RACK), gf.Gear(z=84, r_rim=95.0, addendum=0.8, tip_radius=0.2, **RACK))
 PIT = gf.Pit(radius=21.0, z=1.0, axes=(0.2, 0.4), depth=0.1)
 FORCE = 200.0
-SLOW = {("ritz3d", "crack"), ("ritz3d", "crack of part of the width"), ("ritz3d", "sloping crack"), ("fe3d", "ring")}
+# which it takes on pages of the validation that are computed again, too: whole gears take a minute
+ELSEWHERE = {("ritz3d", "crack"), ("ritz3d", "crack of part of the width"), ("ritz3d", "sloping crack")}
 # what a method may take: options, and whether its row says so
 INPUTS = {
     "nothing": ({}, lambda row: True),
@@ -55,10 +56,10 @@ def curve_of(steel, method, **options):
 @pytest.mark.parametrize(
     ("method", "what"),
     [
-        pytest.param(name, what, marks=pytest.mark.slow if (name, what) in SLOW else ())
+        (name, what)
         for name in METHODS
         for what in INPUTS
-        if name != "fe3d" or what == "ring"  # what else it takes: elements/test_fe_gear3d.py; what it refuses: below
+        if name != "fe3d" and (name, what) not in ELSEWHERE  # fe3d: elements/test_fe_gear3d.py; what it refuses: below
     ],
 )
 def test_each_method_takes_what_its_row_says(steel, method, what):

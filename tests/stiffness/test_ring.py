@@ -109,11 +109,11 @@ def test_verdict_on_the_minimum_of_the_27_72_ring_pair(method):
     assert_allclose(ours, 17.36, atol=0.02)
 
 
-@pytest.mark.parametrize(("phase", "per_width"), [(0.97, 10), pytest.param(0.9, 20, marks=pytest.mark.slow)])
-def test_ring_pair_equals_full_contact(pair, phase, per_width):
-    """At phase 0.9 a tip corner carries 4 %: pressures there take twice the resolution, at which they differ by 0.5 %."""
-    fast = gf.mesh_stiffness(pair, 2000.0, STEEL, phases=[phase])
-    full = full_contact(pair, 100.0, phase, (STEEL, STEEL), per_width=per_width)
+@pytest.mark.slow
+def test_ring_pair_equals_full_contact(pair):
+    """A tip corner carries 4 % here: pressures there take twice the usual resolution, at which they differ by 0.5 %."""
+    fast = gf.mesh_stiffness(pair, 2000.0, STEEL, phases=[0.9])
+    full = full_contact(pair, 100.0, 0.9, (STEEL, STEEL), per_width=20)
     assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 

@@ -22,14 +22,3 @@ def check(row):
 
 def test_the_cheapest_row_made_anew():
     check(min(ROWS, key=lambda row: float(row["cpu_s"])))
-
-
-def nearness(row):
-    """How near a row comes to its estimates: the largest error over its estimate."""
-    return max(float(row[f"{method}_error"]) / float(row[f"{method}_estimate"]) for method in ("fe", "ritz"))
-
-
-@pytest.mark.slow
-def test_the_rows_nearest_their_estimates_made_anew():
-    for row in sorted(ROWS, key=nearness)[-6:]:
-        check(row)

@@ -62,12 +62,6 @@ def test_swapping_the_gears_mirrors_the_curve(pair, steel, extended):
     assert_allclose(two.k, one.k, rtol=1e-9)
 
 
-def test_scaling_every_length_leaves_k_per_width(pair, steel, curve):
-    s = 3.7
-    big = gf.GearPair(*(replace(g, m_n=s * g.m_n, r_bore=s * g.r_bore, b=s * g.b) for g in (pair.gear_1, pair.gear_2)))
-    assert_allclose(gf.mesh_stiffness(big, FORCE * s**2, steel).k, curve.k * s, rtol=1e-3)
-
-
 def test_scaling_modulus_and_load_together_leaves_k_over_modulus(pair, steel, curve):
     soft = gf.Material(E=steel.E / 50, nu=steel.nu)
     assert_allclose(gf.mesh_stiffness(pair, FORCE / 50, soft).k, curve.k / 50, rtol=1e-9)
@@ -87,7 +81,7 @@ def test_default_resolution_is_within_half_a_percent(pair, steel, curve):
     assert_allclose(curve.k, fine.k, rtol=2e-3)
 
 
-@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.05), (100.0, 0.75), (300.0, 0.55), (300.0, 0.9)])
+@pytest.mark.parametrize(("line_load", "phase"), [(100.0, 0.75), (300.0, 0.55)])
 def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_load):
     fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
     full = full_contact(pair, line_load, phase, (steel, steel))
@@ -96,13 +90,9 @@ def test_fast_path_equals_full_contact_inside_the_path(pair, steel, phase, line_
     assert_allclose(fast.share[0], [share[k] for k in fast.order], atol=2e-3)
 
 
-SLOW = [pytest.param(*one, marks=pytest.mark.slow) for one in ((100.0, 0.635), (300.0, 0.99))]
-
-
-@pytest.mark.parametrize(("line_load", "phase"), [(300.0, 0.62), *SLOW])
-def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel, phase, line_load):
-    fast = gf.mesh_stiffness(pair, line_load * 20.0, steel, phases=[phase])
-    full = full_contact(pair, line_load, phase, (steel, steel), per_width=12)
+def test_corner_contact_is_within_one_percent_of_full_contact(pair, steel):
+    fast = gf.mesh_stiffness(pair, 300.0 * 20.0, steel, phases=[0.62])
+    full = full_contact(pair, 300.0, 0.62, (steel, steel), per_width=12)
     assert_allclose(fast.lte[0] * 1e3, full.approach, rtol=0.01)
 
 

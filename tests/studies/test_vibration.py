@@ -48,14 +48,6 @@ def test_mesh_forces_carry_the_torque(found):
     assert_allclose(mean, drive.value, rtol=1e-3)
 
 
-@pytest.mark.slow
-def test_the_reference_integrator_agrees():
-    short = responses(SCENE, duration=0.02, phases=32)["healthy"]
-    slow = responses(SCENE, duration=0.02, phases=32, method="DOP853")["healthy"]
-    fast, truth = (one["sun2.theta"] for one in (short, slow))
-    assert_allclose(fast, truth, atol=5e-3 * abs(truth).max())
-
-
 def test_what_cannot_run_is_refused():
     with pytest.raises(ValueError, match="has no \\[machine\\] table"):
         gf.build_machine(replace(SCENE, machine={}))
@@ -69,7 +61,7 @@ def test_what_cannot_run_is_refused():
 
 def test_command_line(tmp_path, capsys):
     out, plot = tmp_path / "r.npz", tmp_path / "s.png"
-    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.5"]
+    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.3"]
     assert main([*command, "-o", str(out), "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text

@@ -195,6 +195,20 @@ def test_renew_computes_what_is_old(project):
     assert old(project) == 0
 
 
+def test_slow_tests_that_are_skipped_are_neither_done_nor_failed(project):
+    file = project / "tests/test_one.py"
+    marked = "import pytest\n\n\n@pytest.mark" + ".slow\ndef test_one():\n    "
+    file.write_text(marked + "pytest.skip('no such tool')\n")
+    said = told(project, "renew", "slow", "--minutes", "1")
+    assert "slow tests/test_one.py: not computed, something is missing here: 1 skipped" in said
+    assert "slow tests" not in (project / "validation/pages/tables/state.jsonl").read_text()
+    file.write_text(marked + "assert False\n")
+    assert "that did not pass: {'failed': 1}" in told(project, "slow", "tests/test_one.py", code=1)
+    file.write_text(marked + "assert True\n")
+    told(project, "slow", "tests/test_one.py")
+    assert "slow tests/test_one.py" in (project / "validation/pages/tables/state.jsonl").read_text()
+
+
 def test_of_two_lines_of_a_job_the_later_counts(monkeypatch, tmp_path):
     monkeypatch.setattr(places, "TABLES", tmp_path)
     lines = [{"job": "cracks", "table": "", "date": f"2026-11-0{day}", "rows": day} for day in (2, 3, 1)]

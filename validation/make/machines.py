@@ -33,7 +33,7 @@ ELSEWHERE = {  # references of a scene that another page computes
     "stiffness_reduction": "herringbone",
 }
 GOLDEN_RTOL = 1e-4
-SOON = {  # references whose simulation takes seconds: the ordinary tests compute them again; the slow ones, the others
+SOON = {  # references whose simulation takes seconds: the ordinary tests compute them again, too
     "compound_planetary": {"kurtosis", "kurtogram_level", "kurtogram_centre"},
 }
 

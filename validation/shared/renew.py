@@ -157,7 +157,8 @@ def renew(found, minutes, continued):
                 break
             words.append(waiting.pop(0).words[-1])
         code, told = alone(words, left, without)
-        outcome = {0: "computed again", None: "stopped: the time is over"}.get(code, "FAILED")
+        done = next((line for line in told if line.startswith(slow.MISSING)), "computed again")
+        outcome = {0: done, None: "stopped: the time is over"}.get(code, "FAILED")
         name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
         print(f"{name}: {outcome}", flush=True)
         if code:

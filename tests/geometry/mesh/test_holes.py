@@ -92,21 +92,17 @@ def test_volume_of_pits_at_edges_and_of_pits_on_each_other():
 
 
 LAYOUTS = {
-    "one": [{}],
     "turned": [{"angle": 0.6}],
     "tip edge": [{"radius": GEAR.r_a}],
     "end face": [{"z": 0.0}, {"z": 6.0}],
     "corner": [{"radius": GEAR.r_a - 0.1, "z": 5.8}],
     "overlapping": [{"z": 2.6}, {"z": 3.2, "radius": GEAR.r + 0.4}, {"z": 3.4, "angle": 1.0}],
     "nested": [{}, {"axes": (0.2, 0.3)}],
-    "unloaded": [{"side": "unloaded"}],
     "both sides": [{}, {"side": "unloaded", "z": 2.5}],
 }
 
 
-@pytest.mark.parametrize(
-    ("name", "beta"), [*((name, 0.4) for name in LAYOUTS), ("one", 0.0), ("corner", -0.2), ("both sides", -0.2)]
-)
+@pytest.mark.parametrize(("name", "beta"), [*((name, 0.4) for name in LAYOUTS), ("both sides", -0.2)])
 def test_what_is_cut_is_what_the_pits_take(name, beta):
     gear = replace(GEAR, beta=beta)
     scale = gear.r / GEAR.r
