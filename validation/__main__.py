@@ -17,9 +17,10 @@ PAGES = QUESTIONS | {
 
 PARTS = {  # what is computed at once, where that is not the page
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
-    **dict.fromkeys(("herringbone", "sample", "three"), ("all",)),
+    **dict.fromkeys(("herringbone", "sample"), ("all",)),
+    "three": ("all", "decks"),
 }
-ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
+ROWS = ("detection", "dynamics", "hard", "holes", "map", "outlines", "sample", "sweeps", "three")  # parts: rows, by beginnings
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
     "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
@@ -27,10 +28,9 @@ CONTINUED = {  # tables that a job continues where they lie: it counts as comput
         "outlines.csv",
         "outlines_fresh.csv",
         "outlines_plane.csv",
-        "outlines_three.csv",
         "outlines_unloaded.csv",
     ),
-    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
+    "three --reference": ("pairs_three.csv",),
 }
 
 
@@ -111,8 +111,8 @@ def compute(page, parts, reference):
         state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
         if reference:
-            for table in begun if parts else ():
-                kept_rows.forget(table.stem, parts)
+            for table in {table for name, table in state.read()[0] if parts and name.startswith(f"{job} ")}:
+                kept_rows.forget(table.removesuffix(".jsonl"), parts)
             made.reference()
         else:
             made.run(parts) if parts else made.run()

@@ -50,8 +50,9 @@ def reference():
     outlines_three.reference()
 
 
-def run():
-    """Write the page."""
+def run(parts=()):
+    """Write the page; `parts`: beginnings of the rows in three dimensions whose `ritz3d` is computed anew, or ``all``."""
+    outlines_three.refresh(page.anew(parts))
     parts, answers = [INTRODUCTION, unloaded_table.section()], []
     for method in METHODS:
         rows = [(row, found) for row, found in beside(method)]

@@ -21,7 +21,7 @@ from .arbiter.outline import Outline
 from .arbiter.pressing import FIRST, Contact, _bodies, _Phase
 from .arbiter.side import Side
 from .arbiter.touching import Press
-from .outsider import _write, calculix, rows_of
+from .outsider import calculix, rows_of, write_table
 from .places import TABLES
 
 TABLE = TABLES / "outlines_plane.csv"
@@ -146,7 +146,7 @@ def reference():
         for case in CASES:
             known = rows_of(TABLE)
             if not any(_key(row) == (*case, *run) for row in known):
-                _write([*known, row_of(*case, *run)], TABLE, COLUMNS)
+                write_table([*known, row_of(*case, *run)], TABLE, COLUMNS)
                 print(f"  CalculiX on {case}, {run}", flush=True)
 
 
