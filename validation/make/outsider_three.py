@@ -1,6 +1,6 @@
 """A part of the page `three`: `ritz3d` beside CalculiX, from the tables of `validation.shared.outsider` alone."""
 
-from ..shared.outsider import ASKED, LOAD, PITS, PITTED, SHOWN, apart, cases, lines, stored, told, wanted
+from ..shared.outsider import ASKED, LOAD, PITS, PITTED, apart, cases, lines, stored, told, wanted
 
 COMPARED = f"""
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and

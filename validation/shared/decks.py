@@ -6,6 +6,8 @@
 import csv
 import hashlib
 import re
+import resource
+import subprocess
 import tempfile
 from pathlib import Path
 
@@ -29,3 +31,12 @@ def write(*makers):
     places.TABLES.mkdir(exist_ok=True)
     with written(places.TABLES / "decks.csv") as name, open(name, "w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([("job", "deck"), *rows])
+
+
+def calculix(folder, name):
+    """Run CalculiX and give its CPU seconds; RuntimeError with its last words if it has no result."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
+    if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
+        raise RuntimeError(f"CalculiX gave no result: {done.stdout[-500:]}")
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before

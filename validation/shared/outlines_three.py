@@ -12,8 +12,8 @@ import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
 
 from . import kept_rows
-from .decks import digest
-from .outsider import STEEL, calculix, told
+from .decks import calculix, digest
+from .outsider import STEEL, told
 
 TABLE, OURS = "outlines_three", "outlines_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 LOAD = 600.0  # N/mm
@@ -27,10 +27,10 @@ Three undercut helical pairs (m_n 2 mm, x 0, 20 degrees, {LOAD:g} N/mm, both gea
 whole line of tooth pair 0 lies before the start of the path, where only the edge that undercut leaves on the pinion touches.
 They were chosen before any was pressed; the phase is one of those at which `ritz3d` and its forerunner, which did not know this
 edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that `ritz3d`
-had under the load when CalculiX was run; the pinion's fillets are part of the contact and meshed as finely as its flanks. CalculiX knows no path and
-no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the difference rises; two meshes do not
-tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and fillet; `layers`: of elements along the
-width. 'Path alone': `ritz3d` without contact off the path.
+had under the load when CalculiX was run; the pinion's fillets are part of the contact and meshed as finely as its flanks.
+CalculiX knows no path and no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the
+difference rises; two meshes do not tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and
+fillet; `layers`: of elements along the width. 'Path alone': `ritz3d` without contact off the path.
 
 """
 NAMES = ("pair", "mesh", "nodes", "`ritz3d` [N/um]", "path alone", "CalculiX", "difference")

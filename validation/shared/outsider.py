@@ -4,11 +4,8 @@ A run depends on its deck alone, which `validation.shared.decks` knows by its di
 that `ritz3d` had when the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
 """
 
-import csv
 import math
-import resource
 import shutil
-import subprocess
 import tempfile
 import warnings
 from dataclasses import dataclass, field
@@ -21,11 +18,10 @@ from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
-from gearfe.files import written
 from gearfe.flexibility import solid as flexibility3d
 
 from . import kept_rows
-from .decks import digest
+from .decks import calculix, digest
 
 TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -113,15 +109,6 @@ def lines():
 
 
 LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
-
-
-def calculix(folder, name):
-    """Run CalculiX and give its CPU seconds; RuntimeError with its last words if it has no result."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
-    if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
-        raise RuntimeError(f"CalculiX gave no result: {done.stdout[-500:]}")
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def line_hat(gear):
@@ -231,20 +218,14 @@ def key_of(name, mesh):
 def stored():
     """Rows on file by (case, mesh), as dicts with both and with what `ritz3d` finds: `ours`, the approach `now`, and `shared`."""
     theirs, out = kept_rows.stored(TABLE), {}
-    ours = {name: {"ours": row["value"], "now": row.get("approach"), "shared": row.get("carried")}
-            for name, row in kept_rows.stored(OURS).items()}
+    ours = {
+        name: {"ours": row["value"], "now": row.get("approach"), "shared": row.get("carried")}
+        for name, row in kept_rows.stored(OURS).items()
+    }
     for name, mesh in wanted():
         if key_of(name, mesh) in theirs and name in ours:
             out[name, told(mesh)] = {"case": name, "mesh": told(mesh)} | ours[name] | theirs[key_of(name, mesh)]
     return out
-
-
-def rows_of(table):
-    """Rows of a CSV table; none if there is no table."""
-    if not table.exists():
-        return []
-    with table.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def refresh(again=()):
@@ -273,14 +254,6 @@ def write_decks(folder):
             else:
                 contact_deck(folder, name, mesh, row["approach"])
             yield f"three --reference {row['row']}", folder / ("gear.inp" if name in lines() else "pair.inp")
-
-
-def write_table(rows, table, columns):
-    """Write a CSV table."""
-    with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, columns, lineterminator="\n")
-        out.writeheader()
-        out.writerows(rows)
 
 
 def apart(row):

@@ -6,8 +6,8 @@ modules below `CODE` that the process had imported when the job ended, and the d
 their digest, without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own
 is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
 
-A run of another program depends on its input alone: its line also says that `deck`'s digest, and it is of the present code as long
-as the job `DECKS`, of the present code itself, finds the same one.
+A run of another program depends on its input alone: its line also says the digest of that `deck`, and it is of the present code
+as long as the job `DECKS`, of the present code itself, finds the same one.
 """
 
 import ast
@@ -258,9 +258,9 @@ def ended(seconds, tables=()):
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
     if rows or not run.tables:
         record(run.job, seconds - run.seconds, max(rows, 1), shown if text.is_file() else "")
-    else:  # all of it is kept row by row
-        with changed() as (jobs, _):
-            jobs.pop((run.job, ""), None)
+    with changed() as (jobs, _):  # lines of single tables that this one replaces
+        for name in [path.name for path in whole] if rows or not run.tables else [""]:  # all of it is kept row by row
+            jobs.pop((run.job, name), None)
 
 
 def first_line(page, jobs, told):
