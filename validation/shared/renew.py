@@ -114,7 +114,8 @@ def report(found):
         text += f", of {dates[0]}{f' to {dates[-1]}' if dates[-1] != dates[0] else ''}" if dates else ""
         lines.append(text + (f", {never} never computed" if never else ""))
     total = f"{sum(one.rows for one in old)} of {sum(one.rows for one in found)} rows are old: {cost(old)} to compute again"
-    return [*lines, f"{total}; everything takes {cost(found)}"]
+    hours = sum(one.seconds or 0.0 for one in found) / 3600
+    return [*lines, f"{total}; everything takes {cost(found)}, {hours:.1f} hours of one processor"]
 
 
 def cost(found):
