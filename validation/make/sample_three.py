@@ -18,13 +18,13 @@ from geometry.damage.crack import crack_path
 from ..shared.kept_rows import kept
 
 TABLE = "sample_three"
-REFINE = 0.7  # resolution of `fe3d`
-# by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], pairs from that seed on
+# by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`,
+# pairs from that seed on
 KINDS = {
-    "narrow": (95_000, (12, 15), (12, 16), (2.0, 6.0), 2),
-    "wide": (96_000, (12, 13), (12, 14), (10.0, 20.0), 2),
-    "ring": (97_000, (12, 13), (20, 21), (3.0, 8.0), 2),
-    "crack": (98_000, (12, 14), (12, 15), (3.0, 6.0), 3),
+    "narrow": (95_000, (12, 15), (12, 16), (2.0, 6.0), 0.7, 2),
+    "wide": (96_000, (12, 13), (12, 14), (10.0, 20.0), 0.8, 2),
+    "ring": (97_000, (12, 13), (20, 21), (3.0, 8.0), 0.7, 2),
+    "crack": (98_000, (12, 14), (12, 15), (3.0, 6.0), 0.7, 3),
 }  # none of these seeds was looked at while the methods were made
 MISSED = (("narrow", 95_008), ("crack", 98_000), ("crack", 98_008))  # of the first ten of each kind: once missed by an estimate
 PHASES = 5
@@ -39,13 +39,14 @@ TEXT = f"""
 ## In three dimensions
 
 Each pair is solved by the energy model (`ritz3d`, its defaults) and by hexahedra of both whole gears (`fe3d`,
-resolution {REFINE:g}), both with `error=True`, at {PHASES} random phases, and by a
+resolution {KINDS["narrow"][4]:g}, of the wide {KINDS["wide"][4]:g}), both with `error=True`, at {PHASES} random phases, and by a
 finer energy model: order {FINE["order"]} instead of 3, {FINE["refine"]:g} times the resolution, {FURTHER} axial degrees more,
 half the cell length. The three are of one code in each row of `tables/{TABLE}.jsonl`, which `python -m validation sample ROW`
 computes anew in one to four minutes. Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
 cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4, six
 of ten helical (5 to 28 degrees). Of ten pairs of each kind that were solved once, those that an earlier version's estimates
-missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds.
+missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds: shares below are
+of harder pairs than random ones. When all forty were solved, by the version before, `ritz3d` covered 40 and `fe3d` 38 of them.
 """
 SETTLED = """
 The constants of the estimates (`gearfe.stiffness.solid`) are published ones or 2. What they compare was settled on other seeds,
@@ -60,7 +61,7 @@ CalculiX judges it in [three.md](three.md).
 
 def drawn(kind, seed):
     """Pair, line load [N/mm], damage and phases of a seed; ValueError where no such gears exist."""
-    rng, (_, first, second, widths, _) = np.random.default_rng(seed), KINDS[kind]
+    rng, (_, first, second, widths, *_) = np.random.default_rng(seed), KINDS[kind]
     m = float(rng.choice([1.0, 2.0, 4.0]))
     beta = math.radians(rng.uniform(5, 28)) if rng.random() < 0.6 else 0.0
     rack = {"m_n": m, "alpha_n": math.radians(rng.choice([17.5, 20.0, 22.5])), "b": float(m * rng.uniform(*widths))}
@@ -94,7 +95,7 @@ def row(kind, seed):
     try:
         energy, seconds = timed(lambda: gf.mesh_stiffness(*case, method="ritz3d", **run))
         fine, fine_seconds = timed(lambda: finest(*case, damage, phases))
-        brute, brute_seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=REFINE, **run))
+        brute, brute_seconds = timed(lambda: gf.mesh_stiffness(*case, method="fe3d", refine=KINDS[kind][4], **run))
     except RuntimeError as error:
         return out | {"failed": str(error)}
     out |= {"fine": fine.tolist(), "ritz3d": energy.k.tolist(), "ritz3d_error": energy.error.tolist(), "fe3d": brute.k.tolist()}
@@ -129,7 +130,7 @@ def named(pair, damage):
 
 def seeds(kind):
     """Seeds of a kind: the first that give gears, and those once missed."""
-    first, count = KINDS[kind][0], KINDS[kind][4]
+    first, count = KINDS[kind][0], KINDS[kind][5]
     found = itertools.islice((seed for seed in itertools.count(first) if _possible(kind, seed)), count)
     return sorted({*found, *(seed for own, seed in MISSED if own == kind)})
 
