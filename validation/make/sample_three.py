@@ -45,8 +45,9 @@ half the cell length. The three are of one code in each row of `tables/{TABLE}.j
 computes anew in one to four minutes. Kinds: external pairs of b/m 2 to 6 (narrow), of b/m 10 to 20 (wide), rings,
 cracks of 20 to 60 % (over the whole width or 30 to 70 % of it, on pinion, wheel or ring); 12 to 34 teeth, modules 1, 2, 4, six
 of ten helical (5 to 28 degrees). Of ten pairs of each kind that were solved once, those that an earlier version's estimates
-missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds: shares below are
-of harder pairs than random ones. When all forty were solved, by the version before, `ritz3d` covered 40 and `fe3d` 38 of them.
+missed are kept ({", ".join(f"{kind} {seed}" for kind, seed in MISSED)}) and, of the others, the first two or three seeds:
+shares below are of harder pairs than random ones. When all forty were solved, by the version before, `ritz3d` covered 40 and
+`fe3d` 38 of them.
 """
 SETTLED = """
 The constants of the estimates (`gearfe.stiffness.solid`) are published ones or 2. What they compare was settled on other seeds,
