@@ -5,6 +5,7 @@ import importlib
 import os
 import subprocess
 import sys
+import time
 
 from .shared import kept_rows, places, renew, slow, state
 from .shared.page import QUESTIONS
@@ -17,20 +18,17 @@ PAGES = QUESTIONS | {
 
 PARTS = {  # what is computed at once, where that is not the page
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
-    **dict.fromkeys(("herringbone", "sample", "three"), ("all",)),
+    **dict.fromkeys(("herringbone", "sample"), ("all",)),
+    "outlines": ("", "arbiter"),
+    "three": ("all", "decks"),
 }
-ROWS = ("detection", "dynamics", "hard", "holes", "map", "sample", "sweeps", "three")  # parts: rows, by beginnings
+ROWS = ("detection", "dynamics", "hard", "holes", "map", "outlines", "sample", "sweeps", "three")  # parts: rows, by beginnings
+ALONE = ("speed", "sweeps")  # pages that say what time things take
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),
     "herringbone --reference": (str(places.ROOT / "gearfe/scenes/herringbone_fe3d.csv"),),  # where gearfe reads it: by hand
-    "outlines --reference": (
-        "outlines.csv",
-        "outlines_fresh.csv",
-        "outlines_plane.csv",
-        "outlines_three.csv",
-        "outlines_unloaded.csv",
-    ),
-    "three --reference": ("outsider_three.csv", "outsider_three_sharing.csv", "pairs_three.csv"),
+    "outlines arbiter": ("outlines.csv", "outlines_fresh.csv", "outlines_plane.csv", "outlines_unloaded.csv"),
+    "three --reference": ("pairs_three.csv",),
 }
 
 
@@ -45,6 +43,7 @@ def main():
     parser.add_argument("--stale", action="store_true", help="list what other code computed, and bring first lines up to date")
     parser.add_argument("--age", type=int, metavar="DAYS", help="with --stale: change nothing, fail if it is so for longer")
     parser.add_argument("--minutes", type=float, default=60.0, help="with renew: how long (default 60)")
+    parser.add_argument("--processes", type=int, default=1, help="with renew: how many jobs at a time (default 1)")
     parser.add_argument("--reference", action="store_true", help="compute independent values that are not on file, or PART anew")
     arguments = parser.parse_intermixed_args()
     page, parts = arguments.page, arguments.parts
@@ -53,8 +52,7 @@ def main():
     if arguments.stale:
         sys.exit(stale(arguments.age))
     elif page == "renew":
-        wanted = [job for job in found() if not parts or job.words[0] in parts]
-        failed = renew.renew(wanted, arguments.minutes, CONTINUED)
+        failed = renewed(parts, arguments.minutes, arguments.processes)
         sys.exit(f"failed, and nothing of theirs was kept: {', '.join(failed)}" if failed else None)
     elif arguments.list or page is None:
         print(listed())
@@ -63,6 +61,16 @@ def main():
             subprocess.run([sys.executable, "-m", "validation", page, part], check=True)
     else:
         compute(page, parts, arguments.reference)
+
+
+def renewed(pages, minutes, processes):
+    """Compute again what is old, of some pages or of all; decks first, since they tell which runs are old. What failed."""
+    end = time.monotonic() + 60 * minutes
+    decks = [job for job in found() if " ".join(job.words) == state.DECKS and job.old]
+    failed = renew.renew(decks, minutes, {}) if decks and (not pages or {"three", "outlines"} & set(pages)) else []
+    wanted = [job for job in found() if not pages or job.words[0] in pages]
+    left = (end - time.monotonic()) / 60
+    return failed + renew.renew(wanted, left, CONTINUED, processes=processes, alone=ALONE)
 
 
 def whole():
@@ -111,14 +119,15 @@ def compute(page, parts, reference):
         state.run.job = job
         made = importlib.import_module(f"validation.make.{page}")
         if reference:
-            for table in begun if parts else ():
-                kept_rows.forget(table.stem, parts)
+            for table in {table for name, table in state.read()[0] if parts and name.startswith(f"{job} ")}:
+                kept_rows.forget(table.removesuffix(".jsonl"), parts)
             made.reference()
         else:
             made.run(parts) if parts else made.run()
         if job in whole() and not begun and all(table.is_file() for table in tables):
             state.ended(state.cpu(), tables)
-    state.stamp()
+    if "GEARFE_PAGES" not in os.environ:  # else `renew` moves the pages, and does it then
+        state.stamp()
     print(f"{' '.join([page, *parts])}: {state.cpu():.1f} s of CPU")
 
 

@@ -16,6 +16,7 @@ from geometry.pair.flanks import flank_forms
 from geometry.tooth.profile import flank
 from validation.make import three
 from validation.shared import outsider, page, state
+from validation.shared.decks import digest
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH = 0.015  # mm
@@ -170,11 +171,12 @@ def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
 
 
 @pytest.mark.parametrize("name", list(outsider.lines()))
-def test_line_loads_on_file_are_of_the_meshes_written_today(name, tmp_path):
+def test_line_loads_on_file_are_of_the_decks_written_today(name, tmp_path):
     """A rule of the mesh that changes makes rows of another mesh of them, which do not repeat."""
     mesh = outsider.LINE_MESHES[0]  # the coarser, in which rules of least numbers of edges decide
     row = outsider.stored()[name, outsider.told(mesh)]
-    assert outsider.line_deck(tmp_path, name, mesh).part.points.shape[1] == int(row["nodes"])
+    assert outsider.line_deck(tmp_path, name, mesh).part.points.shape[1] == row["nodes"]
+    assert digest(tmp_path / "gear.inp") == row["deck"]
 
 
 def test_page_is_made_from_its_table():

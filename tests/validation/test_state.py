@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.shared import places, state
+from validation.shared import decks, places, renew, state
 
 MODULE = '"""One."""\n\n\ndef one():\n    """Give 1."""\n    return 1  # that is one\n'
 MAKE = """
@@ -187,6 +187,30 @@ def half_written(project):
     return list(Path(project, "validation").glob(".pages.*/pages/tables/cracks.csv"))
 
 
+def test_renew_with_several_processes_computes_all_that_is_old(project):
+    told(project, "cracks")
+    told(project, "dynamics")
+    told(project, "dynamics", "--reference")
+    (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
+    (project / "validation/make/dynamics.py").write_text(KEPT.replace("'value': 1", "'value': 2"))
+    said = told(project, "renew", "--minutes", "1", "--processes", "2")
+    assert "cracks: computed again" in said
+    assert "FAILED" not in said
+    assert "first,5" in (project / "validation/pages/tables/cracks.csv").read_text()
+    for name in ("rows", "far"):
+        lines = (project / f"validation/pages/tables/dynamics_{name}.jsonl").read_text().splitlines()
+        assert [json.loads(line)["value"] for line in lines] == [2, 2]
+    assert "0 of 6 rows are old" in told(project, "--stale")
+
+
+def test_jobs_of_a_page_wait_for_each_other_and_those_that_time_for_all():
+    jobs = [renew.Job((page, part), 1, True, "", 1.0) for page, part in (("speed", ""), ("map", "1"), ("map", "2"), ("hard", ""))]
+    assert renew._next(jobs, [], ("speed",)) is jobs[0]
+    assert renew._next(jobs, ["speed"], ("speed",)) is None
+    assert renew._next(jobs, ["map"], ("speed",)) is jobs[3]
+    assert renew._next(jobs, ["map", "hard"], ("speed",)) is None
+
+
 def test_renew_computes_what_is_old(project):
     told(project, "cracks")
     (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
@@ -207,6 +231,39 @@ def test_slow_tests_that_are_skipped_are_neither_done_nor_failed(project):
     file.write_text(marked + "assert True\n")
     told(project, "slow", "tests/test_one.py")
     assert "slow tests/test_one.py" in (project / "validation/pages/tables/state.jsonl").read_text()
+
+
+@pytest.mark.parametrize(
+    ("code", "by", "deck", "present"),
+    [
+        pytest.param("old", "now", "d1", True, id="the present code writes the same deck"),
+        pytest.param("old", "now", "d2", False, id="it writes another deck"),
+        pytest.param("old", "old", "d1", False, id="other code wrote the decks"),
+        pytest.param("now", "old", "d2", True, id="the run itself is of the present code"),
+    ],
+)
+def test_a_run_of_another_program_is_judged_by_its_deck(monkeypatch, tmp_path, code, by, deck, present):
+    monkeypatch.setattr(places, "TABLES", tmp_path)
+    codes = {"now": state.digest(["validation/shared/decks.py"]), "old": "0123456789"}
+    told = {"files": "f", "date": "2026-11-01", "rows": 1}
+    lines = [
+        told | {"job": "three --reference one", "table": "runs.jsonl", "code": codes[code], "deck": "d1"},
+        told | {"job": state.DECKS, "table": "", "code": codes[by]},
+        {"key": "f", "files": {"validation/shared": "decks"}},
+    ]
+    (tmp_path / "state.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    (tmp_path / "runs.jsonl").touch()
+    (tmp_path / "decks.csv").write_text(f"job,deck\nthree --reference one,{deck}\n")
+    jobs, told = state.read()
+    assert state.present(jobs["three --reference one", "runs.jsonl"], told) is present
+
+
+def test_a_deck_is_the_same_with_other_last_digits_and_another_with_another_node(tmp_path):
+    path, found = tmp_path / "gear.inp", []
+    for text in ("*NODE\n1, 1.000000000000e+00, -0.0\n", "*NODE\n1, 9.99999999998e-01, 0.0\n", "*NODE\n1, 1.00001, 0.0\n"):
+        path.write_text(text)
+        found.append(decks.digest(path))
+    assert found[0] == found[1] != found[2]
 
 
 def test_of_two_lines_of_a_job_the_later_counts(monkeypatch, tmp_path):

@@ -15,11 +15,9 @@ def answer():
     state = stored("detection")["tolerances"]["states"]["10 % crack"]
     return (
         f"A crack of 10 % of the tooth's thickness lowers the mean stiffness by {100 * state['loss']:.1f} % where manufacture "
-        "scatters it "
-        f"by {100 * state['spread']:.1f} %: the mean tells it no better than {100 * (1 - state['k_mean']):.0f} %, the least "
-        "stiffness "
-        f"of the engagement {100 * (1 - state['k_min']):.0f} %, and two measurements of one machine, each 0.3 % off, "
-        f"{100 * state['own 0.003']:.1f} %."
+        f"scatters it by {100 * state['spread']:.1f} %: the mean tells it no better than {100 * (1 - state['k_mean']):.0f} %, "
+        f"the least stiffness of the engagement {100 * (1 - state['k_min']):.0f} %, and two measurements of one machine, each "
+        f"0.3 % off, {100 * state['own 0.003']:.1f} %."
     )
 
 

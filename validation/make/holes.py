@@ -37,8 +37,7 @@ estimates leave out, CalculiX has: it solves the contact around the holes itself
 """
 HOW = """
 `python -m validation holes` makes this page from `tables/holes.jsonl` and `tables/holed_cracks.jsonl`; `... holes ROW ...`
-computes
-rows whose names begin so anew, `... holes all` every one.
+computes rows whose names begin so anew, `... holes all` every one.
 """
 
 
@@ -96,8 +95,7 @@ def answer():
     return (
         f"Missing material takes at most {100 * most['extra'][-1]:.2f} % of k at a phase in {len(rows)} layouts of pits, and "
         f"{100 * cracked:.2f} % in the mean of cracked teeth, by a linear estimate that is too low; CalculiX, where it solves "
-        "the "
-        f"contact around two holes of a narrow gear, finds up to {100 * calculix:.1f} %."
+        f"the contact around two holes of a narrow gear, finds up to {100 * calculix:.1f} %."
     )
 
 

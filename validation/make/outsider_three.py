@@ -1,6 +1,6 @@
 """A part of the page `three`: `ritz3d` beside CalculiX, from the tables of `validation.shared.outsider` alone."""
 
-from ..shared.outsider import ASKED, LOAD, PITS, PITTED, SHARED, SHARING, apart, cases, lines, rows_of, stored, told, wanted
+from ..shared.outsider import ASKED, LOAD, PITS, PITTED, apart, cases, lines, stored, told, wanted
 
 COMPARED = f"""
 CalculiX is an independent finite-element code. gearfe writes its decks (`gearfe.write_contact_inp` with `face`, and
@@ -10,9 +10,9 @@ the two have in common is the shape of the gears and where they stand; stiffness
 do are CalculiX's own. `ritz3d` has pits as lost contact.
 
 In contact: 13/16 teeth (in a ring 13/36), m_n 2 mm, b 6 mm, 15 degrees unless spur, {LOAD:g} N/mm (with pits {PITTED:g}), phase
-0.45, tooth 0 of the pinion damaged; the gears are turned by the approach that `ritz3d` finds, frictionless surface-to-surface
-contact of all flanks, large displacements. k is force over approach. Under a line load: the deflection of a strip of pressure
-under itself.
+0.45, tooth 0 of the pinion damaged; the gears are turned by the approach that `ritz3d` found when CalculiX was run, frictionless
+surface-to-surface contact of all flanks, large displacements. k is force over approach. Under a line load: the deflection of a
+strip of pressure under itself. A run counts as one of the present code as long as this writes the same deck (`decks.csv`).
 
 `per_width`: edges per Hertz half width along the contact lines; there are 3 layers of elements along the width; `refine`
 divides all edges, these too. Edges of tets are half as long across the width as along it, and rims of pits have edges of 0.6 of
@@ -41,11 +41,12 @@ Force that each tooth pair carries, and where along the width its resultant acts
 def section():
     """Lines of the page, from its tables alone."""
     known = stored()
+    moved = max(abs(row["now"] / row["approach"] - 1) for row in known.values() if "approach" in row)
     text = ["## CalculiX", "", *verdict(known), *COMPARED.splitlines(), "", "### In contact", ""]
+    text += [f"Today's approaches differ from those of the runs by at most {100 * moved:.2f} %.", ""]
     text += [*_table("k [N/um]", known, cases())]
     text += [*HOLES.splitlines(), "", *_against_control(known)]
-    text += ["", "### Single gears under line loads", "", *_table("deflection [nm/N]", known, lines())]
-    text += [line for line in _shared() if SHARING.exists()]
+    text += ["", "### Single gears under line loads", "", *_table("deflection [nm/N]", known, lines()), *_shared(known)]
     missing = [f"{name} ({told(mesh)})" for name, mesh in wanted() if (name, told(mesh)) not in known]
     return [*text, "", f"Not computed yet: {'; '.join(missing)}."] if missing else text
 
@@ -60,7 +61,7 @@ def worst():
 def finest(known):
     """Row of the most nodes of every case that has one."""
     found = {}
-    for row in sorted(known.values(), key=lambda row: float(row["nodes"])):
+    for row in sorted(known.values(), key=lambda row: row["nodes"]):
         found[row["case"]] = row
     return {name: found[name] for name in (*cases(), *lines()) if name in found}
 
@@ -75,10 +76,10 @@ def pitted(known):
         for mesh in map(told, case.meshes):
             rows = {kind: known[base + end, mesh] for kind, end in PITS.items() if (base + end, mesh) in known}
             if "filled" in rows and len(rows) > 1:
-                k = {kind: float(row["theirs"]) for kind, row in rows.items()}
+                k = {kind: row["theirs"] for kind, row in rows.items()}
                 found = {kind: k[kind] / k["filled"] - 1 for kind in rows if kind != "filled"}
-                ours = next(float(row["ours"]) for kind, row in rows.items() if kind != "filled")
-                out[base.strip(), mesh] = found | {"ritz3d": ours / float(rows["filled"]["ours"]) - 1}
+                ours = next(row["ours"] for kind, row in rows.items() if kind != "filled")
+                out[base.strip(), mesh] = found | {"ritz3d": ours / rows["filled"]["ours"] - 1}
     return out
 
 
@@ -146,17 +147,16 @@ def _against_control(known):
         yield "| " + " | ".join(cells) + " |"
 
 
-def _shared():
+def _shared(known):
     yield from SHARES.splitlines()
-    yield from (
-        "",
-        "| mesh | pair | `ritz3d` [N] | CalculiX [N] | apart | `ritz3d`, z [mm] | CalculiX, z [mm] |",
-        "|---" * 7 + "|",
-    )
-    for row in rows_of(SHARING):
-        ours, theirs, *places = (row[name] for name in SHARED[2:])
-        off = f"{100 * (float(ours) / float(theirs) - 1):+.2f} %"
-        yield "| " + " | ".join([row["mesh"], row["pair"], ours, theirs, off, *places]) + " |"
+    yield ""
+    yield "| mesh | pair | `ritz3d` [N] | CalculiX [N] | apart | `ritz3d`, z [mm] | CalculiX, z [mm] |"
+    yield "|---" * 7 + "|"
+    for row in known.values():
+        for order, (theirs, height) in row.get("carried", {}).items():
+            ours, own = row["shared"][order]
+            off = f"{100 * (ours / theirs - 1):+.2f} %"
+            yield f"| {row['mesh']} | {order} | {ours:.5g} | {theirs:.5g} | {off} | {own:.4f} | {height:.4f} |"
 
 
 def _table(quantity, known, order):
@@ -164,6 +164,6 @@ def _table(quantity, known, order):
     yield "| " + " | ".join(names) + " |"
     yield "|---" * len(names) + "|"
     rows = [row for row in known.values() if row["case"] in order]
-    for row in sorted(rows, key=lambda row: ([*order].index(row["case"]), float(row["nodes"]))):
-        cells = [row["case"], row["mesh"], f"{int(row['nodes']):,}", row["ours"], row["theirs"], f"{100 * apart(row):+.2f} %"]
-        yield "| " + " | ".join([*cells, f"{100 * float(row['forces apart']):+.2f} %"]) + " |"
+    for row in sorted(rows, key=lambda row: ([*order].index(row["case"]), row["nodes"])):
+        cells = [row["case"], row["mesh"], f"{row['nodes']:,}", f"{row['ours']:.6g}", f"{row['theirs']:.6g}"]
+        yield "| " + " | ".join([*cells, f"{100 * apart(row):+.2f} %", f"{100 * row['forces apart']:+.2f} %"]) + " |"

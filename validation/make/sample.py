@@ -77,7 +77,7 @@ those of the section anew, `... sample ROW` those in three dimensions that begin
 
 
 def run(parts=()):
-    """Compute the rows that are missing, kept one by one, and write the page; ``all``: the section anew; else rows in 3-D by beginnings."""
+    """Compute the rows that are missing and write the page; ``all``: the section anew; else rows in 3-D by beginnings."""
     rows = [] if "all" in parts else rows_on_file()
     seed = max((int(r["seed"]) for r in rows), default=FIRST - 1) + 1
     while len(rows) < COUNT:

@@ -66,9 +66,8 @@ PARTS = {
 }
 HOW = """
 `python -m validation sweeps` makes this page from `tables/sweeps.jsonl`; `... sweeps PART ...` computes parts whose names
-begin so
-anew, `... sweeps all` every one ({parts}). The full disk needs leave to mount, the cluster needs dask. Seconds are of the machine
-named beside them.
+begin so anew, `... sweeps all` every one ({parts}). The full disk needs leave to mount, the cluster needs dask. Seconds are of
+the machine named beside them.
 """
 
 
@@ -76,13 +75,12 @@ def answer(found):
     """The first line."""
     grid, kills, callers = (found[name] for name in ("grid", "kills", "threads of the caller"))
     same = kills["same"] and found["refusals"]["same"] and found["cluster"]["same"] and not callers["failed"]
+    part = grid["case_seconds"] / (grid["parent_seconds"] + grid["worker_seconds"])
     return (
         f"{'Yes' if same else '**Not always**'}: a case costs {1e3 * grid['case_seconds'] / grid['cases']:.0f} ms of one "
-        "processor, "
-        f"{100 * grid['case_seconds'] / (grid['parent_seconds'] + grid['worker_seconds']):.0f} % of all processes' time is in "
-        "cases, "
-        f"and {len(kills['kills'])} kills, full disks, a lost worker and calls from {threads.THREADS} threads "
-        f"{'changed no bit of a result' if same else 'changed results'}; threads gain little, processes do."
+        f"processor, {100 * part:.0f} % of all processes' time is in cases, and {len(kills['kills'])} kills, full disks, a lost "
+        f"worker and calls from {threads.THREADS} threads {'changed no bit of a result' if same else 'changed results'}; threads "
+        "gain little, processes do."
     )
 
 

@@ -1,11 +1,12 @@
 """The page `three`: `ritz3d` beside CalculiX, and beside hexahedra of both whole gears."""
 
-from ..shared import outsider, page
+from ..shared import decks, outlines_three, outsider, page
 from . import outsider_three, pairs_three
 
 HOW = """
-`python -m validation three` makes this page from `tables/outsider_three.csv` and `tables/pairs_three*`; `... three all` computes
-gearfe's `ritz3d` anew; `... three --reference` computes the runs of CalculiX (`ccx`) and of the hexahedra that are not on file.
+`python -m validation three` makes this page from `tables/outsider_three*` and `tables/pairs_three*`; `... three all` computes
+gearfe's `ritz3d` anew; `... three --reference` computes the runs of CalculiX (`ccx`) and of the hexahedra that are not on file;
+`... three decks` writes the decks of all runs, which tells those that a change of gearfe made old.
 """
 
 
@@ -32,7 +33,10 @@ def reference():
 
 
 def run(parts=()):
-    """Write the page; `parts`: beginnings of the pairs whose `ritz3d` is computed anew, or ``all``, CalculiX's cases included."""
-    if "all" in parts:
-        outsider.refresh()
-    page.write("three", *text(page.anew(parts)))
+    """Write the page; `parts`: beginnings of the rows of `ritz3d` that are computed anew, or ``all``; or write ``decks``."""
+    if "decks" in parts:
+        decks.write(outsider.write_decks, outlines_three.write_decks)
+        return
+    again = page.anew(parts)
+    outsider.refresh(again)
+    page.write("three", *text(again))

@@ -39,6 +39,6 @@ def kept(name, key, make, again=()):
     known[key] = {"row": key} | make()
     TABLES.mkdir(exist_ok=True)
     state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in known.values()))
-    state.kept(name, key, state.cpu() - started)
+    state.kept(name, key, state.cpu() - started, **{word: known[key][word] for word in ("deck",) if word in known[key]})
     print(f"{name}: {key}", flush=True)
     return known[key]

@@ -1,6 +1,6 @@
 """Undercut helical pairs whose form corners touch, pressed by CalculiX with their whole flanks and fillets, beside `ritz3d`.
 
-`reference` computes what `tables/outlines_three.csv` lacks if `ccx` is there, a run at a time.
+`reference` computes what `tables/outlines_three.jsonl` lacks if `ccx` is there, a run at a time.
 """
 
 import math
@@ -11,16 +11,15 @@ from pathlib import Path
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
 
-from .outsider import STEEL, _write, calculix, rows_of, told
-from .places import TABLES
+from . import kept_rows
+from .decks import calculix, digest
+from .outsider import STEEL, told
 
-TABLE = TABLES / "outlines_three.csv"
-COLUMNS = ("case", "mesh", "nodes", "seconds", "approach_um", "ours", "path only", "theirs", "forces apart")
-COLUMNS += ("at corners", "theirs there")
+TABLE, OURS = "outlines_three", "outlines_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 LOAD = 600.0  # N/mm
 PHASE = 0.0  # the line of one pair is all before the start of the path: there the form corner counts most
 ASKED = 0.006  # largest difference asked for at corners
-MESHES = ({"per_width": 1.0, "layers": 4}, {"per_width": 1.5, "layers": 4}, {"per_width": 1.5, "layers": 5})
+MESHES = ({"per_width": 1.0, "layers": 4}, {"per_width": 1.5, "layers": 4})
 HEAD = f"""
 ## Three dimensions
 
@@ -28,10 +27,10 @@ Three undercut helical pairs (m_n 2 mm, x 0, 20 degrees, {LOAD:g} N/mm, both gea
 whole line of tooth pair 0 lies before the start of the path, where only the edge that undercut leaves on the pinion touches.
 They were chosen before any was pressed; the phase is one of those at which `ritz3d` and its forerunner, which did not know this
 edge, differed most. CalculiX presses whole gears in 20-node hexahedra against each other, turned by the approach that `ritz3d`
-has under the load; the pinion's fillets are part of the contact and meshed as finely as its flanks. CalculiX knows no path and
-no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the difference rises; two meshes do not
-tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and fillet; `layers`: of elements along the
-width. 'Path alone': `ritz3d` without contact off the path.
+had under the load when CalculiX was run; the pinion's fillets are part of the contact and meshed as finely as its flanks.
+CalculiX knows no path and no corner. Asked for: within {100 * ASKED:g} %. Its k falls as a mesh is refined, so that the
+difference rises; two meshes do not tell the limit. `per_width`: edges per Hertz half width in the contact zone, on flank and
+fillet; `layers`: of elements along the width. 'Path alone': `ritz3d` without contact off the path.
 
 """
 NAMES = ("pair", "mesh", "nodes", "`ritz3d` [N/um]", "path alone", "CalculiX", "difference")
@@ -64,19 +63,53 @@ def ours(name):
     return found.k[0] / 1e6, found.approach[0], float(cells.load[cells.order == 0].sum()), path.k[0] / 1e6
 
 
+def ours_row(name):
+    """What `ritz3d` finds, as a row."""
+    return dict(zip(("k", "approach", "carried", "path only"), map(float, ours(name)), strict=True))
+
+
+def deck_of(folder, name, mesh, approach):
+    """Deck of a pair closed by an approach [mm], in a folder."""
+    pair, options = cases()[name], {"face": "helical", **mesh}
+    return gf.write_contact_inp(folder / "pair.inp", pair, PHASE, approach, LOAD, (STEEL, STEEL), **options)
+
+
 def row_of(name, mesh):
-    """A run of CalculiX as a row of the table."""
-    pair = cases()[name]
-    k, approach, carried, path = ours(name)
+    """A run of CalculiX at the approach that `ritz3d` has under the load, to four digits."""
+    approach = float(f"{ours(name)[1]:.4g}")
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        deck = gf.write_contact_inp(folder / "pair.inp", pair, PHASE, approach, LOAD, (STEEL, STEEL), face="helical", **mesh)
+        deck = deck_of(folder, name, mesh, approach)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
         theirs = deck.carried(folder / "pair.dat")[0][0]
-    nodes = sum(part.points.shape[1] for part in deck.parts)
-    values = nodes, seconds, 1e3 * approach, k, path, (first + second) / 2e3 / approach, first / second - 1, carried, theirs
-    return dict(zip(COLUMNS, (name, told(mesh), *(f"{value:.6g}" for value in values)), strict=True))
+        out = {"deck": digest(folder / "pair.inp"), "nodes": sum(part.points.shape[1] for part in deck.parts)}
+    values = {"theirs": (first + second) / 2e3 / approach, "forces apart": first / second - 1, "theirs there": theirs}
+    return out | {"seconds": round(seconds, 1), "approach": approach} | {key: float(f"{v:.6g}") for key, v in values.items()}
+
+
+def wanted():
+    """(name, mesh, key) of all runs."""
+    return [(name, mesh, f"{name}, {told(mesh)}") for name in cases() for mesh in MESHES]
+
+
+def stored():
+    """Runs on file, as dicts with their case, mesh and what `ritz3d` finds."""
+    theirs, found = kept_rows.stored(TABLE), kept_rows.stored(OURS)
+    return [
+        found[name] | {"case": name, "mesh": told(mesh)} | theirs[key]
+        for name, mesh, key in wanted()
+        if key in theirs and name in found
+    ]
+
+
+def write_decks(folder):
+    """Write the decks of the rows on file in a folder, one after the other: jobs of their rows and paths."""
+    known = kept_rows.stored(TABLE)
+    for name, mesh, key in wanted():
+        if key in known:
+            deck_of(folder, name, mesh, known[key]["approach"])
+            yield f"outlines --reference {key}", folder / "pair.inp"
 
 
 def reference():
@@ -84,24 +117,25 @@ def reference():
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
+    for name, mesh, key in wanted():
+        kept_rows.kept(TABLE, key, lambda name=name, mesh=mesh: row_of(name, mesh))
+
+
+def refresh(again=()):
+    """Compute what `ritz3d` finds in the cases that are not on file, or begin with one of `again`."""
     for name in cases():
-        for mesh in MESHES:
-            known = rows_of(TABLE)
-            if not any((row["case"], row["mesh"]) == (name, told(mesh)) for row in known):
-                _write([*known, row_of(name, mesh)], TABLE, COLUMNS)
-                print(f"  {name}, {told(mesh)}", flush=True)
+        kept_rows.kept(OURS, name, lambda name=name: ours_row(name), again)
 
 
 def section():
-    """The section of the page, from the table alone."""
-    known = rows_of(TABLE)
+    """The section of the page, from the tables alone."""
+    known = stored()
     lines = ["| " + " | ".join(NAMES) + " |\n", "|---" * len(NAMES) + "|\n"]
-    meshes = [told(mesh) for mesh in MESHES]
-    for row in sorted(known, key=lambda row: ([*cases()].index(row["case"]), meshes.index(row["mesh"]))):
-        cells = [row["case"], row["mesh"], f"{int(row['nodes']):,}", row["ours"], row["path only"], row["theirs"]]
-        cells += [f"{100 * (float(row['ours']) / float(row['theirs']) - 1):+.2f} %", row["at corners"], row["theirs there"]]
-        cells += [f"{100 * float(row['forces apart']):+.2f} %", f"{float(row['seconds']):.0f}"]
+    for row in known:
+        cells = [row["case"], row["mesh"], f"{row['nodes']:,}", *(f"{row[name]:.6g}" for name in ("k", "path only", "theirs"))]
+        cells += [f"{100 * (row['k'] / row['theirs'] - 1):+.2f} %", *(f"{row[name]:.6g}" for name in ("carried", "theirs there"))]
+        cells += [f"{100 * row['forces apart']:+.2f} %", f"{row['seconds']:.0f}"]
         lines.append("| " + " | ".join(cells) + " |\n")
     done = {(row["case"], row["mesh"]) for row in known}
-    missing = [f"{name} ({told(mesh)})" for name in cases() for mesh in MESHES if (name, told(mesh)) not in done]
+    missing = [f"{name} ({told(mesh)})" for name, mesh, _ in wanted() if (name, told(mesh)) not in done]
     return HEAD + "".join(lines) + (f"\nNot computed yet: {'; '.join(missing)}.\n" if missing else "")

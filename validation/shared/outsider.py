@@ -1,14 +1,11 @@
 """CalculiX on whole gears, under line loads and in contact, beside `ritz3d`: the cases, and every run kept in a table.
 
-`reference` computes what `tables/outsider_three.csv` lacks if `ccx` is there.
+A run depends on its deck alone, which `validation.shared.decks` knows by its digest: gears in contact are turned by the approach
+that `ritz3d` had when the run was made, which the row keeps, so that a change of `ritz3d` alone asks for no other deck.
 """
 
-import csv
 import math
-import resource
 import shutil
-import subprocess
-import sys
 import tempfile
 import warnings
 from dataclasses import dataclass, field
@@ -21,15 +18,12 @@ from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
-from gearfe.files import written
 from gearfe.flexibility import solid as flexibility3d
 
-from .places import TABLES
+from . import kept_rows
+from .decks import calculix, digest
 
-TABLE = TABLES / "outsider_three.csv"
-SHARING = TABLES / "outsider_three_sharing.csv"
-SHARED = ("mesh", "pair", "ours [N]", "theirs [N]", "ours z [mm]", "theirs z [mm]")
-COLUMNS = ("case", "mesh", "nodes", "seconds", "ours", "theirs", "forces apart")
+TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)
 LOAD = 300.0  # N/mm
 PITTED = 600.0  # N/mm of pairs with pits: a contact 1.4 times as wide, so that fewer elements follow it around the pits
@@ -54,7 +48,7 @@ class Case:
     phase: float = 0.45
     damage: dict = field(default_factory=dict)
     pits: str = "cut"
-    meshes: tuple = STRIP
+    meshes: tuple = STRIP[1:]
     load: float = LOAD
 
 
@@ -88,13 +82,12 @@ def cases():
     """Cases in contact, by name, in order of importance."""
     crack, part = gf.Crack(level=0.5), gf.Crack(level=0.5, width=(0.0, 3.0))
     return {
-        "helical, healthy": Case(pair_of(15.0), meshes=(*STRIP, {"per_width": 2.25}, ALL_FINER)),
+        SHOWN: Case(pair_of(15.0), meshes=(*STRIP, ALL_FINER)),
         "helical, crack 50 %": Case(pair_of(15.0), damage={"pinion": [crack]}),
         "helical, crack 50 % over half the width": Case(pair_of(15.0), damage={"pinion": [part]}),
         "spur, healthy": Case(pair_of(0.0)),
         "ring, healthy": Case(ring_pair()),
         **_with_control("helical, two pits", pits(), RIMS),
-        **_with_control("helical, crack 50 % and two pits", [crack, *pits()], RIMS),
     }
 
 
@@ -116,15 +109,6 @@ def lines():
 
 
 LINE_MESHES = ({"refine": 0.6}, {"refine": 0.8})
-
-
-def calculix(folder, name):
-    """Run CalculiX and give its CPU seconds; RuntimeError with its last words if it has no result."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run(["ccx", "-i", name], cwd=folder, capture_output=True, text=True, check=False)
-    if not (folder / f"{name}.dat").exists() or not (folder / f"{name}.dat").stat().st_size:
-        raise RuntimeError(f"CalculiX gave no result: {done.stdout[-500:]}")
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
 def line_hat(gear):
@@ -153,61 +137,69 @@ def line_deck(folder, name, mesh):
 
 
 def line_row(name, mesh):
-    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by `ritz3d` and by CalculiX."""
+    """Deflection [nm/N] of a hat of pressure along the tooth's middle, by CalculiX."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         deck = line_deck(folder, name, mesh)
         seconds = calculix(folder, "gear")
         theirs = deck.deflection(folder / "gear.dat") / deck.force
-    return _row(name, mesh, deck.part.points.shape[1], seconds, line_deflection(name), 1e6 * theirs, 0.0)
+        return _row(folder / "gear.inp", deck.part.points.shape[1], seconds, 1e6 * theirs, 0.0)
+
+
+def contact_deck(folder, name, mesh, approach):
+    """Deck of a pair in contact, closed by an approach [mm], in a folder."""
+    case = cases()[name]
+    face = "helical" if case.pair.gear_1.beta else "spur"
+    options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
+    return gf.write_contact_inp(folder / "pair.inp", case.pair, case.phase, approach, case.load, (STEEL, STEEL), **options)
 
 
 def contact_row(name, mesh):
-    """Stiffness [N/um] of a pair by `ritz3d` and by CalculiX at the approach that `ritz3d` has under the load."""
-    case = cases()[name]
-    pair, face = case.pair, "helical" if case.pair.gear_1.beta else "spur"
+    """Stiffness [N/um] of a pair by CalculiX at the approach that `ritz3d` has under the load, to four digits."""
+    approach = float(f"{ritz3d_row(name)['approach']:.4g}")
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
-        ours, approach = stiffness(case)
-        options = {"face": face, "damage": case.damage, "pits": case.pits, **mesh}
-        deck = gf.write_contact_inp(folder / "pair.inp", pair, case.phase, approach, case.load, (STEEL, STEEL), **options)
+        deck = contact_deck(folder, name, mesh, approach)
         seconds = calculix(folder, "pair")
         first, second = deck.forces(folder / "pair.dat")
-        if name == SHOWN and isinstance(deck, SolidDeck):
-            keep_sharing(case, told(mesh), deck.carried(folder / "pair.dat"))
-    theirs = (first + second) / 2 / approach / 1e3
-    nodes = sum(part.points.shape[1] for part in deck.parts)
-    return _row(name, mesh, nodes, seconds, ours, theirs, first / second - 1)
+        carried = deck.carried(folder / "pair.dat") if name == SHOWN and isinstance(deck, SolidDeck) else {}
+        nodes = sum(part.points.shape[1] for part in deck.parts)
+        own = _row(folder / "pair.inp", nodes, seconds, (first + second) / 2 / approach / 1e3, first / second - 1)
+    return own | {"approach": approach, "carried": {str(order): list(found) for order, found in sorted(carried.items())}}
 
 
-def stiffness(case):
-    """Stiffness [N/um] and approach [mm] of a case by `ritz3d`."""
+def ritz3d_row(name):
+    """What `ritz3d` finds in a case: deflection [nm/N], or stiffness [N/um], approach [mm] and what tooth pairs carry."""
+    if name in lines():
+        return {"value": line_deflection(name)}
+    case = cases()[name]
     damage = case.damage
     if case.pits == "filled":
         damage = {side: [one for one in own if isinstance(one, gf.Crack)] for side, own in damage.items()}
     run = {"method": "ritz3d", "phases": [case.phase], "damage": damage}
-    curve = gf.mesh_stiffness(case.pair, case.load * case.pair.gear_1.b, STEEL, **run)
-    return float(curve.k[0]) / 1e6, 1e3 * float(curve.lte[0])
+    force = case.load * case.pair.gear_1.b
+    curve = gf.mesh_stiffness(case.pair, force, STEEL, **run)
+    out = {"value": float(curve.k[0]) / 1e6, "approach": 1e3 * float(curve.lte[0])}
+    return out | ({"carried": sharing(case)} if name == SHOWN else {})
 
 
-def _row(name, mesh, *values):
-    return dict(zip(COLUMNS, (name, told(mesh), *(f"{v:.6g}" for v in values)), strict=True))
+def sharing(case):
+    """Force [N] that each tooth pair carries and the height of its line of action [mm] by `ritz3d`."""
+    cells, out = pair_stiffness3d(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
+    for order in sorted(set(cells.order.tolist())):
+        load = np.where(cells.order == order, cells.load, 0.0)
+        out[str(order)] = [float(load.sum()), float((load * cells.z).sum() / load.sum())]
+    return out
+
+
+def _row(deck, nodes, seconds, theirs, forces_apart):
+    own = {"deck": digest(deck), "nodes": nodes, "seconds": round(seconds, 1)}
+    return own | {"theirs": float(f"{theirs:.6g}"), "forces apart": float(f"{forces_apart:.3g}")}
 
 
 def told(mesh):
     """A mesh's options as text."""
     return ", ".join(f"{key} {value:g}" for key, value in mesh.items())
-
-
-def keep_sharing(case, mesh, theirs):
-    """Put the force that each tooth pair carries and the height of its line of action, ours and theirs, into their table."""
-    cells = pair_stiffness3d(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0]
-    rows = [row for row in rows_of(SHARING) if row["mesh"] != mesh]
-    for order, (force, z) in sorted(theirs.items()):
-        load = np.where(cells.order == order, cells.load, 0.0)
-        values = load.sum(), force, (load * cells.z).sum() / load.sum(), z
-        rows.append(dict(zip(SHARED, (mesh, order, *(f"{v:.5g}" for v in values)), strict=True)))
-    _write(rows, SHARING, SHARED)
 
 
 def wanted():
@@ -218,55 +210,52 @@ def wanted():
     return runs + [(name, LINE_MESHES[1]) for name in lines()]
 
 
+def key_of(name, mesh):
+    """Name of a run's row."""
+    return f"{name}, {told(mesh)}"
+
+
 def stored():
-    """Rows of the table by (case, mesh)."""
-    return {(row["case"], row["mesh"]): row for row in rows_of(TABLE)}
+    """Rows on file by (case, mesh), as dicts with both and with what `ritz3d` finds: `ours`, the approach `now`, and `shared`."""
+    theirs, out = kept_rows.stored(TABLE), {}
+    ours = {
+        name: {"ours": row["value"], "now": row.get("approach"), "shared": row.get("carried")}
+        for name, row in kept_rows.stored(OURS).items()
+    }
+    for name, mesh in wanted():
+        if key_of(name, mesh) in theirs and name in ours:
+            out[name, told(mesh)] = {"case": name, "mesh": told(mesh)} | ours[name] | theirs[key_of(name, mesh)]
+    return out
 
 
-def rows_of(table):
-    """Rows of a table; none if there is no table."""
-    if not table.exists():
-        return []
-    with table.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
-
-
-def refresh():
-    """Put what `ritz3d` finds today into the rows of the table."""
-    known, today = stored(), {}
-    for row in known.values():
-        name = row["case"]
-        if name not in today:
-            today[name] = line_deflection(name) if name in lines() else stiffness(cases()[name])[0]
-        row["ours"] = f"{today[name]:.6g}"
-    _write(known.values())
+def refresh(again=()):
+    """Compute what `ritz3d` finds in the cases that are not on file, or begin with one of `again`."""
+    for name in (*cases(), *lines()):
+        kept_rows.kept(OURS, name, lambda name=name: ritz3d_row(name), again)
 
 
 def reference():
     """Compute the runs that the table lacks, each kept at once; without CalculiX say so and compute nothing."""
-    refresh()
     if not shutil.which("ccx"):
         print("  CalculiX (ccx) is not installed: the committed rows are kept (Debian: apt-get install calculix-ccx)")
         return
     for name, mesh in wanted():
-        if (name, told(mesh)) not in stored():
-            keep((line_row if name in lines() else contact_row)(name, mesh))
+        work = line_row if name in lines() else contact_row
+        kept_rows.kept(TABLE, key_of(name, mesh), lambda work=work, name=name, mesh=mesh: work(name, mesh))
 
 
-def keep(row):
-    """Append a row to the table."""
-    _write([*stored().values(), row])
-    print(f"  {row['case']}, {row['mesh']}: {100 * apart(row):+.2f} %, {float(row['seconds']):.0f} s", flush=True)
-    sys.stdout.flush()
-
-
-def _write(rows, table=TABLE, columns=COLUMNS):
-    with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
-        out = csv.DictWriter(file, columns, lineterminator="\n")
-        out.writeheader()
-        out.writerows(rows)
+def write_decks(folder):
+    """Write the decks of the rows on file in a folder, one after the other: keys of their rows and paths."""
+    known = kept_rows.stored(TABLE)
+    for name, mesh in wanted():
+        if row := known.get(key_of(name, mesh)):
+            if name in lines():
+                line_deck(folder, name, mesh)
+            else:
+                contact_deck(folder, name, mesh, row["approach"])
+            yield f"three --reference {row['row']}", folder / ("gear.inp" if name in lines() else "pair.inp")
 
 
 def apart(row):
     """Relative difference of a row, ours over theirs."""
-    return float(row["ours"]) / float(row["theirs"]) - 1
+    return row["ours"] / row["theirs"] - 1

@@ -1,5 +1,6 @@
 """What is old, how long it takes, and computing it again within a given time."""
 
+import json
 import os
 import shutil
 import signal
@@ -15,6 +16,8 @@ from typing import NamedTuple
 
 from . import places, slow, state
 
+STATE = Path("tables/state.jsonl")
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 AT_ONCE, A_ROW = 60.0, 5.0  # CPU seconds of rows that one process computes, so that a stop loses little; of one of unknown cost
 
 
@@ -111,7 +114,8 @@ def report(found):
         text += f", of {dates[0]}{f' to {dates[-1]}' if dates[-1] != dates[0] else ''}" if dates else ""
         lines.append(text + (f", {never} never computed" if never else ""))
     total = f"{sum(one.rows for one in old)} of {sum(one.rows for one in found)} rows are old: {cost(old)} to compute again"
-    return [*lines, f"{total}; everything takes {cost(found)}"]
+    hours = sum(one.seconds or 0.0 for one in found) / 3600
+    return [*lines, f"{total}; everything takes {cost(found)}, {hours:.1f} hours of one processor"]
 
 
 def cost(found):
@@ -126,7 +130,7 @@ def too_old(found, most):
     return [one for one in found if one.old and (one.days is None or one.days > most)]
 
 
-def renew(found, minutes, continued):
+def renew(found, minutes, continued, *, processes=1, alone=()):
     """Compute jobs again, those of earlier code first, then the oldest, as many as fit; the names of those that failed.
 
     A job whose cost is known begins only if that fits into what is left, and all are stopped when the time is over. What is
@@ -140,68 +144,122 @@ def renew(found, minutes, continued):
     continued : dict of str to tuple of str
         By job: tables that it would continue where they lie; it is given none of them. One that lies elsewhere than other
         tables is left alone: delete it by hand to compute it again.
+    processes : int
+        Jobs at a time, each of one thread if there are several; never two of a page, whose tables they would both write.
+    alone : tuple of str
+        Pages that record times or use all processors: nothing runs beside their jobs.
     """
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # so that it ends its job, too
-    end, failed, longer = time.monotonic() + 60 * minutes, [], []
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # so that it ends its jobs, too
+    end, failed, running = time.monotonic() + 60 * minutes, [], []
     waiting = sorted(found, key=lambda one: (not one.old, one.seconds is None, one.date, one.words))
-    while waiting:
-        job, left = waiting.pop(0), end - time.monotonic()
-        without = continued.get(" ".join(job.words), ())
-        if left <= 0 or (job.seconds or 0.0) > left or any(Path(name).is_absolute() for name in without):
-            longer.append(job)
-            continue
-        words, load = list(job.words), job.seconds or A_ROW
-        while job.row and waiting and waiting[0].row and waiting[0].words[:-1] == job.words[:-1]:
-            load += waiting[0].seconds or A_ROW
-            if load > min(left, AT_ONCE):
-                break
-            words.append(waiting.pop(0).words[-1])
-        code, told = alone(words, left, without)
-        done = next((line for line in told if line.startswith(slow.MISSING)), "computed again")
-        outcome = {0: done, None: "stopped: the time is over"}.get(code, "FAILED")
-        name = " ".join(words) if words == [*job.words] else f"{' '.join(job.words[:-1])}, {len(words) + 1 - len(job.words)} rows"
-        print(f"{name}: {outcome}", flush=True)
-        if code:
-            print("\n".join(told[-15:]), flush=True)
-            failed.append(name)
+    longer = [one for one in waiting if any(Path(name).is_absolute() for name in continued.get(" ".join(one.words), ()))]
+    waiting = [one for one in waiting if one not in longer]
+    try:
+        while waiting or running:
+            left = end - time.monotonic()
+            longer += [one for one in waiting if left <= 0 or (one.seconds or 0.0) > left]
+            waiting = [one for one in waiting if left > 0 and (one.seconds or 0.0) <= left]
+            while len(running) < processes and (job := _next(waiting, [one.page for one in running], alone)):
+                words = _taken(waiting, job, left)
+                running.append(Running(words, len(job.words), continued.get(" ".join(words), ()), processes > 1))
+            for one in [one for one in running if one.process.poll() is not None or left <= 0]:
+                running.remove(one)
+                if one.ended():
+                    failed.append(one.name)
+            if running:
+                time.sleep(0.05)
+    finally:
+        for one in running:
+            one.stop()
     if any(job.old for job in longer):
         print(f"old, and left for another time: {cost([job for job in longer if job.old])}")
     state.stamp()
     return failed
 
 
-def alone(words, seconds, without=()):
-    """Exit code (None: stopped) and printed lines of a job in a process of its own; what it wrote is kept if it ended well."""
-    with tempfile.TemporaryDirectory(prefix=".pages.", dir=places.HOME) as folder:
-        beside = Path(folder) / "pages"
-        shutil.copytree(places.PAGES, beside)
+def _next(waiting, busy, alone):
+    """First job that may run beside those of the pages that are busy; None if none may."""
+    if any(page in alone for page in busy):
+        return None
+    return next((job for job in waiting if not busy or job.words[0] not in (*busy, *alone)), None)
+
+
+def _taken(waiting, job, left):
+    """Take a job from those that wait, with rows of its page that one process computes along; their words."""
+    waiting.remove(job)
+    words, load = list(job.words), job.seconds or A_ROW
+    for other in [other for other in waiting if job.row and other.row and other.words[:-1] == job.words[:-1]]:
+        load += other.seconds or A_ROW
+        if load > min(left, AT_ONCE):
+            break
+        waiting.remove(other)
+        words.append(other.words[-1])
+    return words
+
+
+class Running:
+    """A job in a process of its own, which writes beside the pages; what it wrote is kept if it ends well.
+
+    Parameters
+    ----------
+    words : list of str
+        Page and part, or parts.
+    first : int
+        How many of them are the first job's.
+    without : tuple of str
+        Tables that it is given none of.
+    single : bool
+        Whether it computes in one thread.
+    """
+
+    def __init__(self, words, first, without=(), single=False):
+        self.page, more = words[0], len(words) - first
+        self.name = f"{' '.join(words[: first - 1])}, {more + 1} rows" if more else " ".join(words)
+        self.folder = tempfile.TemporaryDirectory(prefix=".pages.", dir=places.HOME)
+        self.beside, self.told = Path(self.folder.name) / "pages", Path(self.folder.name) / "told"
+        shutil.copytree(places.PAGES, self.beside)
+        self.before = {path.relative_to(self.beside): path.read_bytes() for path in self.beside.rglob("*") if path.is_file()}
         for name in without:
-            (beside / "tables" / name).unlink(missing_ok=True)
+            (self.beside / "tables" / name).unlink(missing_ok=True)
+        env = os.environ | {"GEARFE_PAGES": str(self.beside)} | (dict.fromkeys(THREADS, "1") if single else {})
         command = [sys.executable, "-m", "validation", *words]
-        own = {"cwd": places.ROOT, "env": os.environ | {"GEARFE_PAGES": str(beside)}, "start_new_session": True}
-        with subprocess.Popen(command, **own, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
-            try:
-                told = process.communicate(timeout=seconds)[0]
-            except BaseException as error:
-                with suppress(ProcessLookupError):
-                    os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
-                if isinstance(error, subprocess.TimeoutExpired):
-                    return None, []
-                raise
-        if process.returncode == 0:
-            move(beside, places.PAGES)
-        return process.returncode, told.splitlines()
+        with self.told.open("w") as file:
+            own = {"cwd": places.ROOT, "env": env, "start_new_session": True}
+            self.process = subprocess.Popen(command, **own, stdout=file, stderr=subprocess.STDOUT)
+
+    def ended(self):
+        """Keep what an ended job wrote, or stop it; say which, and return its exit code, None if it was stopped."""
+        code, told = self.process.poll(), self.told.read_text().splitlines()
+        done = next((line for line in told if line.startswith(slow.MISSING)), "computed again")
+        if code == 0:
+            move(self.beside, places.PAGES, self.before)
+            state.stamp()
+        print(f"{self.name}: { {0: done, None: 'stopped: the time is over'}.get(code, 'FAILED') }", flush=True)
+        if code:
+            print("\n".join(told[-15:]), flush=True)
+        self.stop()
+        return code
+
+    def stop(self):
+        """Kill what still runs, and leave nothing behind."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        self.folder.cleanup()
 
 
-def move(source, target):
-    """Replace each file that differs, whole, and last the lines of the state that do."""
-    lines, told = state.read(source / "tables")
+def move(source, target, before):
+    """Move each file that a job changed since `before`, whole, and last the lines of the state that it did."""
+    jobs, told = state.read(source / "tables")
+    lines = [json.loads(line) for line in before.get(STATE, b"").splitlines()]
+    was = {(line["job"], line["table"]): line for line in lines if "job" in line}
     for path in source.rglob("*"):
-        place = target / path.relative_to(source)
-        if path.is_file() and path.name != "state.jsonl" and (not place.is_file() or path.read_bytes() != place.read_bytes()):
-            place.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(path, place)
+        name = path.relative_to(source)
+        if path.is_file() and name != STATE and path.read_bytes() != before.get(name):
+            (target / name).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(path, target / name)
     with state.changed() as (known, known_told):
         known_told |= told
-        known |= {job: line for job, line in lines.items() if line["date"] >= known.get(job, line)["date"]}
+        known |= {job: line for job, line in jobs.items() if line != was.get(job)}
+        for job in was.keys() - jobs.keys():
+            known.pop(job, None)

@@ -5,9 +5,13 @@ the commit, the day, the CPU seconds, the number of rows and, by their keys, the
 modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is
 their digest, without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own
 is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+
+A run of another program depends on its input alone: its line also says the digest of that `deck`, and it is of the present code
+as long as the job `DECKS`, of the present code itself, finds the same one.
 """
 
 import ast
+import csv
 import fcntl
 import hashlib
 import json
@@ -34,6 +38,7 @@ ASIDE = {  # they name, find, keep and write: no number depends on them
     *("geometry/__init__.py", "gearfe/__init__.py", "validation/__init__.py", "validation/__main__.py"),
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
+DECKS = "three decks"  # writes `decks.csv`
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
 run = SimpleNamespace(  # what this process computes
     job="",  # page and part; empty in tests, where nothing is recorded
@@ -150,6 +155,9 @@ def read(folder=None):
             continue
         elif one["date"] >= jobs.get((one["job"], one["table"]), one)["date"]:
             jobs[one["job"], one["table"]] = one
+    path = folder / "decks.csv"
+    rows = csv.reader(path.read_text(encoding="utf-8").splitlines() if path.is_file() else ())
+    told["decks"] = dict(rows) | {"by": jobs.get((DECKS, ""), {})}
     return jobs, told
 
 
@@ -219,16 +227,18 @@ def files_of(line, told):
 
 
 def present(line, told):
-    """Whether a line is of the code as it is now; not if it does not say of which it is."""
-    return "code" in line and line["code"] == digest(files_of(line, told))
+    """Whether a line is of the code as it is now, or of a deck that this code writes; not if it does not say of which it is."""
+    if "code" in line and line["code"] == digest(files_of(line, told)):
+        return True
+    return "deck" in line and line["deck"] == told["decks"].get(line["job"]) and present(told["decks"]["by"], told)
 
 
-def kept(table, key, seconds):
-    """Record a row of a table of rows that are kept one by one, if this process computes a page."""
+def kept(table, key, seconds, **more):
+    """Record a row of a table of rows that are kept one by one, if this process computes a page; `more` as of `record`."""
     page, _, part = run.job.partition(" ")
     if page:
         job = f"{run.job} {key}" if part == "--reference" else f"{page} {key}"
-        record(job, seconds, 1, page, f"{table}.jsonl")
+        record(job, seconds, 1, page, f"{table}.jsonl", **more)
     run.seconds += seconds
 
 
@@ -248,9 +258,9 @@ def ended(seconds, tables=()):
         rows = sum(line.startswith("|") for line in lines) - 2 * sum(line.startswith("|---") for line in lines)
     if rows or not run.tables:
         record(run.job, seconds - run.seconds, max(rows, 1), shown if text.is_file() else "")
-    else:  # all of it is kept row by row
-        with changed() as (jobs, _):
-            jobs.pop((run.job, ""), None)
+    with changed() as (jobs, _):  # lines of single tables that this one replaces
+        for name in [path.name for path in whole] if rows or not run.tables else [""]:  # all of it is kept row by row
+            jobs.pop((run.job, name), None)
 
 
 def first_line(page, jobs, told):

@@ -41,3 +41,19 @@ def read_runs(name):
     """What `write_runs` wrote."""
     with open(TABLES / f"{name}_runs.csv", encoding="utf-8", newline="") as file:
         return {row["run"]: row["made with"] for row in csv.DictReader(file)}
+
+
+def rows_of(table):
+    """Rows of a CSV table; none if there is no table."""
+    if not table.exists():
+        return []
+    with table.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def write_table(rows, table, columns):
+    """Write a CSV table."""
+    with written(table) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.DictWriter(file, columns, lineterminator="\n")
+        out.writeheader()
+        out.writerows(rows)
