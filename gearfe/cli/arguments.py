@@ -50,7 +50,11 @@ def main(argv=None):
         action="store_true",
         help="all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)",
     )
-    verb.add_argument("--reference", action="store_true", help="with --cases: compute three-dimensional finite elements anew")
+    verb.add_argument(
+        "--reference", nargs="?", const="fe3d", metavar="METHOD",
+        help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
+    )  # fmt: skip
+    verb.add_argument("--assumptions", action="store_true", help="all that the scene assumes, with the reasons")
     verb = _verb(
         verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
     )

@@ -41,4 +41,4 @@ def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
     assert main(["stiffness", path, "--phases", "4"]) == 0
     assert main(["compare", path, "--case", "cracked", "--phases", "4"]) == 0
     assert "z = 17" in (tmp_path / "my.toml").read_text()
-    assert "| single |" in capsys.readouterr().out
+    assert "| single " in capsys.readouterr().out
