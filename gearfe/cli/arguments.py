@@ -87,7 +87,11 @@ def main(argv=None):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene with a machine, or a .toml file")
     verb.add_argument("--case", metavar="NAME", help="case of damage, compared with healthy (default: healthy alone)")
     verb.add_argument(
-        "--duration", type=float, default=1.0, metavar="S", help="seconds kept, after half as much to settle (default: 1)"
+        "--duration",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="seconds kept, from when free vibrations have fallen to a thousandth (at most 20 s are left out; default: 1)",
     )
     verb.add_argument(
         "--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)"

@@ -262,15 +262,15 @@ def dynamics(arguments):
 
 def _print_analysis(report, arguments, name=""):
     """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`; `name` of the scene, if it is one."""
-    from ..signal.demodulation import demodulate
+    from ..markdown import aligned
 
     if report.lines:
-        print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}")
-    print(f"\n{report.indicators_text()}\n")
+        print(f"\n{report.channel} [{report.unit}], amplitude of the lines\n\n{aligned(report.lines_text())}")
+    print(f"\n{aligned(report.indicators_text())}\n")
     last = list(report.signals.values())[-1]
     if report.fault:
-        found = demodulate(last, report.fault)
-        print(f"{last.name}, {found.text()}")
+        found, told = report.envelope()
+        print(told)
         kurtogram = found.kurtogram
     elif arguments.kurtogram:
         from ..signal.kurtogram import fast_kurtogram

@@ -180,6 +180,7 @@ def _vibration(found, figures):
     return {
         "figure": figures(spectra_figure(found.vibration)),
         "lines": _table(found.vibration.lines_text()),
+        "hidden": found.vibration.lines_text().partition("\n\n")[2],
         "indicators": _table(found.vibration.indicators_text()),
         "stats": {case: one.stats for case, one in found.responses.items()},
         "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),
