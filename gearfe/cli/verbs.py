@@ -119,7 +119,7 @@ def compare(arguments):
     meta = result.reference.meta
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
     print(f"{scene.title}\n\n{result.headline}\n")
-    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}; {result.definition}")
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load};\n{result.definition}")
     if result.healthy:
         print(f"\nwhat the damage takes, ± its estimated error\n\n{aligned(result.loss_table())}")
     print(f"\nerrors against {meta['method']}; the estimate is its own discretisation error\n")

@@ -171,10 +171,9 @@ def damage_cycle(chosen):
 
 
 def _cycle(chosen, phases):
-    """Phases of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
-    damage = next(iter(chosen.damage.values()), {})
+    """Phases of tooth 0 of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
     shape = {"face": chosen.face, "groove": chosen.groove}
-    return damage_phases(chosen.pair, phases, damaged_tooth(damage), **shape) if phases else damage_cycle(chosen)
+    return damage_phases(chosen.pair, phases, **shape) if phases else damage_cycle(chosen)
 
 
 def is_wide(chosen):
@@ -189,7 +188,7 @@ def case_curve(chosen, case, method, phase, **options):
     started = time.perf_counter()
     curve = mesh_stiffness(**run)
     seconds = time.perf_counter() - started
-    own = np.flatnonzero(curve.order == 0)
+    own = np.flatnonzero(curve.order == damaged_tooth(chosen.damage.get(case)))
     tooth = curve.force[:, own].sum(axis=1) / curve.lte
     doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
     return CaseCurve(curve.k, tooth, seconds, doubt)
@@ -246,7 +245,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
         if progress:
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
-            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name])
+            tooth = damaged_tooth(scene.pairs[name].damage.get(case))
+            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name] - tooth)
         except ValueError as error:
             if METHODS[method].converged:
                 raise

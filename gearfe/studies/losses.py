@@ -144,7 +144,7 @@ def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[st
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
     """
     zone = next((name for name in ALONE if name in found), None)
-    where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"at most as the {kind} tooth passes"
+    where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
     most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))
     return (
         f"{said}: the mesh is {most} softer {where}; {percent_with_doubt(found['mean'], doubt.get('mean', math.nan))} in the mean"

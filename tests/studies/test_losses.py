@@ -84,6 +84,14 @@ def test_case_and_cases_give_the_same_numbers(found, scene):
         assert_allclose(table.drops("stage", "cracked", name)[:2], [own["most at a phase"], own["mean"]], rtol=1e-5)
 
 
+def test_cases_with_damage_in_several_teeth_are_each_looked_at(tmp_path):
+    path = gf.new_scene(tmp_path / "two.toml", teeth=(17, 23), width=8.0)
+    path.write_text(path.read_text() + "\n[[crack]]\ncase = 'third'\ngear = 'pinion'\nlevel = 0.3\ntooth = 2\n")
+    table = case_table(gf.load_scene(path), phases=8)
+    for name in ("fe", "textbook"):
+        assert_allclose(table.drops("stage", "third", name), table.drops("stage", "cracked", name), rtol=2e-3)
+
+
 def test_terminal_report_and_python_say_the_same(found, scene, capsys):
     assert main(["compare", str(scene), "--case", "cracked", "--phases", "16"]) == 0
     text = capsys.readouterr().out
