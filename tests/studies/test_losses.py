@@ -12,7 +12,7 @@ from gearfe.cli import main
 from gearfe.reports.page import _comparison
 from gearfe.stiffness.methods import METHODS
 from gearfe.studies.case_table import case_table
-from gearfe.studies.losses import damage_phases, headline, kind_of, loss, percent_with_doubt, told_damage, within
+from gearfe.studies.losses import damage_phases, headline, kind_of, loss, loss_errors, percent_with_doubt, told_damage, within
 
 
 @pytest.fixture(scope="module")
@@ -123,6 +123,19 @@ def test_losses_of_known_curves():
     assert headline("a crack", "cracked", lost, {}).endswith(
         "20.0 % softer where the cracked tooth carries alone; 12.9 % in the mean"
     )
+
+
+def test_doubt_by_whole_gears_adds_both_estimates():
+    """Finite elements in three dimensions are not solved again: 1 % of healthy and 2 % of damaged k make 3 % of what is left."""
+    phase, none = np.arange(8) / 8, np.zeros((8, 1))
+    two = [
+        gf.StiffnessCurve(phase, k, k, none[:, 0], np.array([0]), none, none, error=part * k, meta={"eps_alpha": 1.5})
+        for k, part in ((np.full(8, 3e8), 0.01), (np.full(8, 2.4e8), 0.02))
+    ]
+    doubt = loss_errors(*two, "fe3d", {}, 1.0)
+    assert doubt.keys() == loss(*two).keys()
+    assert_allclose(list(doubt.values()), 0.8 * 0.03, rtol=1e-12)
+    assert loss_errors(*two, "fe", {}, 0.3) == {}, "there are no meshes so coarse"
 
 
 def test_doubts_are_rounded_up():
