@@ -50,7 +50,11 @@ def main(argv=None):
         action="store_true",
         help="all pairs in all cases of damage (default: those of a scene whose source prints their stiffness)",
     )
-    verb.add_argument("--reference", action="store_true", help="with --cases: compute three-dimensional finite elements anew")
+    verb.add_argument(
+        "--reference", nargs="?", const="fe3d", metavar="METHOD",
+        help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
+    )  # fmt: skip
+    verb.add_argument("--assumptions", action="store_true", help="all that the scene assumes, with the reasons")
     verb = _verb(
         verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
     )
@@ -83,7 +87,11 @@ def main(argv=None):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene with a machine, or a .toml file")
     verb.add_argument("--case", metavar="NAME", help="case of damage, compared with healthy (default: healthy alone)")
     verb.add_argument(
-        "--duration", type=float, default=1.0, metavar="S", help="seconds kept, after half as much to settle (default: 1)"
+        "--duration",
+        type=float,
+        default=1.0,
+        metavar="S",
+        help="seconds kept, from when free vibrations have fallen to a thousandth (at most 20 s are left out; default: 1)",
     )
     verb.add_argument(
         "--channel", metavar="NAME", help="channel to analyse, e.g. 'sun.theta acceleration' (default: first mesh's force)"
@@ -136,13 +144,15 @@ def main(argv=None):
     verb.add_argument("--also", nargs="+", choices=("mat", "hdf5"), default=[], help="each side of the split as one file too")
     verb.add_argument("--workers", type=int, metavar="N", help="processes of this machine (default: one per core)")
     verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
-    verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with comments")
+    verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with all it can say as comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
     verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
     verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
     verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
     verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
     verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
+    verb = _verb(verbs, "check", tools.check, "say in words what a scene holds, and how each case would be solved")
+    verb.add_argument("scene", metavar="SCENE", help="a .toml file, or a built-in scene (see 'gearfe scenes')")
     verb = _verb(verbs, "completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
     verb.add_argument("shell", choices=("bash", "zsh"), help='eval "$(gearfe completion bash)" in your shell\'s start file')
     verb.set_defaults(verbs=verbs.choices)

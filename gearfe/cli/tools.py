@@ -28,7 +28,16 @@ def new(arguments):
 
     options = {"teeth": tuple(arguments.teeth), "module": arguments.module, "helix_deg": arguments.helix}
     made = new_scene(arguments.output, width=arguments.width, ring=arguments.ring, **options)
-    print(f"written: {made}\n\n  gearfe stiffness {made}\n  gearfe compare {made} --case cracked")
+    print(f"written: {made}\n\n  gearfe check {made}\n  gearfe compare {made} --case cracked")
+
+
+def check(arguments):
+    """``gearfe check``."""
+    from ..scene.load import load_scene
+    from ..studies.told_scene import told
+
+    for line in told(load_scene(arguments.scene)):
+        print(line)
 
 
 def completion(arguments):

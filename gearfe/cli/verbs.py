@@ -16,13 +16,18 @@ def _check_outputs(arguments, **kinds):
 
 def _print_scene(scene):
     print(f"{scene.title}\n")
+    _print_notes(scene)
+    print()
+
+
+def _print_notes(scene):
+    """All assumptions of a scene, what was changed, and what is not modelled."""
     for note in scene.assumptions:
         print(f"  assumed: {note['what']}: {note['why']}" + (f" [depends: {note['depends']}]" if note["depends"] else ""))
     for text in scene.changed:
         print(f"  changed: {text}")
     for item in scene.later:
         print(f"  not modelled yet: {item}")
-    print()
 
 
 def _title(scene, arguments, *more):
@@ -95,6 +100,7 @@ def _transmission_error(scene, arguments, run):
 
 def compare(arguments):
     """``gearfe compare``."""
+    from ..markdown import aligned
     from ..scene.load import load_scene
     from ..scene.references import printed_stiffness
     from ..studies.by_zone import compare as run
@@ -102,22 +108,28 @@ def compare(arguments):
 
     _check_outputs(arguments, plot="picture")
     scene = load_scene(arguments.scene)
-    _print_scene(scene)
     printed = printed_cases(scene)
-    every = arguments.cases or arguments.reference
-    if every or (printed and not (arguments.pair or arguments.case or arguments.model or arguments.plot)):
+    one = arguments.pair or arguments.case or arguments.model or arguments.plot
+    if arguments.cases or (printed and not one):
         _compare_cases(scene, arguments, None if arguments.cases or not printed else printed)
         return
     with working("finite elements and energy methods"):
         options = {"models": arguments.model, "phases": arguments.phases, "refine": arguments.refine}
-        result = run(scene, arguments.pair, case=arguments.case, **options)
+        result = run(scene, arguments.pair, case=arguments.case, reference=arguments.reference, **options)
     meta = result.reference.meta
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
-    print(f"{result.pair_name}: mesh stiffness along the line of action, {load}, {arguments.phases} phases")
-    print(f"errors are against {meta['method']}; the estimate is its own discretisation error\n")
-    print(result.table())
+    print(f"{scene.title}\n\n{result.headline}\n")
+    print(f"{result.pair_name}: mesh stiffness along the line of action, {load};\n{result.definition}")
+    if result.healthy:
+        print(f"\nwhat the damage takes, ± its estimated error\n\n{aligned(result.loss_table())}")
+    print(f"\nerrors against {meta['method']}; the estimate is its own discretisation error\n")
+    print(aligned(result.table()))
     for text in printed_stiffness(scene, result.pair_name, arguments.case):
         print(text)
+    print()
+    for why, names in result.reasons().items():
+        print(f"  no {names}: {why}")
+    _print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ..pictures.stiffness_plots import plot_curves, told
 
@@ -125,21 +137,44 @@ def compare(arguments):
         print(f"\nwritten: {arguments.plot}")
 
 
+def _print_assumptions(scene, every):
+    """What of a scene's assumptions the stiffness depends on, or every one of them."""
+    from ..scene.assumed import of_stiffness
+
+    print()
+    if every:
+        _print_notes(scene)
+        return
+    told = of_stiffness(scene.assumptions)
+    for note in told:
+        print(f"  assumed: {note['what']}" + (f" [{note['depends']}]" if note["depends"] else ""))
+    for text in scene.changed:
+        print(f"  changed: {text}")
+    rest = len(scene.assumptions) - len(told)
+    if rest or any(note["why"] for note in told):
+        print(f"  why{f', and {rest} more that leave the stiffness alone' if rest else ''}: --assumptions")
+
+
 def _compare_cases(scene, arguments, cases):
     """``gearfe compare --cases``."""
+    from ..markdown import aligned
     from ..studies.case_table import case_table, printed_text
 
     if arguments.pair or arguments.case or arguments.model or arguments.plot:
         raise ValueError("--cases is every pair in every case: leave out --pair, --case, --model and --plot")
+    if arguments.reference not in (None, "fe3d"):
+        raise ValueError(f"--reference {arguments.reference} with --cases: only fe3d can be asked for")
     with working("every case by every method"):
-        result = case_table(scene, cases, compute=arguments.reference)
-    print("mesh stiffness along the line of action over the mesh cycle in which the damaged tooth is in the middle of its")
+        result = case_table(scene, cases, phases=arguments.phases, compute=arguments.reference == "fe3d")
+    print(f"{scene.title}\n\n{result.headline}\n")
+    print("mesh stiffness along the line of action over the mesh cycle that has the damaged tooth in the middle of its")
     print(f"engagement; errors are against {result.reference}\n")
-    print(result.table())
-    print(f"\nlargest loss of stiffness over that cycle\n\n{result.drop_table()}")
+    print(aligned(result.table()))
+    print(f"\nloss of stiffness: largest at a phase of that cycle, and of the mean over it\n\n{aligned(result.drop_table())}")
     printed = printed_text(scene, result)
     if printed:
         print(f"\nas printed, and after the stated corrections, beside `published` and {result.reference}\n\n{printed}")
+    _print_assumptions(scene, arguments.assumptions)
 
 
 def render(arguments):
@@ -227,15 +262,15 @@ def dynamics(arguments):
 
 def _print_analysis(report, arguments, name=""):
     """Tables, envelope and plots of a `gearfe.studies.vibration.Analysis`; `name` of the scene, if it is one."""
-    from ..signal.demodulation import demodulate
+    from ..markdown import aligned
 
     if report.lines:
-        print(f"\n{report.channel} [{report.unit}], amplitude at the expected lines\n\n{report.lines_text()}")
-    print(f"\n{report.indicators_text()}\n")
+        print(f"\n{report.channel} [{report.unit}], amplitude of the lines\n\n{aligned(report.lines_text())}")
+    print(f"\n{aligned(report.indicators_text())}\n")
     last = list(report.signals.values())[-1]
     if report.fault:
-        found = demodulate(last, report.fault)
-        print(f"{last.name}, {found.text()}")
+        found, told = report.envelope()
+        print(told)
         kurtogram = found.kurtogram
     elif arguments.kurtogram:
         from ..signal.kurtogram import fast_kurtogram

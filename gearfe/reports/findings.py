@@ -42,6 +42,13 @@ class Findings:
     seconds: dict = field(default_factory=dict)
 
     @property
+    def headline(self):
+        """The answer in one sentence, that of the pair of `hurt_pair`."""
+        name = self.hurt_pair
+        case = self.case if self.case in self.scene.pairs[name].damage else None
+        return f"{name}: {self.comparisons[name, case].headline}"
+
+    @property
     def hurt_pair(self):
         """Name of the first pair that the case damages; without one the first pair."""
         return next((name for name, pair in self.scene.pairs.items() if self.case in pair.damage), next(iter(self.scene.pairs)))

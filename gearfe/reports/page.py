@@ -65,7 +65,7 @@ def report(
         pictures = _pictures(found)
     figures = _Figures()
     return write(
-        found=found, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
+        found=found, headline=found.headline, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
         versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
         turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
@@ -112,14 +112,10 @@ def _pairs(found, figures):
 
 
 def _both(found, name):
-    """Curves of a pair, healthy and damaged, by one method and over the same phases."""
-    from ..stiffness.solve import mesh_stiffness
-
-    chosen = found.scene.pairs[name]
-    reference = found.comparisons[name, found.case].reference
-    method = "ritz" if reference.meta["method"] == "fe" else reference.meta["method"]
-    healthy = mesh_stiffness(**chosen.case(None), method=method, phases=reference.phase)
-    return {f"healthy ({method})": healthy, f"{found.case} ({reference.meta['method']})": reference}
+    """Curves of a pair, healthy and damaged, by the reference and over the same phases."""
+    one = found.comparisons[name, found.case]
+    reference = next(iter(one.healthy))
+    return {f"healthy ({reference})": one.healthy[reference], f"{found.case} ({reference})": one.reference}
 
 
 def _comparison(one, case, figures):
@@ -130,6 +126,10 @@ def _comparison(one, case, figures):
     names = list(one.curves)
     return {
         "case": case or "healthy",
+        "headline": one.headline,
+        "definition": one.definition,
+        "losses": _table(one.loss_table()),
+        "reasons": one.reasons(),
         "names": names,
         "rows": rows,
         "seconds": [one.seconds[name] for name in names],
@@ -180,6 +180,7 @@ def _vibration(found, figures):
     return {
         "figure": figures(spectra_figure(found.vibration)),
         "lines": _table(found.vibration.lines_text()),
+        "hidden": found.vibration.lines_text().partition("\n\n")[2],
         "indicators": _table(found.vibration.indicators_text()),
         "stats": {case: one.stats for case, one in found.responses.items()},
         "machine": repr(next(iter(found.responses.values())).machine).strip("<>"),

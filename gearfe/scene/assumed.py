@@ -14,7 +14,11 @@ In a copy in which the face width is another one, that assumption is no longer t
 printed results are no longer compared with.
 """
 
+import re
+
 from .strict import known_path, shown
+
+OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # in what is said to depend on an assumption
 
 
 def split(file, assumptions, given, tables):
@@ -60,3 +64,8 @@ def _away(file, where, values, tables):
     """Values that differ: key to (found, wanted)."""
     found = {key: known_path(file, where, key, tables) for key in values}
     return {key: (found[key], value) for key, value in values.items() if found[key] != value}
+
+
+def of_stiffness(assumptions):
+    """Those of a scene's assumptions on which the mesh stiffness depends, or that do not say what depends on them."""
+    return [one for one in assumptions if not one["depends"] or OF_STIFFNESS.search(one["depends"])]

@@ -15,6 +15,7 @@ RELIEFS = {
         ("start_diameter_mm", None),
         ("start_roll_mm", None),
         ("start_angle_deg", None),
+        ("start_length_mm", None),
         ("exponent", 1.0),
     )
 }
@@ -54,7 +55,7 @@ def flanks_of(file, rows, name, pairs, gears):
         known(file, where, "gear", row["gear"], gears, "gear")
         if row["pair"] is not None:
             known(file, where, "pair", row["pair"], pairs, "pair")
-        made = placed(file, where, lambda r=row: _flank(r))
+        made = placed(file, where, lambda r=row: _flank(r, gears[r["gear"]]))
         for side, gear in (("pinion", "gear_1"), ("wheel", "gear_2")):
             if pair[gear] == row["gear"] and row["pair"] in (None, name):
                 if side in out:
@@ -84,13 +85,24 @@ def misalignment_of(file, where, pair, row):
     return made
 
 
-def _flank(row):
+def _flank(row, gear):
     given = {name: row[f"{name}_um"] * 1e-3 for name in ("crowning", "slope", "lead_crowning", "lead_slope", "twist")}
     given |= {"end_relief": tuple(value * 1e-3 for value in row["end_relief_um"]), "end_exponent": row["end_exponent"]}
     given["end_length"] = tuple(row["end_length_mm"])
     for end in ("tip", "root"):
         given |= {f"{end}_relief": row[f"{end}_relief_um"] * 1e-3, f"{end}_exponent": row[f"{end}_exponent"]}
         given |= {f"{end}_start_{how}": row[f"{end}_start_{how}_mm"] for how in ("diameter", "roll")}
+        length = row[f"{end}_start_length_mm"]
+        if length is not None:
+            if row[f"{end}_start_roll_mm"] is not None:
+                raise ValueError(f"{end}_start_length_mm and {end}_start_roll_mm: give one start")
+            whole = abs(gear.roll_a - gear.roll_f)
+            if not 0 < length < whole:
+                raise ValueError(
+                    f"{end}_start_length_mm = {length}, but the flank is {whole:.4g} mm of roll long: give a part of it"
+                )
+            down = gear.outward * length
+            given[f"{end}_start_roll"] = gear.roll_a - down if end == "tip" else gear.roll_f + down
         angle = row[f"{end}_start_angle_deg"]
         given[f"{end}_start_angle"] = None if angle is None else math.radians(angle)
     for name, roll, amount in (("table", "table_roll_mm", "table_removed_um"), ("wear", "wear_roll_mm", "wear_um")):

@@ -4,14 +4,18 @@ import math
 from pathlib import Path
 from typing import Any
 
+from geometry.damage.crack import Crack
+from geometry.damage.front import path_length
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
 from ..files import written
+from .vocabulary import vocabulary
 
 TEXT = """\
 # A gear pair of your own. Lengths in mm, forces in N, angles in degrees: the unit stands in each name.
-# Try it:  gearfe stiffness {name}        gearfe compare {name}        gearfe compare {name} --case cracked
+# Try it:  gearfe check {name}        gearfe compare {name}        gearfe compare {name} --case cracked
+# Lines that begin with # and no space are what else it can say: take the # away, and they hold.
 
 title = "{title}"
 source = "own gear pair"  # where its numbers come from
@@ -47,8 +51,7 @@ material = "steel"
 gear_1 = "pinion"
 gear_2 = "wheel"
 force_N = {force}  # along the transverse line of action: torque of the pinion over its base radius of {r_b} mm
-# a_mm = {a}  # centre distance; left out: the one without backlash
-{face}
+{face}{pair_words}
 # What you had to assume; it is printed with every result, until you change the values it holds for.
 [[assumption]]
 what = "{bores}"
@@ -59,8 +62,9 @@ holds = {{ "gear.pinion.r_bore_mm" = {bore}, {held} }}
 [[crack]]
 case = "cracked"
 gear = "pinion"
-level = 0.3
-"""
+level = 0.3  # or as a length: length_mm = {crack:.2f}
+
+{words}"""
 FACE = 'face = "helical"  # or "herringbone" with groove_mm, the relief groove as part of b_mm\n'
 RING_RACK = "addendum = 0.8  # a full one may reach into the pinion's fillet\ndedendum = 1.25\ntip_radius = 0.2\n"
 RACK = "addendum = 1.0\ndedendum = 1.25\ntip_radius = 0.38\n"
@@ -76,6 +80,8 @@ def new_scene(
     ring: bool = False,
 ) -> Path:
     """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
+
+    All else that a scene can say stands in it as commented lines (`gearfe.scene.vocabulary`).
 
     Parameters
     ----------
@@ -120,11 +126,14 @@ def new_scene(
         wheel = Gear(z=teeth[1], beta=-beta, r_bore=bores[1], **rack)
         support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
     pair = GearPair(pinion, wheel)
+    force = round(100.0 * width, 1)
+    pair_words, words = vocabulary(pair, force)
     text = TEXT.format(
         name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
         beta=float(helix_deg), mate_beta=math.degrees(wheel.beta) + 0.0, width=float(width), bore=bores[0],
-        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, force=round(100.0 * width, 1), r_b=f"{pinion.r_b:.4g}",
-        a=f"{pair.a:.4f}", face=FACE if helix_deg else "", held=held,
+        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, force=force, r_b=f"{pinion.r_b:.4g}",
+        pair_words=pair_words, words=words, crack=path_length(pinion, Crack(level=0.3)),
+        face=FACE if helix_deg else "", held=held,
         bores=f"bore {bores[0]} mm (pinion) and {'rim ' + str(rim) if ring else 'bore ' + str(bores[1])} mm (wheel), held",
     )  # fmt: skip
     with written(path) as name:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 RATES = ("rate", "fs", "sr", "sampling rate", "sample rate", "sampling frequency")
-TIMES, ANGLES, SHAFTS = ("time", "t"), ("angle", "shaft angle"), ("shaft frequency",)
+TIMES, ANGLES, SHAFTS = ("time", "t", "zeit", "temps"), ("angle", "shaft angle"), ("shaft frequency",)
 KEYS = (*RATES, *SHAFTS, "unit")
 
 

@@ -31,11 +31,17 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
-LABELS = {
+LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
     "rms": "rms (with the mean)",
     "peak": "peak (from the mean)",
-}  # in tables: rms may be the larger, of a signal with a mean
+    "crest factor S4": "peak over rms with the mean (article S4)",
+    "mesh line": "amplitude at the mesh frequency",
+    "sideband index": "mean amplitude of the first sidebands",
+    "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
+    "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
+}
 LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
+TENFOLD = 900.0  # percent: from here on growth is told as a factor
 GREAT = 1e8  # percent: beyond, there was nothing to grow from
 
 
@@ -268,16 +274,20 @@ def indicator_table(
 
 
 def table_text(table):
-    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments in brackets.
+    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
 
     What is a millionth or less in the healthy signal is taken for none there.
     """
     names = list(next(iter(table.values())))
+    grown = {case for case, row in table.items() if any(more and not math.isnan(more) for _, more in row.values())}
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [[LABELS.get(name, name), *(_cell(*row[name]) for row in table.values())] for name in names]
+    lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
     return "\n".join(map(table_row, lines))
 
 
-def _cell(value, more):
-    told = f"{more:+.1f} %" if abs(more) < GREAT else "healthy: none"
-    return f"{value:.4g} ({told})"
+def _cell(value, more, grown):
+    if not grown or math.isnan(more):
+        return f"{value:.4g}"
+    if abs(more) < TENFOLD:
+        return f"{value:.4g} ({more:+.1f} %)"
+    return f"{value:.4g} ({f'{1 + more / 100:.3g} x healthy' if abs(more) < GREAT else 'healthy: none'})"

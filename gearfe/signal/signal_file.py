@@ -213,7 +213,7 @@ def _axis(path: Any, found: Found, channel: str, names: tuple[str, ...], factors
     if unit not in factors:
         raise ValueError(
             f"{path}: column {chosen[0]!r} has unit {unit!r}, but must state one of {', '.join(factors)}: "
-            f"'{chosen[0]} [{next(iter(factors))}]'"
+            f"'{chosen[0]} [{next(iter(factors))}]' in the file, or for a text table in header=, the names of all its columns"
         )
     return factors[unit] * found.vectors[chosen[0]]
 

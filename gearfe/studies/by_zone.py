@@ -1,44 +1,85 @@
 """How far analytical stiffness is from finite elements: tables of error by zone, with what each value cost."""
 
+import math
 import os
 import time
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 
+from ..markdown import table_row
 from ..material import Material
 from ..scene.load import Scene, ScenePair, load_scene
 from ..steps import part, steps
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.inputs import by_gear, forces_of, two_materials, why_solid
+from ..stiffness.limits import check_count
 from ..stiffness.methods import METHODS, ROWS, fitted
 from ..stiffness.solve import mesh_stiffness
 from ..units import in_newton_per_um
+from .losses import (
+    damage_phases,
+    damaged_tooth,
+    engaged_phases,
+    headline,
+    kind_of,
+    loss,
+    loss_errors,
+    percent_with_doubt,
+    told_damage,
+    why_not,
+    within,
+)
 from .own_model import OwnModel, own_curve, own_models
 
 REFERENCE, REFERENCE_SOLID = "fe", "ritz3d"  # of sections, and where the third dimension is needed
+REFERENCES = (REFERENCE, REFERENCE_SOLID, "fe3d")
 FORMULATIONS = tuple(row.name for row in ROWS if row.kind != "solid" and row.name != REFERENCE)  # of spur gears
-ESTIMATE = "error of the reference"
+ESTIMATE, HEALTHY = "error of the reference", "the same without damage"
 ZONES = ("single", "double", "triple", "mean", "max")
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Curves by method, the first being the reference, and the seconds each took.
+    """Curves by method, the first being the reference, and the seconds each took; of damage, healthy curves beside them.
 
-    Imports and the error estimate of the reference are not counted.
+    Imports, the error estimate of the reference and healthy curves beside damaged ones are not counted.
+
+    Attributes
+    ----------
+    pair_name : str
+    curves : dict of str to StiffnessCurve
+        By method. Of a damaged pair over the whole engagement of the damaged tooth.
+    seconds : dict of str to float
+    healthy : dict of str to StiffnessCurve
+        The same pair without its damage, at the same phases; empty of a healthy pair, and without models of the user's own.
+    doubt : dict of str to float
+        Estimated error of what damage takes by the reference, by zone, as a part of the healthy stiffness.
+    damage, kind : str
+        The damage in words, and what its tooth is called: "cracked", "pitted" or "damaged".
+    left_out : dict of str to str
+        Methods without a curve, and why.
+    cycle : ndarray, optional
+        The phases that zones, mean and max are over, default all: of a damaged pair the mesh cycle in which the damaged tooth is
+        in the middle of its engagement, so that it is in contact all the time.
     """
 
     pair_name: str
     curves: dict[str, StiffnessCurve]
     seconds: dict[str, float]
+    healthy: dict[str, StiffnessCurve] = field(default_factory=dict)
+    doubt: dict[str, float] = field(default_factory=dict)
+    damage: str = ""
+    kind: str = ""
+    left_out: dict[str, str] = field(default_factory=dict)
+    cycle: NDArray | None = None
 
     @property
     def reference(self) -> StiffnessCurve:
@@ -47,8 +88,9 @@ class Comparison:
 
     def rows(self) -> Iterator[tuple[str, float, float, dict[str, tuple[float, float]]]]:
         """Rows (zone, reference k [N/m], its relative error estimate, {method: (k [N/m], relative error)})."""
-        truth, doubt = self.reference.zones(), self.reference.zone_errors()
-        others = {name: curve.zones() for name, curve in list(self.curves.items())[1:]}
+        reference = within(self.reference, self.cycle)
+        truth, doubt = reference.zones(), reference.zone_errors()
+        others = {name: within(curve, self.cycle).zones() for name, curve in list(self.curves.items())[1:]}
         for zone in sorted(truth, key=lambda z: ZONES.index(z) if z in ZONES else 2):
             yield (
                 zone,
@@ -56,6 +98,38 @@ class Comparison:
                 doubt.get(zone, float("nan")),
                 {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()},
             )
+
+    def losses(self) -> dict[str, dict[str, float]]:
+        """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy."""
+        two = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
+        return {name: loss(*(within(one, self.cycle) for one in curves)) for name, curves in two.items()}
+
+    @property
+    def headline(self) -> str:
+        """The answer in one sentence: what damage takes; of a healthy pair its mean stiffness and who is how far off it."""
+        name = next(iter(self.curves))
+        if self.healthy:
+            return headline(self.damage, self.kind, self.losses()[name], self.doubt)
+        mean = next(row for row in self.rows() if row[0] == "mean")
+        doubt = f" ± {in_newton_per_um(mean[1] * mean[2], 2)}" if math.isfinite(mean[2]) else ""
+        others = ", ".join(f"{other} {100 * error:+.1f} %" for other, (_, error) in mean[3].items())
+        return f"healthy mesh stiffness {in_newton_per_um(mean[1])}{doubt} N/um in the mean by {name}" + (
+            others and f"; {others}"
+        )
+
+    @property
+    def definition(self) -> str:
+        """What the zones and the mean are over."""
+        phase = within(self.reference, self.cycle).phase
+        cycle = "the mesh cycle"
+        if self.healthy:
+            cycle = f"the mesh cycle that has the {self.kind} tooth in the middle of its engagement"
+        return f"zones, mean and max are over {cycle}, phases {phase.min():.3g} to {phase.max():.3g}"
+
+    def reasons(self) -> dict[str, str]:
+        """Methods without a curve by why they have none: names with commas."""
+        whys = dict.fromkeys(self.left_out.values())
+        return {why: ", ".join(name for name, own in self.left_out.items() if own == why) for why in whys}
 
     def table(self) -> str:
         """Markdown table: per zone the reference [N/um] and every formulation with its error; last row the seconds."""
@@ -71,6 +145,24 @@ class Comparison:
         lines.append("| seconds | " + " | ".join(cost) + " |")
         return "\n".join(lines)
 
+    def loss_table(self) -> str:
+        """Markdown table: per zone the reference [N/um] healthy and damaged, and what damage takes by each method.
+
+        The last row is the phase at which it takes most. Empty for a healthy pair.
+        """
+        if not self.healthy:
+            return ""
+        found, name = self.losses(), next(iter(self.healthy))
+        zones = [zone for zone, *_ in self.rows()]
+        before, after = (within(one[name], self.cycle).zones() for one in (self.healthy, self.curves))
+        head = ["zone", f"healthy {name} [N/um]", f"{self.kind} {name} [N/um]", f"loss by {name}"]
+        lines = [table_row([*head, *(f"by {other}" for other in list(found)[1:])]), "|---" * (3 + len(found)) + "|"]
+        for zone in (*zones, *(set(found[name]) - set(zones))):
+            two = [in_newton_per_um(one[zone]) if zone in one else "" for one in (before, after)]
+            others = [f"{100 * found[other][zone]:.1f} %" for other in list(found)[1:]]
+            lines.append(table_row([zone, *two, percent_with_doubt(found[name][zone], self.doubt.get(zone, math.nan)), *others]))
+        return "\n".join(lines)
+
 
 def compare(
     scene: Scene | GearPair | str | os.PathLike[str] | None = None,
@@ -80,6 +172,7 @@ def compare(
     models: Sequence[OwnModel] | Mapping[str, OwnModel] = (),
     phases: int | ArrayLike = 64,
     refine: float = 1.0,
+    reference: str | None = None,
     force: float | None = None,
     torque: float | None = None,
     material: Material | tuple[Material, Material] | None = None,
@@ -89,7 +182,8 @@ def compare(
 ) -> Comparison:
     """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
 
-    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`.
+    The reference is finite elements of the section; where pits or helical teeth need the third dimension, `ritz3d`. A damaged
+    pair is compared with itself without damage, too, at the same phases.
 
     Parameters
     ----------
@@ -99,7 +193,8 @@ def compare(
         Name of the scene's pair; default the first. Or, without a scene, a pair of your own with `force` or `torque`, and
         `material`.
     case : str, optional
-        Name of a case of damage: the phases then are those of the damaged tooth's whole engagement.
+        Name of a case of damage: the phases then are those of the mesh cycle in which its tooth is in the middle of its
+        engagement.
     models : sequence or dict of str to model
         Your own: functions ``f(phase) -> k`` [N/m] of the total mesh stiffness, ``PairModel(f)`` of one tooth pair,
         ``OwnFlexibility(f)`` of one gear, or files with stated units (see `gearfe.studies.own_model` and `gearfe.read_model`).
@@ -107,13 +202,15 @@ def compare(
         As in `mesh_stiffness`.
     refine : float
         Resolution of the reference.
+    reference : str, optional
+        ``"fe3d"``: finite elements of whole gears, minutes for each; or another of fe and ritz3d than the default.
     force, torque, material, damage, face, groove
         Of a pair of your own, as of `mesh_stiffness`: force along the line of action [N] or torque on the pinion [N m].
 
     Returns
     -------
     Comparison
-        Without the formulations that have no value for this damage; a warning says why.
+        Its ``headline`` is the answer in one sentence; ``left_out`` says why a formulation has no curve.
 
     Raises
     ------
@@ -122,18 +219,29 @@ def compare(
     """
     own_case = {"force": force, "torque": torque, "material": material, "damage": damage, "face": face, "groove": groove}
     chosen, pair_name, case = _chosen(scene, pair, case, own_case)
-    methods = _methods(chosen, case)
+    run = chosen.case(case)
+    methods, left_out = _methods(chosen, run.get("damage", {}), reference)
     own = own_models(models, taken=(REFERENCE, *FORMULATIONS))
-    run = chosen.case(case) | {"phases": phases, "span": "tooth" if case else "cycle"}
+    cycle = None
+    if case and np.ndim(phases) == 0:
+        which = (chosen.pair, check_count(phases), damaged_tooth(run["damage"]))
+        shape = {"face": chosen.face, "groove": chosen.groove}
+        phases, cycle = engaged_phases(*which, **shape), damage_phases(*which, **shape)
+    run |= {"phases": phases, "span": "cycle"}
     with part("", 0.0, 0.0):
         mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
     for method in methods:
         METHODS[method].load()
-    curves, seconds = {}, {}
-    cost = {methods[0]: 3.0, ESTIMATE: 6.0}
-    for method in steps((*methods, ESTIMATE), lambda name: name, [cost.get(name, 0.3) for name in (*methods, ESTIMATE)]):
+    curves: dict[str, StiffnessCurve] = {}
+    seconds, healthy, doubt = {}, {}, {}
+    work = (*methods, ESTIMATE, *([HEALTHY] if case else []))
+    cost = {methods[0]: 3.0, ESTIMATE: 6.0, HEALTHY: 6.0}
+    for method in steps(work, lambda name: name, [cost.get(name, 0.3) for name in work]):
         if method == ESTIMATE:
             curves[methods[0]] = mesh_stiffness(**run, method=methods[0], refine=refine, error=True)
+            continue
+        if method == HEALTHY:
+            healthy, doubt = _healthy(run, curves, methods[0], refine, cycle)
             continue
         started = time.perf_counter()
         options: dict[str, Any] = {"refine": refine} if method == methods[0] else {}
@@ -142,14 +250,26 @@ def compare(
         except ValueError as error:
             if method == methods[0]:
                 raise
-            warnings.warn(f"{method} has no value here: {error}", stacklevel=2)
+            left_out[method] = str(error)
             continue
         seconds[method] = time.perf_counter() - started
     for name, model in own.items():
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
-    return Comparison(pair_name, curves, seconds)
+    said = (told_damage(chosen.pair, run["damage"]), kind_of(run["damage"])) if case else ("", "")
+    return Comparison(pair_name, curves, seconds, healthy, doubt, *said, left_out, cycle)
+
+
+def _healthy(run, curves, reference, refine, cycle):
+    """Curves of the same methods without the damage, and the doubt of what it takes by the reference."""
+    whole, out = {name: value for name, value in run.items() if name != "damage"}, {}
+    for method in curves:
+        options = {"refine": refine, "error": method == "fe3d"} if method == reference else {}
+        out[method] = mesh_stiffness(**fitted(method, whole)[0], method=method, **options)
+    run = run if cycle is None else run | {"phases": cycle}
+    two = (within(one[reference], cycle) for one in (out, curves))
+    return out, loss_errors(*two, reference, run, refine)
 
 
 def _chosen(scene, pair, case, own):
@@ -187,10 +307,20 @@ def _own(pair, *, force, torque, material, damage, face, groove):
     return made, f"{pair.gear_1.z}/{pair.gear_2.z}", "given" if cases else None
 
 
-def _methods(chosen, case):
-    """Reference and formulations for a pair of a scene: those that have it whole, a ring's body included."""
-    damage = [one for found in chosen.case(case).get("damage", {}).values() for one in found]
+def _methods(chosen, damage, reference):
+    """Reference and formulations for a pair of a scene that have it whole, a ring's body included; why others are left out."""
+    if reference not in (None, *REFERENCES):
+        raise ValueError(f"reference = {reference!r}, but it must be one of {', '.join(REFERENCES)}")
+    found = [one for own in damage.values() for one in own]
+    solid = why_solid(chosen.pair, chosen.face, found)
+    solid = solid or ("flanks or shafts change the load along the width" if chosen.wide else "")
+    if reference == REFERENCE and solid:
+        raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
+    first = reference or (REFERENCE_SOLID if solid else REFERENCE)
     rows = [row for row in ROWS if row.rings == "yes" or not chosen.pair.gear_2.internal]
-    if chosen.wide or why_solid(chosen.pair, chosen.face, damage):
-        return (REFERENCE_SOLID, *(row.name for row in rows if row.kind == "sum"))
-    return (REFERENCE, *(row.name for row in rows if row.name in FORMULATIONS and (row.cracks or not damage)))
+    if solid:
+        others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
+    else:
+        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not found)]
+    methods = tuple(dict.fromkeys([first, *others]))
+    return methods, {row.name: why_not(row, chosen.pair, found, solid) for row in ROWS if row.name not in methods}

@@ -14,8 +14,9 @@ from ..stiffness.inputs import overlap, why_solid
 from ..stiffness.methods import METHODS, SUMS, fitted
 from ..stiffness.solve import mesh_stiffness
 from ..units import in_newton_per_um
+from .losses import damage_phases, damaged_tooth
 
-PHASES = 32  # of the cycle looked at
+PHASES = 32  # of the cycle of curves on file
 COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 1.0}  # about, of a curve, in CPU seconds: for the time left
 
 
@@ -97,12 +98,21 @@ class CaseTable:
         total = [sum(self.curves[pair, case, name].seconds for pair, case in self.cases()) for name in self.methods]
         return "\n".join([*lines, f"| seconds |  | {' | '.join(f'{one:.1f} | ' for one in total)} |"])
 
+    @property
+    def headline(self):
+        """The case that takes most of the mean stiffness, in one sentence."""
+        hurt = [key for key in self.cases() if key[1] is not None]
+        pair, case = max(hurt, key=lambda key: self.drops(*key, self.reference)[1])
+        largest, mean, _ = self.drops(pair, case, self.reference)
+        return f"{pair}, {case}: takes most, up to {100 * largest:.1f} % of the mesh stiffness, {100 * mean:.1f} % of its mean"
+
     def drop_table(self):
-        """Markdown: what each case takes, largest over the cycle, by method."""
-        lines = ["| pair | case | " + " | ".join(self.methods) + " |", "|---" * (2 + len(self.methods)) + "|"]
+        """Markdown: what each case takes, largest over the cycle and of the mean over it, by method."""
+        columns = [f"{name} largest | mean" for name in self.methods]
+        lines = ["| pair | case | " + " | ".join(columns) + " |", "|---" * (2 + 2 * len(self.methods)) + "|"]
         for pair, case in self.cases():
             if case is not None:
-                cells = [_percent(self.drops(pair, case, name)[0], ".2f") for name in self.methods]
+                cells = [_percent(drop, ".1f") for name in self.methods for drop in self.drops(pair, case, name)[:2]]
                 lines.append(table_row([pair, case, *cells]))
         return "\n".join(lines)
 
@@ -155,9 +165,15 @@ def printed_text(scene, table):
 
 
 def damage_cycle(chosen):
-    """Phases ``(PHASES,)`` of the cycle in which tooth 0 of a scene's pair is in the middle of its engagement."""
+    """Phases ``(PHASES,)`` of curves on file: of the cycle in which tooth 0 of a pair is in the middle of its engagement."""
     length = chosen.pair.eps_alpha + overlap(chosen.pair, chosen.face, chosen.groove)
     return length / 2 - 0.5 + (np.arange(PHASES) + 0.5) / PHASES
+
+
+def _cycle(chosen, phases):
+    """Phases of tooth 0 of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
+    shape = {"face": chosen.face, "groove": chosen.groove}
+    return damage_phases(chosen.pair, phases, **shape) if phases else damage_cycle(chosen)
 
 
 def is_wide(chosen):
@@ -172,13 +188,13 @@ def case_curve(chosen, case, method, phase, **options):
     started = time.perf_counter()
     curve = mesh_stiffness(**run)
     seconds = time.perf_counter() - started
-    own = np.flatnonzero(curve.order == 0)
+    own = np.flatnonzero(curve.order == damaged_tooth(chosen.damage.get(case)))
     tooth = curve.force[:, own].sum(axis=1) / curve.lte
     doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
     return CaseCurve(curve.k, tooth, seconds, doubt)
 
 
-def case_table(scene, cases=None, *, compute=False, progress=None):
+def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
     """Every pair and case of a scene by every method that has it.
 
     The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
@@ -191,6 +207,8 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
         With cases of damage.
     cases : sequence of (str, str or None), optional
         Pairs with their cases, each pair with None (healthy) too; default all, pairs without damage too.
+    phases : int
+        Of the mesh cycle; where curves on file are read, theirs.
     compute : bool
         Compute three-dimensional finite elements that are not on file.
     progress : callable, optional
@@ -216,7 +234,7 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
     taken = {(key, "fe3d") for key in stored}
-    curves, cycles = {}, {name: damage_cycle(pair) for name, pair in scene.pairs.items()}
+    curves, cycles = {}, {name: _cycle(pair, 0 if stored else phases) for name, pair in scene.pairs.items()}
     work = [(name, case, method) for name, case in wanted for method in methods]
     cost = [0.0 if (key[:2], key[2]) in taken else COST.get(key[2], 0.1) for key in work]
     for name, case, method in steps(work, lambda key: f"{key[0]} {key[1] or 'healthy'}: {key[2]}", cost):
@@ -227,11 +245,12 @@ def case_table(scene, cases=None, *, compute=False, progress=None):
         if progress:
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
-            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name])
+            tooth = damaged_tooth(scene.pairs[name].damage.get(case))
+            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name] - tooth)
         except ValueError as error:
             if METHODS[method].converged:
                 raise
             warnings.warn(f"{method} has no value for {name} {case or 'healthy'}: {error}", stacklevel=2)
-            nothing = np.full(PHASES, np.nan)
+            nothing = np.full(cycles[name].size, np.nan)
             curves[name, case, method] = CaseCurve(nothing, nothing, 0.0, np.nan)
     return CaseTable(cycles, curves, methods, reference)

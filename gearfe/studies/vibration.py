@@ -1,6 +1,7 @@
 """A scene's machine, healthy and damaged, and what its vibration shows: spectrum lines and condition indicators."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 from numbers import Real
 
@@ -13,15 +14,21 @@ from ..markdown import table_row
 from ..motion.reference import SOLVERS
 from ..motion.simulate import simulate
 from ..motion.step_control import default_step
+from ..signal.demodulation import Demodulated, demodulate
 from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
-from ..signal.spectral_lines import expected_lines, find_lines
+from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from ..steps import part, steps
 
 FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
 UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
 LONGEST = 20.0  # s left out at most
+NEAR = 50  # bins on either side that tell the noise floor of a line
+QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
+FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
+RISE = 2.0  # times the healthy machine's at least is a line of a fault
+WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +52,46 @@ class Analysis:
         """Of the channel."""
         return next(iter(self.signals.values())).unit
 
+    def standing(self):
+        """Names of the lines that are more than noise: those of the mesh, and what stands out in a case that is not healthy.
+
+        A line of a fault or of a carrier stands out where it has `FLOOR` times the noise of the bins around it and, if there is
+        a healthy machine beside it, `RISE` times the healthy machine's line.
+        """
+        return [name for name in self.lines if re.fullmatch(r"(\d+ )?f_m", name) or self._stands(name)]
+
+    def _stands(self, name):
+        healthy, *others = self.spectra
+        least = {case: FLOOR * _floor(self.spectra[case], self.lines[name]) for case in self.spectra}
+        if not others:
+            return self.amplitudes[healthy][name] > least[healthy]
+        grown = RISE * self.amplitudes[healthy][name]
+        return any(self.amplitudes[case][name] > max(least[case], grown) for case in others)
+
     def lines_text(self):
-        """Amplitudes as Markdown."""
+        """Amplitudes of the lines that stand out (see `standing`) as Markdown, and in a sentence those that do not."""
         rows = [["line", "Hz", *self.spectra], ["---"] * (2 + len(self.spectra))]
-        for name, frequency in self.lines.items():
-            rows.append([name, f"{frequency:.2f}", *(f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)])
-        return "\n".join(map(table_row, rows))
+        shown = self.standing()
+        for name in shown:
+            sizes = (f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)
+            rows.append([in_words(name), f"{self.lines[name]:.2f}", *sizes])
+        hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
+        against = f" and {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
+        told = f"\n\nnot above {FLOOR:g} times the noise around it{against}: {', '.join(hidden)}" if hidden else ""
+        return "\n".join(map(table_row, rows)) + told
+
+    def envelope(self):
+        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope."""
+        healthy, *others = self.signals.values()
+        last = others[-1] if others else healthy
+        found = demodulate(last, self.fault)
+        before = demodulate(healthy, self.fault, band=found.kurtogram.band).lines if others else {}
+        low, high = found.kurtogram.band
+        told = [text for name in found.lines if (text := _risen(found, name, before.get(name)))]
+        none = f"no line of the fault has {FLOOR:g} times its noise floor" + (f" and {RISE:g} times healthy" if before else "")
+        return found, f"{last.name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
+            "; ".join(told) or none
+        )
 
     def indicators_text(self):
         """Indicators as Markdown, increments against healthy in brackets."""
@@ -61,6 +102,35 @@ class Analysis:
         from ..pictures.vibration_plots import plot_spectra
 
         return plot_spectra(self.spectra, self.lines, path, title=title or self.channel)
+
+
+def in_words(line):
+    """Name of a line as it is read.
+
+    >>> in_words("2 f_m - f_fault")
+    '2 x mesh frequency - fault frequency'
+    """
+    return re.sub(r"\bf_\w+", lambda found: WORDS.get(found[0], found[0]), re.sub(r"(\d+) (?=f_)", r"\1 x ", line))
+
+
+def _floor(found, frequency):
+    """Noise floor of a spectrum around a frequency, the line itself left out: the median, told from the lower quartile.
+
+    Where lines are dense, their lobes fill more than half of the bins.
+    """
+    near, values = found.within(*(frequency + sign * NEAR * found.resolution for sign in (-1, 1)))
+    return QUARTILE * float(np.quantile(values[np.abs(near - frequency) > BINS * found.resolution], 0.25))
+
+
+def _risen(found: Demodulated, name, before):
+    """A line of an envelope in words if it is above its floor and what it was before; empty if not."""
+    frequency, size = found.lines[name]
+    if size <= FLOOR * found.background or (before and size <= RISE * before[1]):
+        return ""
+    over = f"{size / found.background:.3g} times its noise floor" if found.background else f"{size:.3g} {found.spectrum.unit}"
+    times = size / before[1] if before and before[1] else 0.0
+    healthy = f", {'over 1000' if times > 1000 else f'{times:.3g}'} times healthy" if times else ""
+    return f"{in_words(name)} at {frequency:.2f} Hz, {over}{healthy}"
 
 
 def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
@@ -166,6 +236,7 @@ def analysis(found, channel=None):
     Parameters
     ----------
     found : dict of str to Response
+        Of ``"healthy"`` alone no lines of a fault are looked for: there is none.
     channel : str, optional
         Default: the force of the first mesh of the driven stage.
 
@@ -183,6 +254,8 @@ def analysis(found, channel=None):
     signals = {
         case: Signal(np.asarray(one[channel], dtype=float), rate, one.unit(channel), name=case) for case, one in found.items()
     }
+    if set(found) == {"healthy"}:
+        return analyse(signals, stage.mesh, carrier=stage.carrier, channel=channel)
     return analyse(signals, stage.mesh, stage.fault, turning=stage.turning, carrier=stage.carrier, channel=channel)
 
 

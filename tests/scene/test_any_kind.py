@@ -133,7 +133,7 @@ def test_the_whole_scene_has_every_key():
 START = ("flank", "relieved")
 ALSO = [  # keys that exclude one of the whole scene, with what goes for them
     *[((*START, f"{end}_start_{how}"), (*START, f"{end}_start_roll_mm")) for end in ("tip", "root")
-      for how in ("diameter_mm", "angle_deg")],
+      for how in ("diameter_mm", "angle_deg", "length_mm")],
     ((*START, "root_start_roll_mm"), ()),
     (("crack", 0, "length_mm"), ("crack", 0, "level")),
     (("reference", 0, "absolute"), ("reference", 0, "relative")),

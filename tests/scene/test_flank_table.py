@@ -123,3 +123,28 @@ def test_the_command_line_prints_and_draws_the_map(tmp_path, capsys):
     assert len([line for line in text.splitlines() if line.split()[:1] in (["1000"], ["3000"])]) == 2
     assert (tmp_path / "te.svg").stat().st_size > 1000
     assert main(["stiffness", str(path), "--forces", "1000", "-o", str(tmp_path / "te.csv")]) == 1
+
+
+@pytest.mark.parametrize("gear", ["pinion", "ring"])
+def test_a_relief_may_start_at_a_length_below_the_tip(tmp_path, gear):
+    own = SCENE
+    if gear == "ring":
+        own = own.replace("z = 36", "z = 90").replace("r_bore_mm = 20", "r_rim_mm = 160\naddendum = 0.8\ntip_radius = 0.2")
+    lengths = "tip_relief_um = 10\ntip_start_length_mm = 2.0\nroot_relief_um = 8\nroot_start_length_mm = 1.5\n"
+    path = tmp_path / "scene.toml"
+    side = "wheel" if gear == "ring" else "pinion"
+    path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths)
+    chosen = gf.load_scene(path).pair()
+    body = chosen.pair.gear_2 if gear == "ring" else chosen.pair.gear_1
+    form = chosen.flanks[side].on(body)
+    inside = 1 if body.roll_f > body.roll_a else -1
+    assert_allclose(form.removed(body.roll_a), 0.010, rtol=1e-9)
+    assert_allclose(form.removed(body.roll_a + inside * 1.0), 0.005, rtol=1e-9)
+    assert_allclose(form.removed(body.roll_a + inside * 2.0), 0.0, atol=1e-12)
+    assert_allclose(form.removed(body.roll_f - inside * 0.75), 0.004, rtol=1e-9)
+    path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths.replace("2.0", "200"))
+    with pytest.raises(ValueError, match=r"tip_start_length_mm = 200.*mm of roll"):
+        gf.load_scene(path)
+    path.write_text(own + f"[flank.one]\ngear = '{side}'\n" + lengths + "tip_start_diameter_mm = 70\n")
+    with pytest.raises(ValueError, match="with 2 starts"):
+        gf.load_scene(path)

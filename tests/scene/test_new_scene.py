@@ -1,9 +1,14 @@
 import math
+import re
 
 import pytest
 
 import gearfe as gf
 from gearfe.cli import main
+from gearfe.scene.flank_table import FLANK, MISALIGNMENT
+from gearfe.scene.load import DAMAGE, TABLES
+from gearfe.scene.machine_table import MACHINE
+from gearfe.scene.support_table import SUPPORTS
 
 OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)})
 
@@ -41,4 +46,34 @@ def test_written_scene_runs_on_the_command_line(tmp_path, capsys):
     assert main(["stiffness", path, "--phases", "4"]) == 0
     assert main(["compare", path, "--case", "cracked", "--phases", "4"]) == 0
     assert "z = 17" in (tmp_path / "my.toml").read_text()
-    assert "| single |" in capsys.readouterr().out
+    assert "| single " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("options", OPTIONS)
+def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
+    """Every key of the loader is written; with the # taken away from all of them the scene is read."""
+    text = gf.new_scene(tmp_path / "my.toml", **options).read_text()
+    keys = [*FLANK, *MISALIGNMENT, *SUPPORTS["support"], *SUPPORTS["shaft"], *DAMAGE["crack"], *DAMAGE["pits"]]
+    keys += [key for key in TABLES["pair"] if key not in ("face", "groove_mm")]
+    keys += [] if options.get("ring") else MACHINE
+    assert not [key for key in keys if not re.search(rf"\b{key}\b", text)]
+    (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
+    scene = gf.load_scene(tmp_path / "all.toml")
+    chosen = scene.pair()
+    assert set(chosen.damage) == {"cracked", "cracked_part", "pitted"}
+    assert set(chosen.supports) == {"pinion", "wheel"}
+    assert chosen.flanks["pinion"].tip_relief == pytest.approx(0.01 * options.get("module", 2.0))
+    assert chosen.misalignment.F_beta == 0.01
+    assert bool(scene.machine) is not options.get("ring", False)
+    if scene.machine:
+        assert scene.machine["torque_Nm"] == pytest.approx(chosen.force * 1e-3 * chosen.pair.gear_1.r_b, abs=0.01)
+
+
+def test_length_of_the_crack_beside_its_level_is_the_same_crack(tmp_path):
+    path = gf.new_scene(tmp_path / "my.toml")
+    run = {"phases": [0.8], "method": "ritz"}
+    level = gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run)
+    path.write_text(re.sub(r"^level = 0.3  # or as a length: (length_mm = [\d.]+)", r"\1", path.read_text(), flags=re.M))
+    crack = gf.load_scene(path).pair().damage["cracked"]["pinion"][0]
+    assert crack.level is None
+    assert gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run).k[0] == pytest.approx(level.k[0], rel=2e-3)

@@ -233,7 +233,7 @@ def test_table_of_increments():
     assert_allclose(table["severe"]["sideband index"][0], 0.3)
     text = ind.table_text(table).splitlines()
     assert text[0] == "| indicator | healthy | mild | severe |"
-    assert "| sideband index | 0.1 (+0.0 %) | 0.15 (+50.0 %) | 0.3 (+200.0 %) |" in text
+    assert "| mean amplitude of the first sidebands | 0.1 | 0.15 (+50.0 %) | 0.3 (+200.0 %) |" in text
     assert len(text) == 2 + len(ind.SOURCES)
 
 
@@ -266,4 +266,9 @@ def test_table_needs_the_healthy_case():
 
 def test_what_grows_from_nothing_has_no_percentage():
     text = ind.table_text({"healthy": {"sideband index": (1e-12, 0.0)}, "cracked": {"sideband index": (0.07, 7e12)}})
-    assert text.splitlines()[-1] == "| sideband index | 1e-12 (+0.0 %) | 0.07 (healthy: none) |"
+    assert text.splitlines()[-1] == "| mean amplitude of the first sidebands | 1e-12 | 0.07 (healthy: none) |"
+
+
+def test_more_than_ten_times_is_told_as_a_factor():
+    text = ind.table_text({"healthy": {"kurtosis": (2.0, 0.0)}, "cracked": {"kurtosis": (50.0, 2400.0)}})
+    assert text.splitlines()[-1] == "| kurtosis | 2 | 50 (25 x healthy) |"

@@ -115,6 +115,21 @@ def test_code_pages(tmp_path, encoding, told, recwarn):
     assert said == ([f"{path} is not UTF-8: read as Windows-1252 (Latin-1)"] if told else [])
 
 
+@pytest.mark.parametrize("name", ["Zeit", "Temps"])
+def test_times_of_german_and_french_loggers(tmp_path, name):
+    path = written(tmp_path / "z.csv", times(50), np.arange(50), "{:.9f};{:g}\n", f"{name} [s];a [g]\n")
+    assert_allclose(gf.read_signal(path).rate, RATE, rtol=1e-6)
+
+
+def test_the_command_line_says_how_to_name_columns(tmp_path, capsys):
+    path = written(tmp_path / "n.csv", times(500), np.arange(500) % 7, "{:.9f},{:g}\n", "t,a\n")
+    assert main(["signal", str(path)]) == 1
+    said = capsys.readouterr().err
+    assert "--header the names of all its columns" in said
+    assert "header=" not in said
+    assert main(["signal", str(path), "--header", "t [s], a [g]"]) == 0
+
+
 def test_what_is_no_text(tmp_path):
     path = tmp_path / "b.csv"
     path.write_bytes(bytes(range(256)) * 9)

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.studies.vibration import analysis, recorded, responses, slowest_decay
+from gearfe.studies.vibration import analyse, analysis, in_words, recorded, responses, slowest_decay
 
 SCENE = gf.load_scene("compound_planetary")
 
@@ -36,7 +36,44 @@ def test_the_crack_shows_at_its_sidebands_only(found):
         assert hurt[name] > 20 * healthy[name], name
     assert_allclose(hurt["2 f_m"], healthy["2 f_m"], rtol=0.1)
     assert report.indicators["crack50"]["sideband index"][0] > report.indicators["healthy"]["sideband index"][0]
-    assert "| f_m | 182.00 |" in report.lines_text()
+    assert "| mesh frequency | 182.00 |" in report.lines_text()
+    assert {"f_m - f_r", "f_m + f_r", "f_r"} <= set(report.standing())
+    assert "f_m - f_fault" not in report.standing(), "as weak as what is between the lines"
+    assert "times healthy" in report.envelope()[1]
+
+
+def test_a_healthy_machine_is_told_without_a_fault(found):
+    report = analysis({"healthy": found["healthy"]})
+    assert report.fault is None
+    assert not [name for name in report.lines if "f_fault" in name or "f_r" in name]
+    assert "fault" not in report.lines_text()
+    assert "%" not in report.indicators_text()
+    twice = analysis({"healthy": found["healthy"], "the same": found["healthy"]})
+    assert not [name for name in twice.standing() if "f_fault" in name or "f_r" in name]
+    assert "no line of the fault" in twice.envelope()[1]
+
+
+def _noisy(seed, sideband=0.0):
+    """Two seconds of a mesh line at 200 Hz in white noise, with sidebands at 13 Hz."""
+    time = np.arange(8192) / 4096
+    clean = np.cos(2 * np.pi * 200 * time) * (1 + 2 * sideband * np.cos(2 * np.pi * 13 * time))
+    return gf.Signal(clean + 0.3 * np.random.default_rng(seed).standard_normal(time.size), 4096.0, "m/s^2")
+
+
+def test_noise_alone_is_no_fault_line():
+    """Of 100 pairs of healthy records, each with 10 lines looked for, at most one shows one; all show a clear fault."""
+    false, seen = 0, 0
+    for seed in range(100):
+        pair = {"healthy": _noisy(seed), "other": _noisy(1000 + seed)}
+        false += analyse(pair, 200.0, 13.0).standing() != ["f_m", "2 f_m"]
+        hurt = analyse(pair | {"other": _noisy(1000 + seed, 0.1)}, 200.0, 13.0).standing()
+        seen += {"f_m - f_fault", "f_m + f_fault"} <= set(hurt)
+    assert false <= 1
+    assert seen == 100
+
+
+def test_words_for_lines():
+    assert in_words("f_m + 2 f_carrier") == "mesh frequency + 2 x carrier frequency"
 
 
 def test_mesh_forces_carry_the_torque(found):
@@ -65,7 +102,7 @@ def test_command_line(tmp_path, capsys):
     assert main([*command, "-o", str(out), "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text
-    assert "| sideband index |" in text
+    assert "| mean amplitude of the first sidebands " in text
     assert out.stat().st_size > 1000
     assert plot.stat().st_size > 10000
     assert main(["dynamics", "compound_planetary", "--case", "none"]) == 1

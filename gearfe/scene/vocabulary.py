@@ -1,0 +1,141 @@
+"""All that a scene can say besides its gears and load, as commented lines of a new one: take the # away, and they hold.
+
+Lines that are keys or tables begin with # and no space; text begins with # and a space.
+"""
+
+import math
+
+from geometry.pair.gear_pair import GearPair
+
+PAIR = """\
+#a_mm = {a:.4f}  # centre distance; left out: the one without backlash
+# Misalignment, as deviations over the face width, um along the line of action: positive lets z = b come apart, z = 0 is pressed.
+#F_beta_um = 10.0  # in the plane of action; or the axes' own errors, over bearing_span_mm (left out: over the width):
+#f_sigma_delta_um = 0.0  # inclination, in the plane of the axes
+#f_sigma_beta_um = 0.0  # skew, out of that plane
+#bearing_span_mm = {span:.1f}
+"""
+CRACK = """\
+# Cracks. A case may hold several, and pits; tables that name the same case belong together.
+#
+#        | centre-line      Each starts on the fillet below the loaded flank, and runs down to the centre-line of the tooth at
+#     ___|___              angle_deg, the angle between crack and centre-line: 90 runs straight across, 45 is usual, small
+#    /   |   \\             angles run down into the rim.
+#   /    |    \\
+#  /\\    |     \\           start: "30deg", where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3);
+# /  \\   |      \\                 "root", where the fillet meets the root circle; "middle" of the fillet's arc.
+#     \\  |
+#      \\ | angle_deg
+#
+#[[crack]]
+#case = "cracked_part"
+#gear = "pinion"
+#length_mm = {crack:.2f}  # or level = 0.3: at 0.5 it reaches the centre-line
+#angle_deg = 60.0
+#start = "30deg"
+#tooth = 0  # which: tooth 0 is the one whose engagement is looked at
+#turning = false  # true, with level: at the centre-line it turns to the opposite fillet, level 1 is a tooth broken off
+#width_mm = [0.0, {half:.2f}]  # open from height z to z; left out: over the whole width
+#ends = [1.0, 0.0]  # part of its length that is open at both ends of width_mm: [1, 0] runs out; three numbers: a parabola
+#rounded = false  # true: the front is parabolic, of three ends elliptic
+#pair = "stage"  # only in this pair; left out: in all pairs of the gear
+
+# Pits: a row of ellipses along the width.
+#[[pits]]
+#case = "pitted"
+#gear = "pinion"
+#radius_mm = {pitch:.3f}  # of the circle their centres lie on; this is the pitch circle
+#count = 5
+#first_mm = {first:.2f}  # height of the first centre over z = 0
+#last_mm = {last:.2f}  # and of the last
+#axes_mm = [{axis:.2f}, {axis:.2f}]  # semi-axes along the profile and along the width
+#depth_mm = {depth:.2f}
+#angle_deg = 0.0  # of the axes, turned in the flank
+#tooth = 0
+#pair = "stage"
+"""
+FLANK = """\
+# What the flanks of a gear have less than the involute: um, positive is removed.
+#[flank.pinion]
+#gear = "pinion"
+#pair = "stage"  # left out: in all its pairs
+#tip_relief_um = {amount:.1f}  # at the tip, and where it starts, one of four:
+#tip_start_length_mm = {length:.3f}  # so far below the tip, as a length of roll (along the line of action)
+# tip_start_diameter_mm = {diameter:.3f}
+# tip_start_roll_mm = {roll:.3f}  # roll length of the involute there
+# tip_start_angle_deg = {angle:.3f}  # roll angle there
+#tip_exponent = 1.0  # 1: linear; 2: parabolic
+#root_relief_um = {amount:.1f}  # at the form point, and where it starts:
+#root_start_length_mm = {length:.3f}  # so far above the form point; or root_start_diameter_mm, root_start_roll_mm,
+# root_start_angle_deg
+#root_exponent = 1.0
+#crowning_um = 0.0  # of the profile: a parabola, so much at tip and form point
+#slope_um = 0.0  # of the profile: so much at the tip, nothing at the form point
+#lead_crowning_um = 0.0  # along the width: so much at both end faces
+#lead_slope_um = 0.0  # along the width: so much at z = b, nothing at z = 0
+#twist_um = 0.0  # at (tip, z = b) and (form point, z = 0)
+#end_relief_um = [0.0, 0.0]  # at the end faces z = 0 and z = b, over end_length_mm
+#end_length_mm = [0.0, 0.0]
+#end_exponent = 2.0
+#tip_rounding_mm = 0.0  # radius of the edge of the tip; or tip_chamfer_mm, a straight cut
+#eccentricity_um = 0.0  # of the teeth off the axis, towards tooth eccentric_tooth
+#eccentric_tooth = 0.0
+# Measured: table_roll_mm = [...] with table_removed_um = [...]; wear_roll_mm with wear_um; for each tooth pitch_um (how far it
+# lies behind its place) and tooth_scale (factor of its profile and lead).
+"""
+HELD = """\
+# What holds the hubs; without, the bores are rigid. Springs:
+#[support.output]
+#gear = "wheel"
+#pair = "stage"
+#radial_N_per_um = 200.0  # of axis and housing together; each key left out: rigid
+#tilt_Nm_per_mrad = 40.0
+#torsion_Nm_per_mrad = 300.0
+#axial_N_per_um = 200.0
+#coupling_urad_per_kN = 0.0  # slope under a force, of a gear that is not in the middle of its bearings
+
+# or a shaft on two bearings, positions from its left end:
+#[shaft.drive]
+#gear = "pinion"
+#pair = "stage"
+#material = "steel"
+#lengths_mm = [{reach:.1f}, {reach:.1f}]  # of its parts, from left to right
+#diameters_mm = [{thick:.1f}, {thick:.1f}]
+#bores_mm = [0.0, 0.0]
+#bearings_at_mm = [0.0, {whole:.1f}]
+#bearings_N_per_um = [200.0, 200.0]  # left out: rigid
+#gear_at_mm = {reach:.1f}  # the middle of the gear
+#torque_at_mm = 0.0  # where the torque enters; left out: no twist
+#integral = false  # true: the gear is one piece with it (fe3d)
+"""
+MACHINE = """\
+# The machine, for `gearfe dynamics` and `gearfe dataset`: both gears on elastic bearings. Planetary sets: see `gearfe scenes`.
+#[machine]
+#model = "helical_pair"  # spur pairs too; or planetary, compound_planetary, herringbone_planetary with their gears
+#speed_rpm = 1500.0  # of the pinion
+#torque_Nm = {torque:.2f}  # on the pinion: force_N times its base radius
+#n_planets = 3  # of planetary sets
+#contact = "linear"  # or "impact": Hertz's law with damping; its keys are in [machine.impact]
+#backlash_um = 0.0
+#profile_error_um = 0.0  # at mesh frequency
+#runout_um = 0.0  # of the pinion
+#misplaced_um = 0.0  # of the wheel, away from the pinion
+#misplaced_y_um = 0.0  # and across
+"""
+
+
+def vocabulary(pair: GearPair, force: float) -> tuple[str, str]:
+    """Commented lines for the table of the pair, and for the end of a scene, with numbers that suit a pair under a force [N]."""
+    gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
+    length = 0.25 * (gear.roll_a - gear.roll_f)
+    roll = gear.roll_a - length
+    axis = min(0.25 * gear.m_n, 0.04 * b)
+    pitch = pair.a * gear.z / abs(pair.gear_2.z - gear.z if pair.gear_2.internal else pair.gear_2.z + gear.z)
+    numbers = {
+        "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis,
+        "depth": 0.1 * gear.m_n, "amount": 10 * gear.m_n, "length": length, "roll": roll,
+        "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
+        "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
+    }  # fmt: skip
+    parts = (CRACK, FLANK, HELD) if pair.gear_2.internal else (CRACK, FLANK, HELD, MACHINE)
+    return PAIR.format(a=pair.a, span=3 * b), "\n".join(part.format(**numbers) for part in parts)

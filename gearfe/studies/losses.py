@@ -1,0 +1,173 @@
+"""What damage takes: damaged gears beside healthy ones at the same phases, by the same method, and said in one sentence.
+
+All numbers of a damaged pair are over one mesh cycle, that in which its damaged tooth is in the middle of its engagement: the
+tooth is in contact all the time, and a healthy pair has the same mean over it as over any other cycle.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.damage.crack import Crack
+from geometry.damage.front import bends, path_length
+from geometry.damage.pit import Pit
+from geometry.pair.gear_pair import GearPair
+from geometry.tooth.gear import Gear
+
+from ..elements.asked import COARSEST
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.estimate import coarser
+from ..stiffness.inputs import overlap, phase_array
+from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
+from ..stiffness.solve import mesh_stiffness
+
+ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
+LARGEST = "most at a phase"  # row of the phase at which most is lost
+
+
+def damaged_tooth(damage: Mapping[str, Iterable[Crack | Pit]] | None) -> int:
+    """Number of the tooth that the first crack or pit of a case is in; 0 without damage."""
+    return next((one.tooth for own in (damage or {}).values() for one in own), 0)
+
+
+def damage_phases(pair: GearPair, phases: int, tooth: int = 0, *, face: str | None = None, groove: float = 0.0) -> NDArray:
+    """Phases ``(phases,)`` of the mesh cycle in which a tooth is in the middle of its engagement.
+
+    They are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
+
+    Examples
+    --------
+    >>> from gearfe import Gear, GearPair
+    >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
+    >>> pair = GearPair(Gear(z=21, r_bore=7.4, **rack), Gear(z=31, r_bore=11.4, **rack))
+    >>> print(f"{pair.eps_alpha:.3f}", damage_phases(pair, 4))
+    1.615 [0.5  0.75 1.   1.25]
+    """
+    face = face or ("helical" if pair.gear_1.beta else "spur")
+    middle = (pair.eps_alpha + overlap(pair, face, groove)) / 2 - tooth
+    return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
+
+
+def engaged_phases(pair: GearPair, phases: int, tooth: int = 0, *, face: str | None = None, groove: float = 0.0) -> NDArray:
+    """Phases ``(n,)`` of the whole engagement of a tooth and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
+    face = face or ("helical" if pair.gear_1.beta else "spur")
+    return phase_array(phases, "tooth", pair, overlap(pair, face, groove)) - tooth
+
+
+def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
+    """The part of a curve at these of its phases; all of it if None."""
+    if phases is None:
+        return curve
+    rows = np.flatnonzero(np.abs(curve.phase[:, None] - phases).min(axis=1) < 1e-9)
+    names = ("phase", "k", "k_tangent", "lte", "force", "pressure", "error", "unloaded", "lte_supports")
+    given = {name: value for name in names if (value := getattr(curve, name)) is not None}
+    return replace(curve, **{name: value[rows] for name, value in given.items()})
+
+
+def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
+    """Part of the stiffness that damage takes, by zone, and the largest at one phase (`LARGEST`)."""
+    before, after = healthy.zones(), hurt.zones()
+    return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
+
+
+def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, method: str, case: dict, refine: float) -> dict[str, float]:
+    """Estimated discretisation error of the losses by zone: how far coarser solves of both gears move them.
+
+    The differences from all coarser solves that an estimate of k looks at are added; empty if there are none so coarse. Of finite
+    elements in three dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
+    """
+    found = loss(healthy, hurt)
+    if method == "fe3d":
+        before, after = healthy.zone_errors(), hurt.zone_errors()
+        widest = {zone: (1 - found[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
+        return widest | {LARGEST: max(widest.values(), default=math.nan)}
+    whole = {name: value for name, value in case.items() if name != "damage"}
+    away = dict.fromkeys(found, 0.0)
+    rougher = coarser(refine, METHODS[method].order)
+    if any(options["refine"] < COARSEST for options in rougher):
+        return {}
+    for options in rougher:
+        two = (mesh_stiffness(**run, method=method, **options) for run in (whole, case))
+        rough = loss(*two)
+        away = {zone: away[zone] + abs(found[zone] - rough[zone]) for zone in away}
+    return away
+
+
+def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
+    """Damage in words.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> scene = gf.load_scene("compound_planetary").pair()
+    >>> told_damage(scene.pair, scene.damage["crack30"])
+    '3.07 mm crack at 45 degrees (level 0.3)'
+    """
+    gears = {"pinion": pair.gear_1, "wheel": pair.gear_2}
+    cracks = [(gears[side], one) for side, own in damage.items() for one in own if isinstance(one, Crack)]
+    pits = sum(isinstance(one, Pit) for own in damage.values() for one in own)
+    said = [_told_crack(*cracks[0])] if len(cracks) == 1 else [f"{len(cracks)} cracks"] if cracks else []
+    return " and ".join([*said, *([f"{pits} pit{'s' if pits > 1 else ''}"] if pits else [])])
+
+
+def _told_crack(gear: Gear, crack: Crack) -> str:
+    angle = f"at {math.degrees(crack.angle):.3g} degrees"
+    if crack.length is not None:
+        return f"{crack.length:.3g} mm crack {angle}"
+    if bends(crack):
+        return f"turning crack of level {crack.level:.3g} {angle}"
+    return f"{path_length(gear, crack):.3g} mm crack {angle} (level {crack.level:.3g})"
+
+
+def kind_of(damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
+    """What a tooth with such damage is called: cracked, pitted, or damaged if it is both."""
+    kinds = {type(one) for own in damage.values() for one in own}
+    return {frozenset([Crack]): "cracked", frozenset([Pit]): "pitted"}.get(frozenset(kinds), "damaged")
+
+
+def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:
+    """One sentence on what damage takes.
+
+    Parameters
+    ----------
+    said, kind : str
+        As of `told_damage` and `kind_of`.
+    found, doubt : dict of str to float
+        As of `loss` and `loss_errors`.
+
+    Examples
+    --------
+    >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
+    '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
+    """
+    zone = next((name for name in ALONE if name in found), None)
+    where = f"where the {kind} tooth {ALONE[zone]}" if zone else f"as the {kind} tooth passes"
+    most = percent_with_doubt(found[zone or LARGEST], doubt.get(zone or LARGEST, math.nan))
+    return (
+        f"{said}: the mesh is {most} softer {where}; {percent_with_doubt(found['mean'], doubt.get('mean', math.nan))} in the mean"
+    )
+
+
+def percent_with_doubt(value: float, doubt: float) -> str:
+    """A part in percent with its doubt, which is rounded up: ``15.8 ± 0.3 %``; without a doubt the number alone."""
+    if not math.isfinite(doubt):
+        return f"{100 * value:.1f} %"
+    return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
+
+
+def why_not(row: Method, pair: GearPair, damage: Iterable[Crack | Pit], solid: str) -> str:
+    """Why a comparison has no column of a method; `solid` says why the pair needs three dimensions, if it does."""
+    if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
+        return "not for rings"
+    if pair.gear_2.internal and row.rings != "yes":
+        return f"not for rings: it {RING_FOUNDATIONS[row.rings]}"
+    if row.name == "fe3d" and solid:
+        return "takes minutes for each gear; ask for it: --reference fe3d (reference='fe3d')"
+    if row.kind == "solid":
+        return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
+    if solid and row.kind == "section":
+        return f"a transverse section, but {solid}"
+    return "for healthy gears only" if tuple(damage) and not row.cracks else "left out"

@@ -1,0 +1,135 @@
+"""A scene in words: what was understood of its file, before anything is computed."""
+
+import math
+from collections.abc import Iterator
+
+from geometry.pair.flanks import flank_forms
+from geometry.tooth.gear import Gear
+from geometry.tooth.modified import Flank
+
+from ..scene.load import Scene, ScenePair
+from ..stiffness.inputs import by_gear, choose
+from ..stiffness.supported import supports_of
+from ..supports.shaft import Shaft
+from ..supports.support import Support
+from .losses import told_damage
+
+SIDES = ("pinion", "wheel")
+AMOUNTS = {  # of a flank, in um
+    "crowning": "profile crowning", "slope": "profile slope", "lead_crowning": "crowning along the width",
+    "lead_slope": "slope along the width", "twist": "twist", "eccentricity": "eccentricity",
+}  # fmt: skip
+OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitch": "pitch deviations", "wear": "wear",
+          "tooth_scale": "teeth that differ"}  # fmt: skip
+
+
+def told(scene: Scene) -> list[str]:
+    """Lines that say what a scene holds: gears, pairs with flanks, axes, supports and damage, its machine, what is assumed."""
+    lines = [scene.title]
+    for name, gear in scene.gears.items():
+        lines += ["", f"gear {name}: {told_gear(gear)}"]
+    for name, chosen in scene.pairs.items():
+        lines += ["", *_pair(name, chosen)]
+    lines += ["", _machine(scene)]
+    lines += [f"assumed: {note['what']}" for note in scene.assumptions]
+    return lines + [f"changed: {text}" for text in scene.changed]
+
+
+def told_gear(gear: Gear) -> str:
+    """A gear in words.
+
+    >>> told_gear(Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4))
+    '21 teeth, module 2 mm, 20 degrees, spur, 20 mm wide; tip diameter 46 mm, root 37 mm; held in its bore of 14.8 mm diameter'
+    """
+    helix = f"helix {math.degrees(gear.beta):.4g} degrees" if gear.beta else "spur"
+    shift = f", profile shift {gear.x:g}" if gear.x else ""
+    held = f"{'rim' if gear.internal else 'bore'} of {2 * (gear.r_rim or gear.r_bore or 0.0):.4g}"
+    return (
+        f"{gear.z} teeth{' (ring)' if gear.internal else ''}, module {gear.m_n:g} mm, {math.degrees(gear.alpha_n):.4g} degrees, "
+        f"{helix}, {gear.b:g} mm wide{shift}; tip diameter {2 * gear.r_a:.4g} mm, root {2 * gear.r_f:.4g} mm; "
+        f"held in its {held} mm diameter"
+    )
+
+
+def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
+    pair = chosen.pair
+    torques = [chosen.force * gear.r_b * 1e-3 for gear in (pair.gear_1, pair.gear_2)]
+    yield (
+        f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, contact ratio {pair.eps_alpha:.3f}; "
+        f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+    )
+    if chosen.face:
+        yield f"  teeth run {chosen.face}" + (f", with a groove of {chosen.groove:g} mm" if chosen.groove else "")
+    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+        if side in chosen.flanks:
+            yield f"  flank of the {side}: {told_flank(chosen.flanks[side], gear)}"
+    if chosen.misalignment:
+        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
+        yield "  misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
+    for side, held in chosen.supports.items():
+        yield f"  {side} held by {_held(held)}"
+    for case in (None, *chosen.damage):
+        damage = chosen.damage.get(case, {}) if case else {}
+        what = "healthy" if case is None else f"case {case}: {', '.join(_where(chosen, damage))}"
+        yield f"  {what}; {_method(chosen, damage)}"
+    yield from (f"  {note}" for note in pair.notes)
+
+
+def told_flank(flank: Flank, gear: Gear) -> str:
+    """A gear's flank in words, its reliefs with the diameter where they start."""
+    said = []
+    for end, roll in (("tip", gear.roll_a), ("root", gear.roll_f)):
+        relief = 1e3 * getattr(flank, f"{end}_relief")
+        if relief:
+            start = _start(flank, end, gear)
+            shape = {1.0: "linear", 2.0: "parabolic"}.get(exponent := getattr(flank, f"{end}_exponent"), f"power {exponent:g}")
+            at = f"from a diameter of {2 * math.hypot(gear.r_b, start):.5g} mm on, over {abs(roll - start):.3g} mm of roll"
+            said.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
+    said += [f"{word} {1e3 * value:.4g} um" for name, word in AMOUNTS.items() if (value := getattr(flank, name))]
+    if any(flank.end_relief if isinstance(flank.end_relief, tuple) else (flank.end_relief,)):
+        said.append("end relief")
+    said += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
+    said += [word for name, word in OTHERS.items() if (value := getattr(flank, name)) is not None and len(value)]
+    return "; ".join(said) or "involute"
+
+
+def _start(flank: Flank, end: str, gear: Gear) -> float:
+    """Roll length at which a relief starts [mm]."""
+    diameter, roll, angle = (getattr(flank, f"{end}_start_{how}") for how in ("diameter", "roll", "angle"))
+    if diameter is not None:
+        return math.sqrt((diameter / 2) ** 2 - gear.r_b**2)
+    return float(roll) if roll is not None else float(angle or 0.0) * gear.r_b
+
+
+def _held(held: Support | Shaft) -> str:
+    if isinstance(held, Shaft):
+        parts = ", ".join(f"{one.length:g} mm of {one.diameter:g} mm" for one in held.segments)
+        places = " and ".join(f"{at:g}" for at in held.bearings)
+        return f"a shaft of {parts}, bearings at {places} mm, gear at {held.gear:g} mm" + (", one piece" if held.integral else "")
+    units = {"radial": ("N/um", 1e3), "axial": ("N/um", 1e3), "tilt": ("Nm/mrad", 1e6), "torsion": ("Nm/mrad", 1e6)}
+    values = {name: getattr(held, name) for name in units}
+    soft = [f"{name} {value / units[name][1]:g} {units[name][0]}" for name, value in values.items() if math.isfinite(value)]
+    return f"springs: {', '.join(soft)}; else rigid" if soft else "rigid springs"
+
+
+def _where(chosen: ScenePair, damage: dict) -> Iterator[str]:
+    for side, own in damage.items():
+        teeth = sorted({one.tooth for one in own})
+        yield f"{told_damage(chosen.pair, {side: own})} in the {side}'s tooth {' and '.join(map(str, teeth))}"
+
+
+def _method(chosen: ScenePair, damage: dict) -> str:
+    """By which method it is solved unless another is asked for, and why."""
+    forms = flank_forms(chosen.pair, chosen.flanks or None, chosen.misalignment)
+    held = supports_of(chosen.pair, chosen.supports or None, (chosen.force,), chosen.face)
+    cracks, pits = by_gear(chosen.pair, damage)
+    method, why = choose("auto", chosen.pair, cracks, pits, chosen.face, None, forms, held)
+    return f"solved by {method}: {why}"
+
+
+def _machine(scene: Scene) -> str:
+    if not scene.machine:
+        return "no machine: gearfe dynamics needs a [machine] table"
+    run = scene.machine
+    law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
+    return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
