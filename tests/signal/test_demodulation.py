@@ -1,5 +1,7 @@
 """Kurtogram and squared envelope together, and measured signals on the command line."""
 
+import re
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -42,10 +44,10 @@ def test_measured_signal_on_the_command_line(tmp_path, capsys):
     command = ["signal", str(path), "--rate", str(RATE), "--mesh", "182", "--fault", "18.2"]
     assert main([*command, "--kurtogram", str(picture), "--plot", str(spectra)]) == 0
     text = capsys.readouterr().out
-    row = next(line for line in text.splitlines() if line.startswith("| f_m | 182.00"))
+    row = next(line for line in text.splitlines() if line.startswith("| mesh frequency "))
     assert_allclose(float(row.split("|")[3]), 3.0, rtol=0.02)
-    assert "| kurtosis |" in text
-    assert "2 f_fault 36.5" in text
+    assert "| kurtosis " in text
+    assert re.search(r"impulsive band: fault frequency at 18\.\d+ Hz, \d", text)
     assert picture.stat().st_size > 5000
     assert spectra.stat().st_size > 5000
     assert main(["signal", str(path), "--rate", str(RATE)]) == 0
