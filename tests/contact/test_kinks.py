@@ -58,4 +58,4 @@ def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
     assert rows
     for row in rows.values():
         pressed = np.flatnonzero(share(row.influence, row.gap, load)[0] > 0)
-        assert pressed.size >= 3
+        assert pressed.size >= 24  # 11 to 17 with hats as long as beside the rounding
