@@ -87,6 +87,8 @@ def leaning(contact, matrices):
     found, out = contact.found, []
     where = np.isfinite(found.gap)
     _, _, way = met(contact, where.nonzero(), found.roll_1[where], 0)
+    sure = np.isfinite(way.rate)  # else the pinion's place faces nothing: a corner of the wheel touches, which is a row of hats
+    where[where], way = sure, Direction(*(values[..., sure] for values in way))
     rate, turns, parts = np.ones(where.shape), np.ones((2, *where.shape)), np.zeros((2, 2, *where.shape))
     rate[where], turns[:, where], parts[:, 0], parts[:, :, where] = way.rate, way.turns, 1.0, way.parts
     log, diagonal = np.log(contact.pair.gear_1.m_n), np.arange(found.order.size)
