@@ -88,6 +88,7 @@ _HOME = {
     "planetary": "gearfe.machine.planetary",
     "plot_contact": "gearfe.pictures.contact_plot",
     "plot_kurtogram": "gearfe.pictures.vibration_plots",
+    "plot_pair": "gearfe.pictures.pair_plot",
     "plot_phase": "gearfe.pictures.vibration_plots",
     "plot_spectrogram": "gearfe.pictures.vibration_plots",
     "plot_spectra": "gearfe.pictures.vibration_plots",

@@ -58,6 +58,7 @@ from .motion.response import Response as Response
 from .motion.simulate import simulate as simulate
 from .motion.steady import steady_state as steady_state
 from .pictures.contact_plot import plot_contact as plot_contact
+from .pictures.pair_plot import plot_pair as plot_pair
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
 from .pictures.vibration_plots import plot_phase as plot_phase
 from .pictures.vibration_plots import plot_spectra as plot_spectra

@@ -1,4 +1,6 @@
+import gc
 import math
+import os
 from pathlib import Path
 
 import validation  # noqa: F401 first: one thread, which suits small matrices
@@ -58,6 +60,19 @@ def pytest_collection_modifyitems(items):
             item.add_marker(pytest.mark.quick)
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Tests of a file stay together: what they share is computed once."""
+    from xdist.scheduler import LoadFileScheduling
+
+    return LoadFileScheduling(config, log)
+
+
+def pytest_collection_finish():
+    """What is there by now stays: the collector of garbage need not look at it again and again."""
+    gc.freeze()
+
+
 @pytest.fixture(scope="session")
 def root():
     """The repository."""
@@ -78,8 +93,10 @@ def pair():
 @pytest.fixture(autouse=True, scope="session")
 def _own_cache(tmp_path_factory):
     """Tests neither read nor fill the user's cache."""
+    folder = tmp_path_factory.getbasetemp()
+    folder = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder  # one for all processes of this run
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("GEARFE_CACHE", str(tmp_path_factory.mktemp("cache")))
+        patch.setenv("GEARFE_CACHE", str(folder / "gears"))
         yield
 
 

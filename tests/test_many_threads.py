@@ -23,7 +23,7 @@ from geometry.mesh import mesher
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 CRACK = {"pinion": [gf.Crack(level=0.3)]}
-SMALL = {"ritz": {"order": 3}, "fe": {"refine": 0.5}, "ritz3d": {"order": 2, "refine": 0.5}}
+SMALL = {"ritz": {"order": 3}, "fe": {"refine": 0.3}, "ritz3d": {"order": 2, "refine": 0.5}}
 
 
 @pytest.fixture(autouse=True)

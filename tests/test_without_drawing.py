@@ -1,11 +1,14 @@
 """Stiffness, tables and dynamics where VTK cannot be loaded; verbs that draw say what is missing."""
 
+import json
 import re
 import subprocess
 import sys
 
+import pytest
+
 CODE = """
-import sys
+import contextlib, io, json, sys
 
 class Missing:
     def find_spec(self, name, path=None, target=None):
@@ -13,30 +16,52 @@ class Missing:
             raise ImportError(f"libGL.so.1: cannot open shared object file (asked for {name})")
 
 sys.meta_path.insert(0, Missing())
+import gearfe
 from gearfe.cli import main
-sys.exit(main(sys.argv[1:]))
+done = []
+for line in sys.argv[1:]:
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        code = main(line.split())
+    done.append((code, out.getvalue(), error.getvalue()))
+print(json.dumps([done, callable(gearfe.compare)]))
 """
+LINES = {
+    "compare": "compare planetary_pitting --phases 8 --refine 0.6 --plot k.png",
+    "dynamics": "dynamics planetary_pitting --duration 0.2",
+    "render": "render planetary_pitting -o s.png",
+}
 
 
-def run(*words):
-    return subprocess.run([sys.executable, "-c", CODE, *words], capture_output=True, text=True)
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """Exit code, output and errors by verb, all in one process; its folder; whether `gearfe.compare` is still the function."""
+    folder = tmp_path_factory.mktemp("drawn")
+    command = [sys.executable, "-c", CODE, *LINES.values()]
+    said = subprocess.run(command, capture_output=True, text=True, check=True, cwd=folder).stdout
+    found, whole = json.loads(said)
+    return dict(zip(LINES, found, strict=True)) | {"folder": folder, "whole": whole}
 
 
-def test_tables_and_pictures_of_curves_need_no_vtk(tmp_path):
-    done = run("compare", "planetary_pitting", "--phases", "8", "--plot", str(tmp_path / "k.png"))
-    assert done.returncode == 0, done.stderr
-    assert re.search(r"^\| mean +\|", done.stdout, re.MULTILINE)
-    assert (tmp_path / "k.png").is_file()
+def test_tables_and_pictures_of_curves_need_no_vtk(done):
+    code, out, error = done["compare"]
+    assert code == 0, error
+    assert re.search(r"^\| mean +\|", out, re.MULTILINE)
+    assert (done["folder"] / "k.png").is_file()
 
 
-def test_dynamics_needs_no_vtk():
-    done = run("dynamics", "planetary_pitting", "--duration", "0.2")
-    assert done.returncode == 0, done.stderr
+def test_dynamics_needs_no_vtk(done):
+    code, _, error = done["dynamics"]
+    assert code == 0, error
 
 
-def test_render_says_what_is_missing(tmp_path):
-    done = run("render", "planetary_pitting", "-o", str(tmp_path / "s.png"))
-    assert done.returncode == 1
-    assert "pip install pyvista" in done.stderr
-    assert "apt-get install" in done.stderr
-    assert "Traceback" not in done.stderr
+def test_render_says_what_is_missing(done):
+    code, _, error = done["render"]
+    assert code == 1
+    assert "pip install pyvista" in error
+    assert "apt-get install" in error
+    assert "Traceback" not in error
+
+
+def test_the_command_leaves_the_function_compare_to_the_package(done):
+    assert done["whole"]

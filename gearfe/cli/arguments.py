@@ -40,9 +40,10 @@ def main(argv=None):
     _scene_arguments(verb)
     verb.add_argument(
         "--model", metavar="FILE", action="append", default=[],
-        help="a stiffness curve of your own, may be repeated: two columns, units in the header; first phase (0 to 1; 0: "
-        "a pair enters), angle [deg] or angle [rad] (of the pinion), or radius [mm] (one tooth pair, on the pinion); then k in "
-        "N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or N/(m um); or a .csv written by gearfe",
+        help="a stiffness model of your own, may be repeated: file.py:function, k [N/m] at an array of mesh phases from 0 to 1; "
+        "or two columns, units in the header: first phase (0: a pair enters), angle [deg] or angle [rad] (of the pinion), or "
+        "radius [mm] (one tooth pair, on the pinion); then k in N/m, N/mm, N/um (or kN, MN, GN), or per width in N/(mm um) or "
+        "N/(m um); or a .csv written by gearfe",
     )  # fmt: skip
     verb.add_argument("--plot", metavar="FILE", help="draw all curves: .png, .svg or .pdf")
     verb.add_argument(
@@ -54,7 +55,6 @@ def main(argv=None):
         "--reference", nargs="?", const="fe3d", metavar="METHOD",
         help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
     )  # fmt: skip
-    verb.add_argument("--assumptions", action="store_true", help="all that the scene assumes, with the reasons")
     verb = _verb(
         verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
     )
@@ -99,6 +99,7 @@ def main(argv=None):
     verb.add_argument("--contact", choices=("linear", "impact"), help="contact law (default: the scene's, else linear)")
     verb.add_argument("--method", default="fast", help="fast or a method of scipy's solve_ivp, e.g. DOP853 (default: fast)")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the response: .csv, .npz or .mat")
+    _assumptions(verb)
     _analysis_arguments(verb)
     verb = _verb(verbs, "signal", signals.signal, "a measured signal: spectrum lines, indicators, kurtogram and squared envelope")
     verb.add_argument(
@@ -150,9 +151,16 @@ def main(argv=None):
     verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
     verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
     verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
+    verb.add_argument(
+        "--tip-relief", type=float, nargs=2, metavar=("UM", "MM"),
+        help="tip relief of both gears [um], linear over so much roll below the tip [mm]: --tip-relief 20 1.5 (default: none)",
+    )  # fmt: skip
     verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
     verb = _verb(verbs, "check", tools.check, "say in words what a scene holds, and how each case would be solved")
     verb.add_argument("scene", metavar="SCENE", help="a .toml file, or a built-in scene (see 'gearfe scenes')")
+    verb.add_argument("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
+    verb.add_argument("--pair", metavar="NAME", help="which pair is drawn (default: its first)")
+    verb.add_argument("--case", metavar="NAME", help="which case of damage is drawn (default: the first of the pair)")
     verb = _verb(verbs, "completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
     verb.add_argument("shell", choices=("bash", "zsh"), help='eval "$(gearfe completion bash)" in your shell\'s start file')
     verb.set_defaults(verbs=verbs.choices)
@@ -195,6 +203,10 @@ def _analysis_arguments(verb):
     verb.add_argument("--kurtogram", metavar="FILE", help="draw the fast kurtogram of the last case: .png, .svg or .pdf")
 
 
+def _assumptions(verb):
+    verb.add_argument("--assumptions", action="store_true", help="all that the scene assumes, with the reasons")
+
+
 def _scene_arguments(verb, *, count=True):
     verb.add_argument("scene", metavar="SCENE", help="a built-in scene (see 'gearfe scenes') or a .toml file")
     verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its first)")
@@ -203,4 +215,5 @@ def _scene_arguments(verb, *, count=True):
         "--refine", type=float, default=1.0, metavar="X", help="finite-element resolution: divides the edge lengths (default: 1)"
     )
     if count:
+        _assumptions(verb)
         verb.add_argument("--phases", type=int, default=64, metavar="N", help="phases per mesh cycle (default: 64)")

@@ -27,17 +27,33 @@ def new(arguments):
     from ..scene.new import new_scene
 
     options = {"teeth": tuple(arguments.teeth), "module": arguments.module, "helix_deg": arguments.helix}
-    made = new_scene(arguments.output, width=arguments.width, ring=arguments.ring, **options)
+    amount, length = arguments.tip_relief or (None, None)
+    options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
+    made = new_scene(arguments.output, **options)
     print(f"written: {made}\n\n  gearfe check {made}\n  gearfe compare {made} --case cracked")
 
 
 def check(arguments):
     """``gearfe check``."""
+    from ..files import check_output
+    from ..pictures.pair_plot import plot_pair
     from ..scene.load import load_scene
     from ..studies.told_scene import told
 
-    for line in told(load_scene(arguments.scene)):
+    drawn = arguments.picture is not None
+    if not drawn and (arguments.pair or arguments.case):
+        raise ValueError("--pair and --case choose what is drawn: give --picture FILE too")
+    if drawn:
+        check_output(arguments.picture, "picture")
+    scene = load_scene(arguments.scene)
+    for line in told(scene):
         print(line)
+    if drawn:
+        chosen = scene.pair(arguments.pair)
+        case = arguments.case or next(iter(chosen.damage), None)
+        title = ", ".join((scene.name, arguments.pair or next(iter(scene.pairs)), case or "healthy"))
+        plot_pair(chosen.pair, chosen.case(case).get("damage"), arguments.picture, title)
+        print(f"written: {arguments.picture}")
 
 
 def completion(arguments):

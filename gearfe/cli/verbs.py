@@ -41,31 +41,30 @@ def stiffness(arguments):
     from ..scene.load import load_scene
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
-    from ..units import in_newton_per_um
+    from ..studies.losses import beside_health, zone_table
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
     chosen = scene.pair(arguments.pair)
     force = chosen.force if arguments.force is None else arguments.force
-    _print_scene(scene)
+    print(f"{scene.title}\n")
     run, left_out = fitted(arguments.method, chosen.case(arguments.case))
     for text in left_out:
         print(f"{text}\n")
     if arguments.forces:
         _transmission_error(scene, arguments, run)
+        _print_assumptions(scene, arguments.assumptions)
         return
     with working(f"stiffness by {arguments.method}") as tell:
-        run |= {"force": force, "span": "tooth" if arguments.case else "cycle"}
-        curve = mesh_stiffness(
-            **run, method=arguments.method, phases=arguments.phases,
-            extended=not arguments.no_extended, refine=arguments.refine, error=arguments.error, pose=arguments.pose, tell=tell,
-        )  # fmt: skip
-    meta = curve.meta
+        run |= {"force": force, "extended": not arguments.no_extended, "refine": arguments.refine, "pose": arguments.pose}
+        options = {"phases": arguments.phases, "span": "tooth" if arguments.case else "cycle", "error": arguments.error}
+        curve = mesh_stiffness(**run, method=arguments.method, tell=tell, **options)
+        meta = curve.meta
+        solved = run | {"method": meta["method"]}
+        answer = beside_health(curve, solved, arguments.phases) if arguments.case else zone_table(curve)
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
-    doubt = curve.zone_errors()
-    for zone, value in curve.zones().items():
-        about = f"  error at most about {100 * doubt[zone]:.2f} %" if zone in doubt else ""
-        print(f"  {zone:7s} {in_newton_per_um(value, 5)} N/um{about}")
+    print(answer)
+    _print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         curve.save(arguments.output)
         print(f"written: {arguments.output}")
@@ -137,15 +136,15 @@ def compare(arguments):
         print(f"\nwritten: {arguments.plot}")
 
 
-def _print_assumptions(scene, every):
-    """What of a scene's assumptions the stiffness depends on, or every one of them."""
+def _print_assumptions(scene, every, told=None):
+    """What a scene assumes without the reasons, `told` (default: what the stiffness depends on), or `every` note with them."""
     from ..scene.assumed import of_stiffness
 
     print()
     if every:
         _print_notes(scene)
         return
-    told = of_stiffness(scene.assumptions)
+    told = of_stiffness(scene.assumptions) if told is None else told
     for note in told:
         print(f"  assumed: {note['what']}" + (f" [{note['depends']}]" if note["depends"] else ""))
     for text in scene.changed:
@@ -237,7 +236,7 @@ def dynamics(arguments):
     scene = load_scene(arguments.scene)
     if arguments.contact:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
-    _print_scene(scene)
+    print(f"{scene.title}\n")
     with working("stiffness curves and response") as tell:
         found = responses(scene, arguments.case, duration=arguments.duration, method=arguments.method, progress=tell)
     made = next(iter(found.values())).machine
@@ -255,6 +254,7 @@ def dynamics(arguments):
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
     _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
+    _print_assumptions(scene, arguments.assumptions, scene.assumptions)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
         print(f"written: {arguments.output}")

@@ -79,9 +79,22 @@ def _table(pair, materials, line_load, flanks, nominal, unit, stuck, cache):
         column = int(np.flatnonzero(mesh.found.order == 0)[0])
         there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]))
         where = np.array([there, np.full(there.size, column)]).T
-        rows = list(kink_rows(mesh, where, load).values())
+        rows = kink_rows(mesh, where, load)
         if rows:
-            closing = pressed(rows, np.array([load]))[0] - mesh.found.gap[there, column]
+            closing = (
+                pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - mesh.found.gap[there, column]
+            )
             width = half_width(load, mesh.radius[there, column], mesh.modulus)
-            out[j, there] = (closing / load - mesh.matrix[there, column, column]) / c - np.log(2 / width) - 0.5
+            out[j, there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1]
+
+
+def _straight(mesh, phases, column):
+    """What both teeth yield to forces along their involutes' normals ``(phases,)`` [mm per N/mm], which the cells of a line have.
+
+    The plane's own matrix turns them to the modified flank's normal, which jumps at a kink.
+    """
+    found, out = mesh.found, 0.0
+    for flexible, roll, sense in zip(mesh.flexibility, (found.roll_1, found.roll_2), (1, -1), strict=True):
+        out = out + flexible.matrix(roll[phases], sense * found.order)[:, column, column]
+    return out

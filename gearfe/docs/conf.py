@@ -13,12 +13,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices
 os.environ.setdefault("MPLBACKEND", "Agg")
 
 import matplotlib  # noqa: E402
-from matplotlib import cycler  # noqa: E402
-from site_pictures import pictures  # noqa: E402
+from site_pictures import STYLE, pictures  # noqa: E402
 
-from gearfe.pictures.look import COLOURS, DASHES  # noqa: E402
-
-matplotlib.rcParams["axes.prop_cycle"] = cycler(color=COLOURS) + cycler(linestyle=DASHES)  # in pictures of scripts, too
+matplotlib.rcParams.update(STYLE)
 
 PAGES = MADE / "validation"
 shutil.rmtree(PAGES, ignore_errors=True)
@@ -40,6 +37,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_gallery.gen_gallery",
     "site_formulas",
+    "site_search",
 ]
 exclude_patterns = ["tutorials/*", "gallery/*", "_made/**/*.ipynb", "_made/**/*.py", "_made/**/sg_execution_times.rst"]
 myst_enable_extensions = ["dollarmath", "deflist", "amsmath"]

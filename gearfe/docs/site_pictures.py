@@ -1,9 +1,25 @@
-"""How the site finds what a script has drawn."""
+"""How pictures of scripts look, and how the site finds what a script has drawn."""
 
 import shutil
 from pathlib import Path
 
+from matplotlib import cycler
 from sphinx_gallery.scrapers import figure_rst
+
+from gearfe.pictures.look import COLOURS, DASHES
+
+STYLE = {
+    "axes.prop_cycle": cycler(color=COLOURS) + cycler(linestyle=DASHES),
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlesize": 10,
+    "figure.dpi": 120,
+    "figure.figsize": (7, 4.2),
+    "grid.color": "0.9",
+    "legend.fontsize": 9,
+}
 
 
 def pictures(block, block_vars, gallery_conf):

@@ -135,6 +135,8 @@ class Flexibility:
 
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
+        if self.basis is None and self.healthy is None:
+            return singly(self, rolls, teeth)
         arc = arc_at(self.gear, np.concatenate(rolls))
         at, depth = np.clip(arc, *self.limits), np.minimum(arc - self.limits[0], 0.0)
         solved = [self if tooth % self.gear.z in self.own else self._whole() for tooth in teeth]
@@ -186,6 +188,15 @@ class Flexibility:
             own, theirs = on.nonzero()
             out[..., own, theirs] = out[..., theirs, own] = spline.ev(arc[..., own], arc[..., theirs])
         return out
+
+
+def singly(flexible: Any, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
+    """What `Flexibility.within` gives, of a gear that is known at single places: S between two places is the mean of both.
+
+    That of the place half-way, as long as S is straight over a contact.
+    """
+    own = (flexible.matrix(roll[:, None], [tooth])[:, 0, 0] for roll, tooth in zip(rolls, teeth, strict=True))
+    return [(values[:, None] + values) / 2 for values in own]
 
 
 def towards(

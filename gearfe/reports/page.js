@@ -13,6 +13,9 @@ document.querySelectorAll("[data-turn]").forEach((button) => button.addEventList
   Plotly.relayout(figure, { "scene.camera": { ...camera, eye: at(turned(eye, axis, step)), up: at(turned(up, axis, step)) } });
 }));
 const plots = () => document.querySelectorAll(".js-plotly-plot");
+const drawn = (one, width, height) => { one.parentElement.style.height = `${height}px`; Plotly.relayout(one, { width, height }); };
+addEventListener("load", () => plots().forEach((one) => {  // a tooth is scaled by the height: a phone would cut it off
+  if (one.layout.scene && one.clientWidth < 500) { drawn(one, null, 300); } }));
 addEventListener("beforeprint", () => { document.querySelectorAll("details").forEach((one) => { one.open = true; });
-  plots().forEach((one) => Plotly.relayout(one, { width: 680 })); });
-addEventListener("afterprint", () => plots().forEach((one) => Plotly.relayout(one, { width: null, autosize: true })));
+  plots().forEach((one) => { one.dataset.height = one.layout.height; drawn(one, 680, Math.min(340, one.layout.height)); }); });
+addEventListener("afterprint", () => plots().forEach((one) => drawn(one, null, Number(one.dataset.height))));

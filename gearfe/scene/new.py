@@ -78,6 +78,8 @@ def new_scene(
     helix_deg: float = 0.0,
     width: float = 20.0,
     ring: bool = False,
+    tip_relief_um: float | None = None,
+    tip_length_mm: float | None = None,
 ) -> Path:
     """Write a scene file with comments: a gear pair with a case of damage, ready to run and to be changed.
 
@@ -97,6 +99,8 @@ def new_scene(
         Face width [mm].
     ring : bool
         The wheel is an internal gear.
+    tip_relief_um, tip_length_mm : float, optional
+        Linear tip relief of both gears [um], and the length of roll below the tip over which it runs [mm]: give both.
 
     Returns
     -------
@@ -127,7 +131,7 @@ def new_scene(
         support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
     pair = GearPair(pinion, wheel)
     force = round(100.0 * width, 1)
-    pair_words, words = vocabulary(pair, force)
+    pair_words, words = vocabulary(pair, force, _relief(pair, tip_relief_um, tip_length_mm))
     text = TEXT.format(
         name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
         beta=float(helix_deg), mate_beta=math.degrees(wheel.beta) + 0.0, width=float(width), bore=bores[0],
@@ -139,3 +143,16 @@ def new_scene(
     with written(path) as name:
         Path(name).write_text(text, encoding="utf-8")
     return path
+
+
+def _relief(pair, amount, length):
+    """Amount [um] and length [mm] of a tip relief, None without."""
+    if amount is None and length is None:
+        return None
+    if amount is None or length is None or not (0 < amount < math.inf):
+        raise ValueError(f"tip relief of {amount} um over {length} mm: give both, the amount positive")
+    for gear in (pair.gear_1, pair.gear_2):
+        whole = abs(gear.roll_a - gear.roll_f)
+        if not 0 < length < whole:
+            raise ValueError(f"tip relief over {length:g} mm, but the flank of z = {gear.z} is {whole:.4g} mm of roll long")
+    return amount, length

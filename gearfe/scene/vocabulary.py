@@ -4,6 +4,7 @@ Lines that are keys or tables begin with # and no space; text begins with # and 
 """
 
 import math
+import re
 
 from geometry.pair.gear_pair import GearPair
 
@@ -124,8 +125,11 @@ MACHINE = """\
 """
 
 
-def vocabulary(pair: GearPair, force: float) -> tuple[str, str]:
-    """Commented lines for the table of the pair, and for the end of a scene, with numbers that suit a pair under a force [N]."""
+def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None = None) -> tuple[str, str]:
+    """Commented lines for the table of the pair, and for the end of a scene, with numbers that suit a pair under a force [N].
+
+    The lines of a tip `relief` of both gears ([um], and over which length [mm]) are not comments.
+    """
     gear, b = pair.gear_1, min(pair.gear_1.b, pair.gear_2.b)
     length = 0.25 * (gear.roll_a - gear.roll_f)
     roll = gear.roll_a - length
@@ -138,4 +142,14 @@ def vocabulary(pair: GearPair, force: float) -> tuple[str, str]:
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
     }  # fmt: skip
     parts = (CRACK, FLANK, HELD) if pair.gear_2.internal else (CRACK, FLANK, HELD, MACHINE)
-    return PAIR.format(a=pair.a, span=3 * b), "\n".join(part.format(**numbers) for part in parts)
+    words = "\n".join(part.format(**numbers) for part in parts)
+    return PAIR.format(a=pair.a, span=3 * b), _relieved(words, *relief) if relief else words
+
+
+def _relieved(words, amount, length):
+    """The commented lines with those of a tip relief in force, of both gears."""
+    given = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
+    words = words.replace('#[flank.pinion]\n#gear = "pinion"', '[flank.pinion]\ngear = "pinion"')
+    for line in given:
+        words = re.sub(rf"^#{line.split(' ')[0]} = [\d.]+", line, words, flags=re.M)
+    return "\n".join((words, "[flank.wheel]", 'gear = "wheel"', *given, ""))

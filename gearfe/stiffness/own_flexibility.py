@@ -1,6 +1,6 @@
 """`OwnFlexibility`: a model of the user's own of how one gear gives, in place of `ritz` or `fe`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -12,6 +12,7 @@ from geometry.tooth.gear import Gear
 
 from ..energy.closed import coupled
 from ..energy.closed.beam import Components
+from ..flexibility.plane import singly
 from ..material import Material
 from .methods import METHODS, SUMS, having
 
@@ -157,6 +158,7 @@ class OwnGear:
     given: str
     seam = None
     dofs = 0
+    fine = 1.0
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
@@ -170,6 +172,13 @@ class OwnGear:
             if own.size:
                 out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
         return out
+
+    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
+        """As of `gearfe.flexibility.plane.Flexibility`."""
+        return singly(self, rolls, teeth)
+
+    def yields_across(self, roll: NDArray, tooth: int) -> None:
+        """Nothing is known of loads across the normal."""
 
     def _among(self, roll, teeth):
         """Smooth flexibility between contacts of one phase, the function's values checked."""
@@ -193,6 +202,7 @@ class OwnMatrix:
     gear: Gear
     seam = None
     dofs = 0
+    fine = 1.0
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] as the object gives it; zeros for contacts off the flank."""
@@ -201,6 +211,13 @@ class OwnMatrix:
         where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
         values = _checked(where, shape, lambda: self.made.matrix(roll, teeth))
         return np.where(on[..., :, None] & on[..., None, :], values, 0.0)
+
+    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
+        """As of `gearfe.flexibility.plane.Flexibility`."""
+        return singly(self, rolls, teeth)
+
+    def yields_across(self, roll: NDArray, tooth: int) -> None:
+        """Nothing is known of loads across the normal."""
 
 
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -79,7 +79,8 @@ def loaded_phase(scene_pair, damage):
     if not own:
         return 0.0
     phases = own[0] * -1.0 + scene_pair.pair.eps_alpha * (np.arange(64) + 0.5) / 64
-    curve = mesh_stiffness(scene_pair.pair, scene_pair.force, scene_pair.materials, method="ritz", phases=phases)
+    case = scene_pair.case() | {"phases": phases, "supports": None}
+    curve = mesh_stiffness(**case, method="ritz")
     load = curve.force[:, curve.order == own[0]].sum(axis=1)
     return float(phases[np.flatnonzero(load > (1 - 1e-6) * load.max())[-1]])
 
@@ -96,7 +97,8 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
     cracks, pits = by_gear(pair, damage)
     if any(pits):
         raise ValueError("pits do not run through the whole width: a transverse section cannot show them")
-    curve = mesh_stiffness(pair, scene_pair.force, materials, method="ritz", phases=[phase], damage=damage)
+    case = scene_pair.case() | {"phases": [phase], "damage": damage, "supports": None}  # those of a section share no load
+    curve = mesh_stiffness(**case, method="ritz")
     found = pair.contacts([phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
+from geometry.pair.flanks import flank_forms
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
 from ..contact.solid import Contact3D, pair_stiffness3d
@@ -18,6 +19,7 @@ from ..elements.solver import factor, plan
 from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
 from ..steps import part
 from ..stiffness.inputs import by_gear, overlap, two_materials
+from ..stiffness.supported import check_integral, supports_of
 from .fields import Field
 
 SPREAD = 0.15  # of the load to either side of its line, in modules
@@ -72,6 +74,9 @@ def pressed_tooth(
     phases=None,
     face=None,
     groove=0.0,
+    flanks=None,
+    misalignment=None,
+    supports=None,
     refine=1.0,
     teeth=3,
     removal=False,
@@ -84,7 +89,7 @@ def pressed_tooth(
 
     Parameters
     ----------
-    pair, force, material, damage, face, groove
+    pair, force, material, damage, face, groove, flanks, misalignment, supports
         As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone. Without any it is
         tooth 0 of the pinion.
     phases : array, optional
@@ -125,7 +130,9 @@ def pressed_tooth(
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
     order = (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
-        contact = contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, extended=False)
+        case = {"pits": pits, "cracks": cracks, "face": face, "groove": groove}
+        case |= {"flanks": flank_forms(pair, flanks, misalignment), "supports": held_by(pair, supports, force, face)}
+        contact = contact_of(pair, force, materials, phases, order, extended=False, **case)
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
@@ -195,16 +202,21 @@ def _own(pair, side, face, groove, pits):
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
-def contact_of(pair, force, materials, phases, pits, cracks, face, groove, order, *, extended=True, flanks=None):
+def held_by(pair, supports, force, face):
+    """Supports of a pair's hubs as the contact in three dimensions takes them."""
+    held = supports_of(pair, supports, (force,), face)
+    check_integral(pair, held, "ritz3d", face)
+    return held
+
+
+def contact_of(pair, force, materials, phases, order, **options):
     """`Contact3D` at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one.
 
-    Damage is numbered in each gear's own frame.
+    `options` of `gearfe.contact.solid.pair_stiffness3d`; damage is numbered in each gear's own frame.
     """
-    options = {"pits": pits, "cracks": cracks, "face": face, "groove": groove, "extended": extended}
-    options["flanks"] = flanks
     if phases is not None:
         return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
-    end = pair.eps_alpha + overlap(pair, face, groove)
+    end = pair.eps_alpha + overlap(pair, options["face"], options["groove"])
     found = pair_stiffness3d(pair, force, materials, -order + end * (np.arange(16) + 0.5) / 16, **options)
     carried = found.load[:, found.order == order].sum(axis=1)
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases

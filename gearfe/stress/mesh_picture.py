@@ -7,9 +7,9 @@ import numpy as np
 
 from ..elements.solid_deck import FACES, Part
 from ..files import suffix_of, written
+from ..pictures.look import GEARS
 from .window import plotting
 
-GEARS = ("#b9c7d6", "#d6cbb9")  # pinion, wheel
 HURT = "#d55e00"  # pits, and the rims of crack faces
 IN_FRONT = -1e5  # units of depth by which rims of cracks are drawn before what hides them
 NEAR = 1.6  # half height of a close-up against the size of what is shown

@@ -19,7 +19,7 @@ from ..stiffness.inputs import by_gear
 from ..stiffness.limits import check_section
 from ..threads import single
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
-from .holed import contact_of, pressed_tooth, tooth_field
+from .holed import contact_of, held_by, pressed_tooth, tooth_field
 from .window import drawing_library, plotting
 
 COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
@@ -53,9 +53,9 @@ def render_stress(
     """Von Mises stress of loaded gears as a picture, without a screen, or as a VTK file.
 
     Spur gears without pits: both gears in their transverse section, pressed by Hertz's ellipse on a surface meshed for it.
-    Helical and herringbone gears and pits: the damaged tooth in three dimensions, pits as holes, with the load of the pair
-    along its contact lines (`gearfe.stress.holed`). Displacements are enlarged if there is a crack, so that it opens; the picture
-    says how much.
+    Helical and herringbone gears, pits, and loads that change along the width (crowning, misalignment, shafts that tilt): the
+    damaged tooth in three dimensions, pits as holes, with the load of the pair along its contact lines (`gearfe.stress.holed`).
+    Displacements are enlarged if there is a crack, so that it opens; the picture says how much.
 
     Parameters
     ----------
@@ -88,7 +88,8 @@ def render_stress(
     if suffix == ".png":
         drawing_library()
     damage = scene_pair.case(case).get("damage")
-    wide = bool(scene_pair.pair.gear_1.beta) or any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    pitted = any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    wide = bool(scene_pair.pair.gear_1.beta) or scene_pair.wide or pitted
     _check_size(wide, refine)
     with part("", 0.0, 0.85):
         fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
@@ -117,8 +118,10 @@ def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
     order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
     face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
     phases = None if phase is None else [phase]
-    run = (scene_pair.pair, scene_pair.force, scene_pair.materials, phases, pits, cracks, face, scene_pair.groove)
-    found = contact_of(*run, order, flanks=flank_forms(scene_pair.pair, scene_pair.flanks, scene_pair.misalignment))
+    run = {"pits": pits, "cracks": cracks, "face": face, "groove": scene_pair.groove}
+    run["flanks"] = flank_forms(scene_pair.pair, scene_pair.flanks, scene_pair.misalignment)
+    run["supports"] = held_by(scene_pair.pair, scene_pair.supports, scene_pair.force, face)
+    found = contact_of(scene_pair.pair, scene_pair.force, scene_pair.materials, phases, order, **run)
     plot_contact(scene_pair.pair, found, path=path, pits=pits[0], title=title or (case or ""))
     pressure = found.cells[0].pressure
     corner = np.isnan(pressure)
@@ -143,7 +146,8 @@ def _gears(scene_pair, damage, phase, refine):
 
 def _tooth(scene_pair, damage, phase, refine):
     phases = None if phase is None else [phase]
-    options = {"phases": phases, "face": scene_pair.face, "groove": scene_pair.groove}
+    names = ("face", "groove", "flanks", "misalignment", "supports")
+    options = {"phases": phases} | {name: getattr(scene_pair, name) for name in names}
     options |= {"refine": refine, "sizes": FINE, "strip": STRIP}
     made = pressed_tooth(scene_pair.pair, scene_pair.force, scene_pair.materials, damage, **options)
     field = tooth_field(made)

@@ -33,6 +33,7 @@ from .losses import (
     loss,
     loss_errors,
     percent_with_doubt,
+    told_cycle,
     told_damage,
     why_not,
     within,
@@ -120,11 +121,7 @@ class Comparison:
     @property
     def definition(self) -> str:
         """What the zones and the mean are over."""
-        phase = within(self.reference, self.cycle).phase
-        cycle = "the mesh cycle"
-        if self.healthy:
-            cycle = f"the mesh cycle that has the {self.kind} tooth in the middle of its engagement"
-        return f"zones, mean and max are over {cycle}, phases {phase.min():.3g} to {phase.max():.3g}"
+        return told_cycle(within(self.reference, self.cycle).phase, self.kind)
 
     def reasons(self) -> dict[str, str]:
         """Methods without a curve by why they have none: names with commas."""

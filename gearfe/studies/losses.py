@@ -7,6 +7,7 @@ tooth is in contact all the time, and a healthy pair has the same mean over it a
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +19,13 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
 from ..elements.asked import COARSEST
+from ..markdown import aligned, table_row
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import coarser
 from ..stiffness.inputs import overlap, phase_array
 from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
 from ..stiffness.solve import mesh_stiffness
+from ..units import in_newton_per_um
 
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
 LARGEST = "most at a phase"  # row of the phase at which most is lost
@@ -65,6 +68,47 @@ def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
     names = ("phase", "k", "k_tangent", "lte", "force", "pressure", "error", "unloaded", "lte_supports")
     given = {name: value for name in names if (value := getattr(curve, name)) is not None}
     return replace(curve, **{name: value[rows] for name, value in given.items()})
+
+
+def told_cycle(phases: NDArray, kind: str = "") -> str:
+    """What zones and means are over, in words; `kind` as of `kind_of`, of a damaged pair."""
+    over = f"the mesh cycle that has the {kind} tooth in the middle of its engagement" if kind else "the mesh cycle"
+    return f"zones, mean and max are over {over}, phases {phases.min():.3g} to {phases.max():.3g}"
+
+
+def zone_table(curve: StiffnessCurve) -> str:
+    """A curve by zone [N/um], with its estimated errors if it has them, as aligned text."""
+    doubt = curve.zone_errors()
+    lines = [table_row(["zone", "k [N/um]", *(["error at most about"] if doubt else [])]), "|---" * (3 if doubt else 2) + "|"]
+    for zone, value in curve.zones().items():
+        lines.append(table_row([zone, in_newton_per_um(value, 5), *([f"{100 * doubt[zone]:.2f} %"] if doubt else [])]))
+    return aligned("\n".join(lines))
+
+
+def beside_health(curve: StiffnessCurve, run: dict[str, Any], phases: int) -> str:
+    """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
+
+    Parameters
+    ----------
+    curve : StiffnessCurve
+        Over the whole engagement of the damaged tooth (`engaged_phases`).
+    run : dict
+        What it was solved with: arguments of `mesh_stiffness`, with `damage`.
+    phases : int
+        Per mesh cycle.
+    """
+    pair, damage, shape = run["pair"], run["damage"], {name: run[name] for name in ("face", "groove")}
+    cycle = damage_phases(pair, phases, damaged_tooth(damage), **shape)
+    healthy = mesh_stiffness(**{name: value for name, value in run.items() if name != "damage"} | {"phases": cycle})
+    hurt, kind = within(curve, cycle), kind_of(damage)
+    found, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
+    head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
+    lines = [table_row(head), "|---" * len(head) + "|"]
+    for zone, lost in found.items():
+        two = [in_newton_per_um(one[zone]) if zone in one else "" for one in (before, after)]
+        about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
+        lines.append(table_row([zone, *two, *about, f"{100 * lost:.1f} %"]))
+    return f"{told_damage(pair, damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:

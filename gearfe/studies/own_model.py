@@ -1,7 +1,9 @@
 """Stiffness models of the user's own, functions or files, as curves to compare."""
 
+import importlib.util
 import math
 import os
+import re
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -51,7 +53,8 @@ def own_models(models, taken=()):
     ----------
     models : sequence or dict
         Functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the whole
-        width), `PairModel`, `OwnFlexibility`, paths of files (see `read_model`) or `ModelFile`; the keys of a dict are the names.
+        width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of tables
+        (see `read_model`) or `ModelFile`; the keys of a dict are the names.
     taken : sequence of str
         Names that no model may have.
 
@@ -70,7 +73,8 @@ def own_models(models, taken=()):
     out = {}
     for name, model in items:
         if isinstance(model, (str, os.PathLike)):
-            model = read_model(model)
+            found = re.fullmatch(r"(.+\.py)(?::(.*))?", str(model), re.DOTALL)
+            model = _in_file(*found.groups()) if found else read_model(model)
         elif not callable(model) and not isinstance(model, (PairModel, OwnFlexibility, ModelFile)):
             raise ValueError(
                 f"model {name!r} is {type(model).__name__}, but give f(phase) -> k [N/m], PairModel(f), OwnFlexibility(f), "
@@ -83,6 +87,24 @@ def own_models(models, taken=()):
     return out
 
 
+def _in_file(path, name):
+    """The model called `name` of a Python file."""
+    if not Path(path).is_file():
+        raise ValueError(f"{path}: no such file")
+    spec = importlib.util.spec_from_file_location(Path(path).stem, path)
+    made = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(made)
+    except Exception as error:  # a file of the user's may raise whatever it likes
+        raise ValueError(f"{path} failed with {type(error).__name__}: {error}") from error
+    kinds = (PairModel, OwnFlexibility)
+    has = [key for key, one in vars(made).items() if isinstance(one, kinds) or getattr(one, "__module__", "") == made.__name__]
+    if name not in has:
+        told = f"it has {', '.join(has)}" if has else "it has no function"
+        raise ValueError(f"{path}: no model {name or ''!r}; {told}: give {path}:NAME, of a function f(phase) -> k [N/m]")
+    return getattr(made, name)
+
+
 def _name(model, number):
     if isinstance(model, OwnFlexibility):
         return model.name if model.name.isidentifier() else f"model {number}"
@@ -91,7 +113,7 @@ def _name(model, number):
     if isinstance(model, ModelFile):
         model = model.path
     if isinstance(model, (str, os.PathLike)):
-        return Path(model).stem
+        return re.sub(r".+\.py:", "", str(model)) if ".py:" in str(model) else Path(model).stem
     name = getattr(model, "__name__", "")
     return name if name.isidentifier() else f"model {number}"
 

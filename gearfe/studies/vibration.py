@@ -27,6 +27,8 @@ LONGEST = 20.0  # s left out at most
 NEAR = 50  # bins on either side that tell the noise floor of a line
 QUARTILE = math.sqrt(math.log(2) / math.log(4 / 3))  # median over lower quartile of the amplitudes of noise
 FLOOR = 5.0  # times its noise floor at least is a line; the largest of five bins of noise is so once in some millions
+RANGE = 1e-4  # of the rms of a record: smaller lines are lost in any recorder (80 dB; 16 bits are 96 dB below full scale)
+PULSES = 2  # harmonics of the fault at least in an envelope: pulses of a tooth have many, run-out and misplaced planets one
 RISE = 2.0  # times the healthy machine's at least is a line of a fault
 WORDS = {"f_m": "mesh frequency", "f_fault": "fault frequency", "f_r": "turns of the gear", "f_carrier": "carrier frequency"}
 
@@ -55,14 +57,15 @@ class Analysis:
     def standing(self):
         """Names of the lines that are more than noise: those of the mesh, and what stands out in a case that is not healthy.
 
-        A line of a fault or of a carrier stands out where it has `FLOOR` times the noise of the bins around it and, if there is
-        a healthy machine beside it, `RISE` times the healthy machine's line.
+        A line of a fault or of a carrier stands out where it has `FLOOR` times the noise of the bins around it, `RANGE` times the
+        rms of the record and, if there is a healthy machine beside it, `RISE` times the healthy machine's line.
         """
         return [name for name in self.lines if re.fullmatch(r"(\d+ )?f_m", name) or self._stands(name)]
 
     def _stands(self, name):
         healthy, *others = self.spectra
-        least = {case: FLOOR * _floor(self.spectra[case], self.lines[name]) for case in self.spectra}
+        floors = {case: FLOOR * _floor(one, self.lines[name]) for case, one in self.spectra.items()}
+        least = {case: max(floor, RANGE * float(self.signals[case].values.std())) for case, floor in floors.items()}
         if not others:
             return self.amplitudes[healthy][name] > least[healthy]
         grown = RISE * self.amplitudes[healthy][name]
@@ -77,21 +80,38 @@ class Analysis:
             rows.append([in_words(name), f"{self.lines[name]:.2f}", *sizes])
         hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
         against = f" and {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
-        told = f"\n\nnot above {FLOOR:g} times the noise around it{against}: {', '.join(hidden)}" if hidden else ""
+        least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
+        told = f"\n\nnot above {least}: {', '.join(hidden)}" if hidden else ""
         return "\n".join(map(table_row, rows)) + told
 
     def envelope(self):
-        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope."""
+        """`Demodulated` of the last case at the fault frequency, and in a sentence the lines that stand out of its envelope.
+
+        They are told if `PULSES` of them do.
+        """
+        found, told, compared = self._demodulated()
+        low, high = found.kurtogram.band
+        none = f"fewer than {PULSES} lines of the fault have {FLOOR:g} times their noise floor" + (
+            f" and {RISE:g} times healthy" if compared else ""
+        )
+        name = list(self.signals)[-1]
+        return found, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
+            "; ".join(told.values()) or none
+        )
+
+    def alarms(self):
+        """Names of the lines of the fault that stand out of spectrum or envelope of the last case; empty if it shows nothing."""
+        lines = [name for name in self.standing() if "f_fault" in name]
+        return [*lines, *(f"{name} of the envelope" for name in self._demodulated()[1])] if self.fault else []
+
+    def _demodulated(self):
+        """`Demodulated` of the last case, the lines that stand out of it in words, and whether a healthy case is beside it."""
         healthy, *others = self.signals.values()
         last = others[-1] if others else healthy
         found = demodulate(last, self.fault)
         before = demodulate(healthy, self.fault, band=found.kurtogram.band).lines if others else {}
-        low, high = found.kurtogram.band
-        told = [text for name in found.lines if (text := _risen(found, name, before.get(name)))]
-        none = f"no line of the fault has {FLOOR:g} times its noise floor" + (f" and {RISE:g} times healthy" if before else "")
-        return found, f"{last.name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
-            "; ".join(told) or none
-        )
+        told = {name: text for name in found.lines if (text := _risen(found, name, before.get(name)))}
+        return found, told if len(told) >= PULSES else {}, bool(before)
 
     def indicators_text(self):
         """Indicators as Markdown, increments against healthy in brackets."""

@@ -63,7 +63,7 @@ def quiet(text):
     return not shell.STEERING.search(text)
 
 
-@pytest.mark.parametrize("more", [[], ["--case", f"cracked {STEERS} $x_$ |<b>"], ["--pair", "none"], ["--case", "none"]])
+@pytest.mark.parametrize("more", [["--case", f"cracked {STEERS} $x_$ |<b>"], ["--pair", "none"], ["--case", "none"]])
 def test_no_verb_passes_on_what_steers_a_terminal(scene, more, capsys, tmp_path):
     for verb in (["stiffness", "--method", "textbook", "--plot", str(tmp_path / "p.png")], ["compare", "--refine", "0.2"]):
         code = main([verb[0], str(scene), *verb[1:], "--phases", "4", *more])
@@ -87,7 +87,7 @@ def test_names_of_columns_and_files(tmp_path, capsys):
 def test_on_a_terminal_too(scene):
     """The bar's own codes stay; those of the file do not come through, nor does what rich would take for its markup."""
     leader, follower = pty.openpty()
-    command = [sys.executable, "-m", "gearfe", "signal", f"no[bold]{STEERS}.csv"]
+    command = [sys.executable, "-m", "gearfe", "stiffness", f"no[bold]{STEERS}"]
     environment = os.environ | {"PYTHONPATH": str(Path(gf.__file__).parents[1]), "TERM": "xterm"}
     done = subprocess.run(command, stdout=follower, stderr=follower, env=environment, check=False)
     os.close(follower)

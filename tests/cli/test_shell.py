@@ -74,7 +74,7 @@ def test_a_full_disk_is_said():
 
 def test_interrupted_work_leaves_one_line_and_no_file(tmp_path, tmp_path_factory):
     target = tmp_path / "k.csv"
-    command = [*COMMAND, "stiffness", "planetary_pitting", "--method", "fe", "--refine", "8", "-o", str(target)]
+    command = [*COMMAND, "stiffness", "planetary_pitting", "--method", "fe", "--refine", "4", "-o", str(target)]
     environment = ENVIRONMENT | {"GEARFE_CACHE": str(tmp_path_factory.mktemp("empty"))}
     ignored = signal.signal(signal.SIGINT, signal.default_int_handler)  # a run in the background inherits that it is ignored
     try:
@@ -83,7 +83,7 @@ def test_interrupted_work_leaves_one_line_and_no_file(tmp_path, tmp_path_factory
         signal.signal(signal.SIGINT, ignored)
     with process:
         process.stdout.readline()  # it has begun
-        time.sleep(1.0)
+        time.sleep(0.3)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
     assert process.returncode == 130

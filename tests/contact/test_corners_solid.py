@@ -21,7 +21,7 @@ def pair_of(z, width, degrees=0.0):
     return gf.GearPair(gf.Gear(z=z, r_bore=3.0, beta=beta, **rack), gf.Gear(z=30, r_bore=12.0, beta=-beta, **rack))
 
 
-@pytest.mark.parametrize("line_load", [10.0, 100.0, 800.0])
+@pytest.mark.parametrize("line_load", [10.0, 800.0])
 @pytest.mark.parametrize("z", [9, 12])
 def test_wide_undercut_spur_pair_is_that_of_the_plane(z, line_load):
     pair, phases = pair_of(z, 100.0), np.append(np.arange(8) / 8, [-0.02, 0.02])
@@ -65,7 +65,7 @@ def test_the_lightest_loads_follow_the_logarithm(degrees):
     beta = math.radians(degrees)
     pair = gf.GearPair(gf.Gear(z=18, r_bore=9.0, beta=beta, **rack), gf.Gear(z=27, r_bore=12.0, beta=-beta, **rack))
     loads = 12.0 * 10.0 ** np.arange(-3, 2)
-    compliance = np.array([1 / curve.k for curve in gf.mesh_stiffness(pair, loads, STEEL, method="ritz3d", phases=4, refine=0.6)])
+    compliance = np.array([1 / curve.k for curve in gf.mesh_stiffness(pair, loads, STEEL, method="ritz3d", phases=2, refine=0.6)])
     slope = np.diff(compliance, axis=0)
     assert (slope < 0).all()
     assert_allclose(slope[:-1], slope[1:], rtol=0.1)  # by decade; shares of the pairs change, and with them the slope

@@ -31,7 +31,7 @@ def test_the_tip_cuts_into_the_fillet_at_the_start_of_the_path():
     assert_allclose(after, (found.nominal[on] - pair.path[0]).max(), atol=pair.p_bt / 48)
 
 
-@pytest.mark.parametrize("line_load", [10.0, 100.0, 600.0])
+@pytest.mark.parametrize("line_load", [10.0, 600.0])
 def test_a_wide_spur_pair_whose_tips_cut_into_fillets_is_that_of_the_plane(line_load):
     pair, phases = pair_of(100.0), np.arange(12) / 24
     plane = gf.mesh_stiffness(pair, 100.0 * line_load, STEEL, phases=phases, method="ritz")
@@ -44,14 +44,14 @@ def test_a_wide_spur_pair_whose_tips_cut_into_fillets_is_that_of_the_plane(line_
 
 
 def test_the_curve_of_a_helical_pair_says_where_tips_press_into_fillets():
-    run = {"phases": [0.05, 0.1, 0.5], "refine": 0.6}
+    run = {"phases": [0.05, 0.5], "refine": 0.6}
     curve = gf.mesh_stiffness(pair_of(8.0, 4.0), 800.0, STEEL, method="ritz3d", **run)
     spur = gf.mesh_stiffness(pair_of(8.0), 800.0, STEEL, method="ritz3d", **run)
     for one in (curve, spur):
-        assert one.meta["tip_in_fillet_phases"] == [0.05, 0.1]
+        assert one.meta["tip_in_fillet_phases"] == [0.05]
         assert_allclose(one.k, one.meta["force_N"] / one.lte, rtol=1e-12)
-        assert (one.unloaded[:2] < -1e-6).all()
-        assert one.unloaded[2] == 0
+        assert one.unloaded[0] < -1e-6
+        assert one.unloaded[1] == 0
     away = gf.mesh_stiffness(pair_of(8.0), 800.0, STEEL, method="ritz3d", phases=[0.5], refine=0.6)
     assert "tip_in_fillet_phases" not in away.meta
 

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.contact import kink_law
 from gearfe.contact.kinks import _nearest, kink_rows, near_kink
 from gearfe.contact.plane import PairContact
 from gearfe.contact.sharing import share
@@ -59,3 +60,24 @@ def test_rows_at_small_roundings_are_as_long_as_what_is_pressed():
     for row in rows.values():
         pressed = np.flatnonzero(share(row.influence, row.gap, load)[0] > 0)
         assert pressed.size >= 24  # 11 to 17 with hats as long as beside the rounding
+
+
+def test_what_a_kink_adds_in_three_dimensions_is_that_of_its_own_flank(monkeypatch):
+    """A relief of the mate far away, whose rows stand on the other gear, changes nothing; nor does another size of both."""
+    monkeypatch.setattr(kink_law, "LOADS", np.array([0.03, 1.0]))
+    monkeypatch.setattr(kink_law, "PLACES", 5)
+
+    def table(s, **more):
+        rack = {"m_n": 3.0 * s, "alpha_n": math.radians(20), "b": 20.0 * s}
+        pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0 * s, **rack), gf.Gear(z=36, r_bore=20.0 * s, **rack))
+        made = {"wheel": gf.Flank(tip_chamfer=0.2 * s)} | {side: gf.Flank(**own) for side, own in more.items()}
+        law = kink_law.KinkLaw(pair, (gf.Material(), gf.Material()), 200.0 * s, flank_forms(pair, made))
+        spline, least, most = law.zones[-1][-1]
+        return spline(np.log([least, most]), np.linspace(-1, 1, 5))
+
+    alone = table(1.0)
+    assert np.abs(alone).max() < 1.5, "beside the logarithm of a strip, 5 to 8"
+    relief = {"tip_relief": 0.01, "tip_start_diameter": 2 * PAIR.gear_1.r_a - 1.5}
+    assert_allclose(table(1.0, pinion=relief), alone, atol=0.005)
+    assert_allclose(table(25.0), alone, atol=1e-5)
+    assert np.ptp(alone) > 0.1

@@ -38,6 +38,13 @@ def test_map_names_files_that_exist(page):
         assert (ROOT / name).exists(), name
 
 
+def test_page_of_clear_answers_adds_up():
+    text = (SITE / "clear_answers.md").read_text(encoding="utf-8")
+    rows = [int(number) for number in re.findall(r"^\| (\d+) \D", text, re.M)]
+    assert len(rows) == 6  # each counted by `tests/hostile/test_hostile.py`
+    assert int(re.search(r"Now (\d+) such inputs", text)[1]) == sum(rows)
+
+
 def test_tests_that_the_page_of_clear_answers_names_exist():
     text = (SITE / "clear_answers.md").read_text(encoding="utf-8")
     named = re.findall(r"`(tests/[\w/]+\.py)::(\w+)`((?:, `::\w+`)*)", text)
@@ -46,3 +53,14 @@ def test_tests_that_the_page_of_clear_answers_names_exist():
         code = (ROOT / file).read_text(encoding="utf-8")
         for name in (first, *re.findall(r"::(\w+)", more)):
             assert f"def {name}(" in code, f"{file}::{name}"
+
+
+def test_search_finds_the_texts_of_sections_by_their_anchors(monkeypatch):
+    core = pytest.importorskip("docutils.core")
+    monkeypatch.syspath_prepend(SITE)
+    from site_search import text_page
+
+    text = "Top\n===\n\na < b\n\nOne\n---\n\nwords\n\nTwo\n---\n\n.. raw:: html\n\n   <b>\n\nmore\n"
+    found = text_page(core.publish_doctree(text, settings_overrides={"doctitle_xform": False}))
+    parts = {"top": "Top a &lt; b", "one": "One words", "two": "Two more"}
+    assert found == '<div role="main">' + "".join(f'<div id="{name}">{own} </div>' for name, own in parts.items()) + "</div>"

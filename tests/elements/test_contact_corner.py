@@ -15,10 +15,10 @@ STEEL = gf.Material(E=207e3, nu=0.3)
 APPROACH, LOAD = 0.03, 600.0  # mm, N/mm
 
 
-def written(tmp_path, z, phase, damage=None):
+def written(tmp_path, z, phase, damage=None, **more):
     rack, beta = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 4.0}, math.radians(10)
     pair = gf.GearPair(gf.Gear(z=z, r_bore=3.0, beta=beta, **rack), gf.Gear(z=30, r_bore=18.0, beta=-beta, **rack))
-    run = {"face": "helical", "per_width": 0.7, "layers": 1, "damage": damage}
+    run = {"face": "helical", "per_width": 0.7, "layers": 1, "damage": damage} | more
     return pair, gf.write_contact_inp(tmp_path / "p.inp", pair, phase, APPROACH, LOAD, (STEEL, STEEL), **run)
 
 
@@ -50,7 +50,7 @@ def test_the_gear_that_owns_the_edge_is_the_slave_with_its_fillet(tmp_path, crac
 
 def test_without_an_edge_that_touches_flanks_alone_are_pressed(tmp_path):
     for z, phase in ((10, 0.5), (25, 0.5)):
-        pair, deck = written(tmp_path, z, phase)
+        pair, deck = written(tmp_path, z, phase, per_width=0.3)
         for order, (side, faces) in deck.slaves.items():
             gear = (pair.gear_1, pair.gear_2)[side]
             x, y = deck.parts[side].points[:2, np.unique(faces)] - [[0.0], [(0.0, pair.centre_2)[side]]]

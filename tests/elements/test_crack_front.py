@@ -1,6 +1,7 @@
 """Stress intensities along the front of a crack in a gear: its middle against the section, mirrored fronts, bad input."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -51,14 +52,13 @@ def test_axes_of_a_front_on_a_helix():
     assert_allclose(flat, np.tile(flat[0], (z.size, 1)), atol=1e-12)
 
 
-@pytest.mark.parametrize(("z", "level", "refine"), [(18, 0.4, 0.4), (25, 0.3, 0.4)])
-def test_without_contraction_a_spur_gear_is_its_section(z, level, refine, monkeypatch):
+def test_without_contraction_a_spur_gear_is_its_section(monkeypatch):
     """Poisson's ratio 0: every height is the section, in both modes. With tubes finer than the mesh K_II was off by 7 to 11 %."""
     monkeypatch.setattr(crack_front, "LAYERS", 2)  # nothing changes along the width
     monkeypatch.setattr(crack_front, "END_LAYER", 1.0)
-    gear = gf.Gear(z=z, m_n=2.0, alpha_n=math.radians(20), b=2.0, r_bore=z / 2)
-    run = gear, gf.Crack(level=level), gear.r, LOAD, gf.Material(E=207e3, nu=0.0)
-    found, plane = gf.stress_intensity_along_front(*run, refine=refine), gf.stress_intensity(*run)
-    print(z, level, np.round(100 * (found.K_I / plane.K_I - 1), 2), np.round(100 * (found.K_II - plane.K_II) / plane.K_I, 2))
+    gear = replace(GEAR, b=2.0)
+    run = gear, gf.Crack(level=0.4), gear.r, LOAD, gf.Material(E=207e3, nu=0.0)
+    found, plane = gf.stress_intensity_along_front(*run, refine=0.4), gf.stress_intensity(*run)
+    print(np.round(100 * (found.K_I / plane.K_I - 1), 2), np.round(100 * (found.K_II - plane.K_II) / plane.K_I, 2))
     assert_allclose(found.K_I, plane.K_I, rtol=0.02)
     assert_allclose(found.K_II, plane.K_II, atol=0.02 * plane.K_I)

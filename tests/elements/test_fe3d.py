@@ -47,6 +47,12 @@ def helical():
     return found, mesh_of(HELICAL, found)
 
 
+@pytest.fixture(scope="module")
+def solved(helical, steel):
+    """The influence of those patches."""
+    return influence(helical[1], steel, helical[0])
+
+
 def stiffness(mesh, steel):
     lower = assemble(mesh.points, mesh.cells, steel, np.arange(mesh.points.shape[1]))
     return lower + tril(lower, -1).T
@@ -111,7 +117,7 @@ def test_loads_have_unit_resultant_along_minus_the_normal(gear):
     assert normal[2].mean() * load[:, 2].sum() <= 0, "the load pushes into the flank"
 
 
-def test_influence_is_symmetric_positive_and_that_of_another_solver(helical, steel):
+def test_influence_is_symmetric_positive_and_that_of_another_solver(helical, solved, steel):
     found, mesh = helical
     told = []
     first = influence(mesh, steel, found, keep=True, tell=told.append)
@@ -124,12 +130,13 @@ def test_influence_is_symmetric_positive_and_that_of_another_solver(helical, ste
     assert first.matrix[0, 1, 0, 1, 1, 0] < first.matrix[0, 1, 0, 0, 1, 0]
     assert first.dofs == 3 * (mesh.points.shape[1] - mesh.held.size)
     assert np.all(first.moved[:, mesh.held] == 0)
-    assert_allclose(influence(mesh, steel, found).matrix, first.matrix, atol=1e-10 * abs(matrix).max())
+    assert_allclose(solved.matrix, first.matrix, atol=1e-10 * abs(matrix).max())
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     lower = assemble(mesh.points, mesh.cells, steel, free)
     load = np.hstack([patch_loads(mesh, found, tooth) for tooth in found.teeth])[rows]
-    other = load.T @ splu((lower + tril(lower, -1).T).tocsc()).solve(load)
+    factors = splu((lower + tril(lower, -1).T).tocsc(), "MMD_AT_PLUS_A", 0.0, options={"SymmetricMode": True})
+    other = load.T @ factors.solve(load)
     assert_allclose(other, matrix, atol=1e-10 * abs(matrix).max(), err_msg="by SuperLU, of scipy")
 
 
@@ -148,10 +155,9 @@ def test_hats_along_the_width_are_combinations_of_each_other(helical, steel):
     assert_allclose(hats.along_width(at, 3.0) @ w * 1.5, 1.0, rtol=5e-3)
 
 
-def test_mirrored_helix_gives_the_mirrored_influence(helical, steel):
-    found, mesh = helical
+def test_mirrored_helix_gives_the_mirrored_influence(helical, solved, steel):
+    found, right = helical[0], solved.matrix
     other = replace(HELICAL, beta=-HELICAL.beta)
-    right = influence(mesh, steel, found).matrix
     left = influence(mesh_of(other, found), steel, found).matrix
     sign = (-1.0) ** np.arange(4)
     mirrored = left * sign[:, None, None, None] * sign
@@ -196,8 +202,8 @@ def plane_reference(gear, found, steel, cracks=()):
 
 @pytest.mark.parametrize(
     ("gear", "cracks"),
-    [(GEAR, ()), (RING, ()), (GEAR, (gf.Crack(level=0.3),)), (GEAR, (gf.Crack(level=0.6),))],
-    ids=["gear", "ring", "crack", "deep crack"],
+    [(GEAR, ()), (RING, ()), (GEAR, (gf.Crack(level=0.6),))],
+    ids=["gear", "ring", "deep crack"],
 )
 def test_plane_strain_is_the_two_dimensional_fe(gear, cracks, steel):
     found = patches(gear)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.elements import fe3d, solver
+from gearfe.elements import fe3d, section_error, solver
 from gearfe.elements.crack_zones import zone_forces
 from gearfe.elements.fe_gear3d import solid_flexibility
 from gearfe.flexibility.halfspace import half_space
@@ -43,6 +43,7 @@ def curve_of(steel, damage=None, pair=None, force=400.0, **options):
 
 def test_a_solved_gear_is_found_on_the_disk(steel, tmp_path, monkeypatch):
     monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
+    monkeypatch.setattr(section_error, "FINER", 2.0)
     cache.clear()
     told = []
     run = {"tell": told.append, "neighbours": 1, **COARSE}

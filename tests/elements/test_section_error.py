@@ -88,15 +88,16 @@ def test_forces_that_lean_by_a_helix_are_taken_in_the_section(monkeypatch):
     assert_allclose(plane_hats(helical, gf.Material(), (), 0.5, PER_HAT, SIZES), want, rtol=2e-3)
 
 
-def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at):
+def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at, monkeypatch):
     """To the near part of each tooth, of a cracked one with its crack; nothing changes between teeth."""
+    monkeypatch.setattr(section_error, "FINER", 2.0)
     size = 2 * PLACES
     near, far = {0: np.zeros((size, size)), 1: np.zeros((size, size))}, {(0, 1): np.ones((size, size))}
     plain = Flexibility3D(GEAR, 6.0, 1, 1.0, near, far, 0)
     crack = gf.Crack(level=0.4, tooth=1, width=(0.0, 2.0))
     options = {"refine": 0.5, "per_hat": PER_HAT, "sizes": SIZES}
     more = finer_section(plain, gf.Material(), (crack,), **options)
-    want = hats_at[2.0] - hats_at[0.5]
+    want = hats_at[1.0] - hats_at[0.5]
     for first in (0, 1):
         assert_allclose(more.near[0][first::2, first::2], want, rtol=1e-9)
     assert not more.near[0][0::2, 1::2].any()

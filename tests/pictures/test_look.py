@@ -57,3 +57,21 @@ def test_small_curves_rise_to_the_right():
     assert x0 < x1 < x2
     assert y0 == y1 > y2
     assert x1 - x0 == pytest.approx(x2 - x1, abs=0.2)
+
+
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+@pytest.mark.parametrize("name", ["sun_planet", "planet_ring"])
+def test_a_drawn_pair_has_its_damage_below_the_flank_that_touches(name, side):
+    """Of any tooth: the drawing turns it to the pitch point, and the crack starts in the fillet beside it, on its own gear."""
+    pair = gf.load_scene("planetary_pitting").pair(name).pair
+    gear, centre = ((pair.gear_1, 0.0), (pair.gear_2, pair.centre_2))[side == "wheel"]
+    for tooth in (0, 3, -2):
+        figure = gf.plot_pair(pair, {side: [gf.Crack(level=0.2, tooth=tooth)]})
+        crack = next(line for line in figure.axes[1].lines if len(line.get_xdata()) == 2 and line.get_zorder() == 4)
+        x, y = np.array(crack.get_data())
+        assert abs(x).max() < 2 * gear.m_n
+        assert abs(y - pair.pitch_radius_1).max() < 3 * gear.m_n
+        depth = gear.outward * (np.hypot(x, y - centre) - gear.r_f)
+        assert depth[1] < depth[0] < gear.m_n, "from the fillet into the body"
+    with pytest.raises(ValueError, match="'pinion' and 'wheel'"):
+        gf.plot_pair(pair, {"sun": []})

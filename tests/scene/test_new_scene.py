@@ -10,7 +10,8 @@ from gearfe.scene.load import DAMAGE, TABLES
 from gearfe.scene.machine_table import MACHINE
 from gearfe.scene.support_table import SUPPORTS
 
-OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)})
+RELIEF = {"tip_relief_um": 15.0, "tip_length_mm": 1.2}
+OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)}, RELIEF)
 
 
 @pytest.mark.parametrize("options", OPTIONS)
@@ -22,8 +23,19 @@ def test_written_scene_is_the_pair_asked_for(options, tmp_path):
     assert pair.gear_2.internal is options.get("ring", False)
     assert math.degrees(pair.gear_1.beta) == pytest.approx(options.get("helix_deg", 0.0))
     assert len(scene.assumptions) == 1
-    curve = gf.mesh_stiffness(**scene.pair().case("cracked"), phases=2)
+    curve = gf.mesh_stiffness(**scene.pair().case("cracked"), phases=2, refine=0.5)
     assert (curve.k > 0).all()
+
+
+def test_tip_relief_of_both_gears_starts_so_far_below_the_tip(tmp_path):
+    chosen = gf.load_scene(gf.new_scene(tmp_path / "my.toml", **RELIEF)).pair()
+    for side, gear in (("pinion", chosen.pair.gear_1), ("wheel", chosen.pair.gear_2)):
+        flank = chosen.flanks[side]
+        assert flank.tip_relief == pytest.approx(0.015)
+        assert flank.tip_start_roll == pytest.approx(gear.roll_a - 1.2)
+    for wrong in ({"tip_relief_um": 15.0}, {"tip_relief_um": -1.0, "tip_length_mm": 1.0}, RELIEF | {"tip_length_mm": 50.0}):
+        with pytest.raises(ValueError, match="tip relief"):
+            gf.new_scene(tmp_path / "other.toml", **wrong)
 
 
 def test_its_assumption_goes_with_the_value(tmp_path):
@@ -62,7 +74,9 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     chosen = scene.pair()
     assert set(chosen.damage) == {"cracked", "cracked_part", "pitted"}
     assert set(chosen.supports) == {"pinion", "wheel"}
-    assert chosen.flanks["pinion"].tip_relief == pytest.approx(0.01 * options.get("module", 2.0))
+    assert chosen.flanks["pinion"].tip_relief == pytest.approx(
+        1e-3 * options.get("tip_relief_um", 10 * options.get("module", 2.0))
+    )
     assert chosen.misalignment.F_beta == 0.01
     assert bool(scene.machine) is not options.get("ring", False)
     if scene.machine:

@@ -39,7 +39,7 @@ def test_fault_is_found_under_noise():
 
 def test_measured_signal_on_the_command_line(tmp_path, capsys):
     path, picture, spectra = tmp_path / "a.csv", tmp_path / "k.png", tmp_path / "s.png"
-    noisy = with_noise(impulses(), 10.0)
+    noisy = with_noise(impulses(), 15.0)
     path.write_text("housing [m/s^2]\n" + "\n".join(f"{value:.7g}" for value in noisy.values) + "\n")
     command = ["signal", str(path), "--rate", str(RATE), "--mesh", "182", "--fault", "18.2"]
     assert main([*command, "--kurtogram", str(picture), "--plot", str(spectra)]) == 0

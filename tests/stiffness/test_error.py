@@ -100,7 +100,7 @@ def fuzz(seeds, method="ritz", refine=1.0):
 
 
 def test_fuzz_a_few():
-    seeds = [*range(1000, 1006), *range(2000, 2006)]
+    seeds = [*range(1000, 1004), *range(2000, 2004)]
     curves, _ = fuzz(seeds)
     assert curves >= len(seeds) / 2
 

@@ -77,7 +77,7 @@ def alike(case, scales, *, rtol=1e-6):
 SECTIONS = {
     "energy": ("ritz", pair, {"error": True}),
     "energy, flanks": ("ritz", pair, {"flanks": flanks}),
-    "finite elements, crack": ("fe", pair, {"damage": crack}),
+    "finite elements, crack": ("fe", pair, {"damage": crack, "refine": 0.5}),
     "finite elements, ring": ("fe", ring, {}),
     "coupled beams": ("coupled", pair, {}),
     "textbook, crack": ("textbook", pair, {"damage": crack}),

@@ -190,6 +190,24 @@ def test_command_line(tmp_path, capsys):
     assert "matlab_curve" in plot.read_text()
 
 
+def test_functions_of_a_python_file(tmp_path, capsys):
+    path = tmp_path / "models.py"
+    path.write_text(
+        "import numpy as np\nimport gearfe as gf\n\ndef flat(phase):\n    return np.full(phase.shape, 2.5e8)\n\n"
+        "alone = gf.PairModel(lambda radius_1, radius_2: 2e8 + 0 * radius_1)\n"
+    )
+    found = gf.compare("planetary_pitting", models=[f"{path}:flat", f"{path}:alone"], phases=8, refine=0.5)
+    assert_allclose(found.curves["flat"].k, 2.5e8, rtol=1e-15)
+    assert_allclose(found.curves["alone"].zones()["single"], 2e8, rtol=1e-15)
+    for name, said in (("", "it has flat, alone"), (":np", "no model 'np'"), (":none", "no model 'none'")):
+        assert main(["compare", "planetary_pitting", "--model", f"{path}{name}"]) == 1
+        assert said in capsys.readouterr().err
+    path.write_text("1 / 0")
+    for wrong, said in ((path, "failed with ZeroDivisionError"), (tmp_path / "none.py", "no such file")):
+        with pytest.raises(ValueError, match=said):
+            gf.compare("planetary_pitting", models=[f"{wrong}:flat"])
+
+
 def test_command_line_names_the_file_that_is_wrong(tmp_path, capsys):
     path = write(tmp_path / "mine.csv", ["phase,k"], PHASE, STEP)
     assert main(["compare", "planetary_pitting", "--model", str(path)]) == 1

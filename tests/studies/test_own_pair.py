@@ -11,7 +11,7 @@ from gearfe.studies.by_zone import Comparison
 def test_a_pair_without_a_scene_is_compared_as_in_one():
     chosen = gf.load_scene("planetary_pitting").pair()
     own = {"force": chosen.force, "material": chosen.materials}
-    run = {"models": {"mine": lambda phase: 3e8 + 0 * phase}, "phases": 4}
+    run = {"models": {"mine": lambda phase: 3e8 + 0 * phase}, "phases": 4, "refine": 0.5}
     one = gf.compare(pair=chosen.pair, **own, **run)
     other = gf.compare("planetary_pitting", **run)
     assert one.pair_name == "21/31"
@@ -20,7 +20,9 @@ def test_a_pair_without_a_scene_is_compared_as_in_one():
         assert_allclose(one.curves[name].k, other.curves[name].k, rtol=1e-12)
     assert_allclose(one.curves["mine"].k, 3e8)
     torque = chosen.force * 1e-3 * chosen.pair.gear_1.r_b
-    bare = gf.compare(chosen.pair, torque=torque, material=chosen.materials, phases=4, damage={"pinion": gf.Crack(level=0.3)})
+    bare = gf.compare(
+        chosen.pair, torque=torque, material=chosen.materials, phases=4, refine=0.5, damage={"pinion": gf.Crack(level=0.3)}
+    )
     assert bare.reference.meta["force_N"] == pytest.approx(chosen.force)
     assert bare.reference.k.min() < 0.97 * np.interp(1.0, [0, 1], [one.reference.k.max()] * 2)
     assert "coupled" not in bare.curves

@@ -50,7 +50,8 @@ def test_a_healthy_machine_is_told_without_a_fault(found):
     assert "%" not in report.indicators_text()
     twice = analysis({"healthy": found["healthy"], "the same": found["healthy"]})
     assert not [name for name in twice.standing() if "f_fault" in name or "f_r" in name]
-    assert "no line of the fault" in twice.envelope()[1]
+    assert "fewer than 2 lines of the fault have" in twice.envelope()[1]
+    assert twice.alarms() == []
 
 
 def _noisy(seed, sideband=0.0):
@@ -61,15 +62,31 @@ def _noisy(seed, sideband=0.0):
 
 
 def test_noise_alone_is_no_fault_line():
-    """Of 100 pairs of healthy records, each with 10 lines looked for, at most one shows one; all show a clear fault."""
+    """Of 50 pairs of healthy records, each with 10 lines looked for, none shows one; all show a clear fault."""
     false, seen = 0, 0
-    for seed in range(100):
+    for seed in range(50):
         pair = {"healthy": _noisy(seed), "other": _noisy(1000 + seed)}
         false += analyse(pair, 200.0, 13.0).standing() != ["f_m", "2 f_m"]
         hurt = analyse(pair | {"other": _noisy(1000 + seed, 0.1)}, 200.0, 13.0).standing()
         seen += {"f_m - f_fault", "f_m + f_fault"} <= set(hurt)
-    assert false <= 1
-    assert seen == 100
+    assert false == 0
+    assert seen == 50
+
+
+def test_run_out_is_no_fault_but_pulses_are():
+    """One line of the envelope is the modulation of something that turns; pulses of a tooth have harmonics alike."""
+    time, random = np.arange(25600) / 12800, np.random.default_rng(1)
+
+    def heard(rise):
+        """Rough teeth, louder where `rise` says so."""
+        rough = {name: own * random.standard_normal(time.size) for name, own in (("healthy", 1.0), ("now", 1 + rise))}
+        return {name: gf.Signal(values, 12800.0, "m/s^2") for name, values in rough.items()}
+
+    turning = 0.4 * np.cos(2 * np.pi * 36 * time)
+    pulses = 2.0 * (time * 36 % 1 < 0.1)
+    one, many = (analyse(heard(rise), 252.0, 36.0).alarms() for rise in (turning, pulses))
+    assert one == []
+    assert {"f_fault of the envelope", "2 f_fault of the envelope", "3 f_fault of the envelope"} <= set(many)
 
 
 def test_words_for_lines():
@@ -98,7 +115,7 @@ def test_what_cannot_run_is_refused():
 
 def test_command_line(tmp_path, capsys):
     out, plot = tmp_path / "r.npz", tmp_path / "s.png"
-    command = ["dynamics", "compound_planetary", "--case", "crack30", "--duration", "0.3"]
+    command = ["dynamics", "compound_planetary", "--case", "crack50", "--duration", "0.3"]
     assert main([*command, "-o", str(out), "--plot", str(plot)]) == 0
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text

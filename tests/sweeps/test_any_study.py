@@ -100,8 +100,8 @@ def test_any_place_of_a_study_given_as_anything(tmp_path, monkeypatch):
     monkeypatch.setattr(study, "scene_of", read)
     assert len(values(read_study(copy.deepcopy(STUDY)))[1]) == 2 * 3 * 2 * 4
     wrong, told = [], {"a study": 0, "refused": 0}
-    for path in places(STUDY):
-        for value in ELSE:
+    for turn, path in enumerate(places(STUDY)):
+        for value in ELSE[turn % 2 :: 2]:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", UserWarning)
                 warnings.simplefilter("error", RuntimeWarning)
@@ -116,5 +116,5 @@ def test_any_place_of_a_study_given_as_anything(tmp_path, monkeypatch):
                 else:
                     told["a study"] += 1
     print(told)
-    assert min(told.values()) > 80, told
+    assert min(told.values()) > 40, told
     assert not wrong, f"{len(wrong)}:\n" + "\n".join(wrong)

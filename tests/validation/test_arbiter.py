@@ -26,7 +26,7 @@ def undercut():
 
 @pytest.fixture(scope="module")
 def answer(undercut):
-    return pressed(undercut, None, 100.0, np.array([0.3, 0.6, 0.9]), STEEL)
+    return pressed(undercut, None, 100.0, np.array([0.6, 0.9]), STEEL)
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ def test_complementary_conditions_hold(seed):
 
 def test_pressure_is_hertz(undercut, answer):
     """Single contact away from corners: largest pressure and half width of two cylinders."""
-    _, solved = answer.zones[1]
+    _, solved = answer.zones[0]
     (zone, p, *_) = max(solved.pressed, key=lambda part: part[1].sum())
     roll = undercut.path[0] + 0.6 * undercut.p_bt
     radii = roll, undercut.length - roll
@@ -153,10 +153,10 @@ def test_pressure_is_hertz(undercut, answer):
 
 def test_a_form_points_corner_carries(undercut, answer):
     """An independent solver found 18.95 N/um at phase 0.9; away from the corner `ritz` agrees."""
-    assert_allclose(answer.k[2] / 1e3, 18.95, rtol=1.5e-3, err_msg="whole outlines pressed together, another solver")
-    assert_allclose(answer.force[2][-1], 0.35, atol=0.005)
-    curve = gf.mesh_stiffness(undercut, 100.0, gf.Material(*STEEL), method="ritz", phases=np.array([0.3, 0.6]))
-    assert_allclose(answer.k[:2] / 1e3, curve.k / 1e6, rtol=1.2e-3)
+    assert_allclose(answer.k[1] / 1e3, 18.95, rtol=1.5e-3, err_msg="whole outlines pressed together, another solver")
+    assert_allclose(answer.force[1][-1], 0.35, atol=0.005)
+    curve = gf.mesh_stiffness(undercut, 100.0, gf.Material(*STEEL), method="ritz", phases=np.array([0.6]))
+    assert_allclose(answer.k[:1] / 1e3, curve.k / 1e6, rtol=1.2e-3)
     assert not answer.edge.any()
     assert (answer.error / answer.k).max() < 2e-3
 

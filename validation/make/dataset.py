@@ -63,7 +63,7 @@ def section(again=()):
 def classified():
     """The tables, as lines."""
     with tempfile.TemporaryDirectory() as folder:
-        made = gf.dataset(PLAN, Path(folder) / "set", workers=1, progress=_said)
+        made = gf.dataset(PLAN, Path(folder) / "set", workers=1, progress=said)
         labels = made.labels()
         losses = labels.groupby("severity")["loss_max"].mean()
         table, leak = _table(made, losses), _leak(made)
@@ -71,7 +71,8 @@ def classified():
     return {"machines": labels["condition"].nunique(), "healthy": healthy, "table": table, "leak": leak}
 
 
-def _said(done, total):
+def said(done, total):
+    """Print how far it is."""
     if done % 20 == 0:
         print(f"{done} of {total}", flush=True)
 
@@ -125,13 +126,13 @@ def _table(made, losses):
         cells = []
         for severity in SEVERITIES:
             own = tested["rating"][np.isclose(tested["severity"], severity)].to_numpy()
-            cells.append(f"{_share(own > limit)}, AUC {np.mean(own[:, None] > healthy[None, :]):.2f}")
+            cells.append(f"{share(own > limit)}, AUC {np.mean(own[:, None] > healthy[None, :]):.2f}")
         ratio = "none added" if not noise else f"{labels['snr_dB'].median():.0f} dB"
-        rows.append([f"{noise:g}", ratio, _share(healthy > limit), *cells])
+        rows.append([f"{noise:g}", ratio, share(healthy > limit), *cells])
     return [f"| {' | '.join(row)} |" for row in rows]
 
 
-def _share(hits):
+def share(hits):
     """Share of hits in percent with its 95 % interval."""
     n, p, z = hits.size, hits.mean(), 1.96
     middle, width = (p + z * z / (2 * n)) / (1 + z * z / n), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / (1 + z * z / n)

@@ -38,6 +38,7 @@ ASIDE = {  # they name, find, keep and write: no number depends on them
     *("geometry/__init__.py", "gearfe/__init__.py", "validation/__init__.py", "validation/__main__.py"),
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
+SITE = "gearfe/docs/"  # its scripts are no part of the package: no row depends on them, and a test looks at what they print
 DECKS = "three decks"  # writes `decks.csv`
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
 run = SimpleNamespace(  # what this process computes
@@ -78,7 +79,7 @@ def used():
         paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
     below = {Path(path).resolve() for path in paths - run.wrote if Path(path).is_file()}
     names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
-    own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.")
+    own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.", SITE)
     return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
 
 

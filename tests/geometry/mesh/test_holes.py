@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -102,7 +103,7 @@ LAYOUTS = {
 }
 
 
-@pytest.mark.parametrize(("name", "beta"), [*((name, 0.4) for name in LAYOUTS), ("both sides", -0.2)])
+@pytest.mark.parametrize(("name", "beta"), [(name, -0.2 if name == "both sides" else 0.4) for name in LAYOUTS])
 def test_what_is_cut_is_what_the_pits_take(name, beta):
     gear = replace(GEAR, beta=beta)
     scale = gear.r / GEAR.r
@@ -144,8 +145,7 @@ def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
             return centre - 2 * push, axes, push
         return (centre, axes, 0.9 * push) if fault == "shallow" else (centre + np.array([0.0, 0.02, 0.0]), axes, push)
 
-    found = [pit(GEAR), pit(GEAR, z=1.0)]
-    assert holed_sector(GEAR, found, teeth=1, sizes=COARSE).removed[1] > 0
+    found = [pit(GEAR)]
     monkeypatch.setattr(holes, "tool", wrong)
     with pytest.raises(RuntimeError, match=r"should take .* mm\*\*3 from the tooth"):
         holed_sector(GEAR, found, teeth=1, sizes=COARSE)
@@ -168,11 +168,15 @@ def test_what_cannot_be_cut_is_refused(pits, options, message):
         holed_sector(GEAR, [pit(GEAR, **one) for one in pits], **options)
 
 
+@cache
+def uncut(crack):
+    return holed_sector(replace(GEAR, beta=0.3), (), crack, teeth=1, sizes=COARSE)
+
+
 @pytest.mark.parametrize("crack", [gf.Crack(level=0.3), gf.Crack(level=0.7, turning=True), gf.Crack(level=0.4, side="unloaded")])
 def test_cracks_are_seams(crack):
     """Two faces that lie on each other, open at the mouth and shut at the tip; no volume is lost."""
-    gear = replace(GEAR, beta=0.3)
-    made, whole = (holed_sector(gear, (), one, teeth=1, sizes=COARSE) for one in (crack, None))
+    made, whole = uncut(crack), uncut(None)
     body, tooth = made.faces["crack body"], made.faces["crack tooth"]
     assert_allclose(made.points[:, body], made.points[:, tooth], atol=1e-12)
     assert (body != tooth).any(axis=0).all()

@@ -33,7 +33,7 @@ def test_the_search_finds_conjugate_contact_again():
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
 def test_the_gap_is_the_least_over_the_flank(exponent):
     forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, crowning=0.004))
-    found = PAIR.contacts(PHASE, flanks=forms)
+    found = PAIR.contacts(PHASE[::2], flanks=forms)
     roll = np.linspace(PAIR.path[0] - 0.5, PAIR.gear_1.roll_a, 40001)
     checked = 0
     for i, k in np.argwhere(found.gap < 0.05):
@@ -43,7 +43,7 @@ def test_the_gap_is_the_least_over_the_flank(exponent):
         sharp = exponent == 1 or found.roll_2[i, k] == PAIR.gear_2.roll_a
         assert -1e-9 < least - found.gap[i, k] < (1e-5 if sharp else 1e-8)
         checked += 1
-    assert checked > 30
+    assert checked > 20
 
 
 def test_a_uniform_shift_is_a_turn():

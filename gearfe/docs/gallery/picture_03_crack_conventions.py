@@ -28,7 +28,7 @@ figure, axes = plt.subplots(layout="constrained")
 for name, options in conventions.items():
     cracks = [gf.Crack(level=level, **options) for level in levels]
     losses = [100 * (1 - gf.mesh_stiffness(pair, damage={"pinion": [c]}, **run).k / healthy).max() for c in cracks]
-    axes.plot([100 * level for level in levels], losses, "o-", label=name)
+    axes.plot([100 * level for level in levels], losses, marker="o", markersize=4, label=name)
 axes.set_xlabel("level [%]")
 axes.set_ylabel("largest loss of stiffness [%]")
 axes.legend()

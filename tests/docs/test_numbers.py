@@ -1,0 +1,211 @@
+"""Numbers in the prose of the documentation are what gearfe computes, or what the page they come from says."""
+
+import re
+from dataclasses import replace
+from math import ceil, cos, radians
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from validation.make.readme import outputs
+
+ROOT = Path(__file__).parents[2]
+SITE = ROOT / "gearfe" / "docs"
+NUMBER = r"[-+]?\d+(?:\.\d+)?"
+PAGES = ROOT / "validation" / "pages"
+STEEL = gf.Material(E=206e3, nu=0.3)
+
+
+def words_of(path):
+    """The text of a page in one line."""
+    return " ".join(path.read_text(encoding="utf-8").split())
+
+
+def says(page, sentence, *values):
+    """Check a sentence of a page, ``{}`` for each value: they agree to the last digit that it shows."""
+    pattern = re.escape(" ".join(sentence.split())).replace(r"\{\}", rf"({NUMBER})")
+    found = re.findall(pattern, words_of(SITE / page))
+    assert len(found) == 1, sentence
+    shown = found[0] if isinstance(found[0], tuple) else found
+    for word, value in zip(shown, values, strict=True):
+        digits = len(word.partition(".")[2])
+        assert abs(float(word) - value) <= 0.55 * 10.0**-digits, f"{sentence}: {word} is {value:.6g}"
+
+
+@pytest.fixture(scope="module")
+def pair():
+    """The pair of the first page."""
+    rack = dict(m_n=2.0, alpha_n=radians(20), b=20.0)
+    return gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
+
+
+def solved(pair, force=2000.0, **options):
+    return gf.mesh_stiffness(pair, force, STEEL, **options)
+
+
+def mean(pair, force=2000.0, **options):
+    """Mean of k [N/um]."""
+    return solved(pair, force, **options).k.mean() / 1e6
+
+
+def loss(phases, pair, **crack):
+    """What a 2 mm crack takes at these phases [%]: where one pair carries, in the mean, at the worst phase."""
+    healthy, cracked = (solved(pair, phases=phases, damage=d) for d in (None, {"pinion": [gf.Crack(length=2.0, **crack)]}))
+    before, after = healthy.zones(), cracked.zones()
+    return 100 * np.array([*(1 - after[name] / before[name] for name in ("single", "mean")), (1 - cracked.k / healthy.k).max()])
+
+
+def middle(pair, count=64):
+    """Phases of the mesh cycle in which tooth 0 is in the middle of its engagement."""
+    return (ceil((pair.eps_alpha - 1) / 2 * count) + np.arange(count)) / count
+
+
+@pytest.mark.parametrize("page", ["index.md", "howto/design.md"])
+def test_programs_print_what_the_page_shows(page):
+    text = (SITE / page).read_text(encoding="utf-8")
+    if page == "howto/design.md":  # its programs go on from each other, and from the scene that `gearfe new` writes
+        programs = "".join(re.findall(r"```python\n(.*?)```", text, re.S))
+        text = f'```python\nimport gearfe\ngearfe.new_scene("my.toml")\n{programs}```'
+    (printed,) = outputs(text)
+    assert printed
+    for line in printed.splitlines():
+        parts = re.split(rf"({NUMBER})", " ".join(line.split()))
+        says(page, "{}".join(parts[::2]), *map(float, parts[1::2]))
+
+
+def test_start(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    gf.new_scene("my.toml")
+    assert gf.compare("my.toml", case="cracked").headline in words_of(SITE / "start.md")
+
+
+def test_design_relief(pair):
+    record = (ROOT / "tests" / "docs" / "printed" / "picture_16_harris.txt").read_text(encoding="utf-8")
+    assert record in (SITE / "howto" / "design.md").read_text(encoding="utf-8")
+    plain = gf.transmission_error(pair, [500.0, 1000.0, 2000.0, 4000.0], STEEL)
+    says("howto/design.md", "Without relief the peak-to-peak is {}, {}, {} and {} um", *1e6 * plain.peak_to_peak)
+    pinion = pair.gear_1
+    diameter = 2 * np.hypot(pinion.roll_a - 2.6, pinion.r_b)
+    says("howto/design.md", "from a diameter of {} mm on", diameter)
+
+
+def test_design_root_stress():
+    iso = 2000 * cos(radians(20)) / (20 * 2) * 1.599 * 1.818
+    says("howto/design.md", "$Y_F = 1.599$ and $Y_S = 1.818$: {} MPa, {} % more", iso, 100 * (iso / 134.2 - 1))
+
+
+def test_bores_and_textbook_formulas(pair):
+    def bored(part):
+        return gf.GearPair(*(replace(gear, r_bore=part * gear.r_f) for gear in (pair.gear_1, pair.gear_2)))
+
+    sentence = "Held bores of 0.33, 0.5, 0.7 and 0.85 of the root radius give k of {}, {}, {} and {} N/um"
+    says("faq.md", sentence, *(mean(bored(part)) for part in (0.33, 0.5, 0.7, 0.85)))
+    says("faq.md", "k is the mean of its mesh stiffness, {} N/um", mean(pair))
+    truth, book = solved(pair).zones(), solved(pair, method="textbook").zones()
+    above = {zone: 100 * (book[zone] / truth[zone] - 1) for zone in truth}
+    says("faq.md", "textbook formulas are {} % above the converged solution", above["double"])
+    says("faq.md", "with one pair they are {} % above", above["single"])
+    says("faq.md", "Contact beyond the path of contact adds {} %", 100 * (mean(pair) / mean(pair, extended=False) - 1))
+
+
+def test_crack(pair):
+    alone, whole, worst = loss(middle(pair), pair, angle=radians(60))
+    says("faq.md", "At 60 degrees it takes {} % where the cracked tooth carries alone", alone)
+    says("faq.md", "(`single`), {} % of the mean over the mesh cycle that has it", whole)
+    says("faq.md", "and {} % at the worst phase", worst)
+    first = loss(64, pair, angle=radians(60))[1]
+    says("faq.md", "where the tooth is not in the middle: {} %", first)
+    crack = {"pinion": [gf.Crack(length=2.0, angle=radians(60))]}
+    engaged = 100 * (1 - mean(pair, span="tooth", damage=crack) / mean(pair, span="tooth"))
+    says("faq.md", "and some of its neighbours': {} %", engaged)
+    says("faq.md", "Between {} and {} %, by the stretch", min(engaged, first, whole), worst)
+    cracks = [{}, {"angle": radians(30)}, *({"angle": radians(60)} | more for more in ({"start": "root"}, {"side": "unloaded"}))]
+    sentence = """at 45 degrees the same 2 mm take {} % alone, at 30 degrees {} %, at 60 from the root circle {} %, on the
+        unloaded side {} %"""
+    says("faq.md", sentence, *(loss(middle(pair), pair, **crack)[0] for crack in cracks))
+
+
+def test_load_and_tangent(pair):
+    means = [curve.k.mean() / 1e6 for curve in solved(pair, [500.0, 1000.0, 2000.0, 4000.0, 8000.0])]
+    says("faq.md", "8000 N k is {}, {}, {}, {} and {} N/um", *means)
+    says("faq.md", "about {} % with each doubling", 100 * ((means[-1] / means[0]) ** 0.25 - 1))
+    curve = solved(pair)
+    says("faq.md", "the slope of force over deflection, {} % more here", 100 * (curve.k_tangent.mean() / curve.k.mean() - 1))
+
+
+def test_width_and_helix(pair):
+    def changed(**options):
+        beta = options.pop("beta", 0.0)
+        gears = (replace(gear, beta=sign * beta, **options) for gear, sign in ((pair.gear_1, 1), (pair.gear_2, -1)))
+        return gf.GearPair(*gears)
+
+    widths = [10.0, 20.0, 40.0]
+    narrow = [mean(changed(b=b), 100 * b) / mean(changed(b=b), 100 * b, method="ritz3d") for b in widths]
+    sentence = "The section is too stiff by {}, {} and {} % at widths of 5, 10 and 20 modules"
+    says("faq.md", sentence, *(100 * (ratio - 1) for ratio in narrow))
+    pairs = [changed(beta=radians(beta)) for beta in (5, 15, 30)]
+    section, whole = ([solved(one, method=method, phases=32).k for one in pairs] for method in ("ritz", "ritz3d"))
+    stiff = [100 * (flat.mean() / full.mean() - 1) for flat, full in zip(section, whole, strict=True)]
+    says("faq.md", "it is {} % too stiff in the mean, at 15 degrees {} %, at 30 degrees {} %", *stiff)
+    swings = [100 * np.ptp(k) / k.mean() for k in (section[1], *whole[1:])]
+    says("faq.md", "it changes by {} % over the cycle where the helical gears change by {} % at 15 and 30 degrees", *swings[:2])
+    assert_allclose(swings[1], swings[2], atol=0.5)
+
+
+def test_support(pair):
+    held = mean(pair, supports={"pinion": gf.Support(radial=200e3)})
+    says("faq.md", "at the pinion alone, leaves {} of {} N/um", held, mean(pair))
+
+
+def test_law_of_force(pair):
+    law = gf.force_law(pair, [100.0 * 2 ** (i / 2) for i in range(13)], STEEL, force=1600.0)
+    curve = solved(pair, 1600.0, phases=128)
+
+    def swing(stiffness, frequency):
+        machine = gf.single_mesh(0.15, stiffness, frequency, force=1600.0, zeta=0.02, backlash=1e-4)
+        response = gf.simulate(machine, 0.03 + 20 / frequency)
+        return response["force mesh"][response.time > 0.03].std(), response["force mesh"].min()
+
+    machine = gf.single_mesh(0.15, law, 1500.0, force=1600.0)
+    says("faq.md", "(natural frequency {} kHz)", gf.natural_frequencies(machine)[0][0] / 1000)
+    (parted, least), (kept, most) = swing(curve, 1500.0), swing(law, 1500.0)
+    assert least <= 0 < most
+    says("faq.md", "swings by {} N RMS under k over the phase", parted)
+    says("faq.md", "`gearfe.force_law` gives {} N", kept)
+    says("faq.md", "at a third, 2500 Hz, by {} for {} N", swing(curve, 2500.0)[0], swing(law, 2500.0)[0])
+    apart = {f: 100 * abs(swing(curve, f)[0] / swing(law, f)[0] - 1) for f in (280.0, 3500.0, 3000.0, 5500.0, 7000.0, 12000.0)}
+    values = list(apart.values())
+    sentence = "At 280 and 3500 Hz they are up to {} % apart, at 3000, 5500, 7000 and 12 000 Hz up to {} %"
+    says("faq.md", sentence, max(values[:2]), max(values[2:]))
+
+
+def shares(page, start):
+    """Numbers in the row of a page's table that begins so."""
+    row = re.search(rf"^\| {re.escape(start)} \|.*$", (PAGES / page).read_text(encoding="utf-8"), re.M)[0]
+    return [float(word) for word in re.findall(r"[-+]?\d+(?:\.\d+)?", row)]
+
+
+def test_what_other_pages_say():
+    low, _, high = shares("map.md", "textbook")[8:11]
+    says("faq.md", "Over random pairs the mean is between {} and {} % too high in nine cases of ten", low, high)
+    low, _, high = shares("map.md", "coupled")[8:11]
+    says("faq.md", "`coupled` is the best of them, {} to {} % low in nine cases of ten", -high, -low)
+    (covered, of) = re.search(
+        r"In the section in (\d+) of (\d+) pairs for `ritz` and \1 of \2", words_of(PAGES / "sample.md")
+    ).groups()
+    says("faq.md", "the error on {} of {} random pairs in the section", int(covered), int(of))
+    rows = (PAGES / "sample.md").read_text(encoding="utf-8")
+    medians = [float(x) for x in re.findall(r"^\| (?:error of `\w+`|its estimate) \| ([\d.]+) \|", rows, re.M)]
+    words = re.search(r"is (\w+) \(`fe`\) and ([\w-]+) times \(`ritz`\) too cautious", words_of(SITE / "faq.md")).groups()
+    assert [{"eleven": 11, "twenty-four": 24}[word] for word in words] == [round(medians[i + 1] / medians[i]) for i in (0, 2)]
+    found = re.search(r"([\d]+) of ([\d]+) values of others are found", words_of(PAGES / "truth.md")).groups()
+    says("faq.md", "Values of other codes and standards: {} of {} within a tolerance", *map(int, found))
+    for page, sentence in (
+        ("planetary_pitting", "S0 and S1 {} of {} are reproduced and {} in their order"),
+        ("herringbone_machine", "of S4 {} of {} and {} in their order"),
+    ):
+        told = re.search(r"(\d+) results of a model: (\d+) reproduced, (\d+) trend only", words_of(PAGES / f"{page}.md")).groups()
+        says("faq.md", sentence, int(told[1]), int(told[0]), int(told[2]))
