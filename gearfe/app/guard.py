@@ -6,9 +6,10 @@ from collections import OrderedDict, deque
 from typing import Any
 
 LARGEST = 100_000  # bytes of a request: a state or a scene
+DRAINED = 10 * LARGEST  # of a request that is refused, read and forgotten
 SAFE = {
-    "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
+    "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",
     "cross-origin-opener-policy": "same-origin",
@@ -80,6 +81,10 @@ class Guard:
         if not why:
             await self.app(scope, receive, safe)
             return
+        read, more = 0, scope["method"] == "POST"
+        while more and read <= DRAINED:  # whoever is still writing would not see the answer
+            message = await receive()
+            read, more = read + len(message.get("body", b"")), message.get("more_body", False)
         kind = [(b"content-type", b"application/json"), (b"connection", b"close")]
         await safe({"type": "http.response.start", "status": status, "headers": kind})
         await safe({"type": "http.response.body", "body": json.dumps({"refused": why}).encode()})

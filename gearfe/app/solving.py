@@ -97,7 +97,7 @@ def _answer(state, method, phases, *, error):
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
         "section": bool(left_out or more),
         "table": _table(found),
-        "curves": [_curve(name, one) for name, one in (("healthy", found.healthy.get(method)), (found.kind or "healthy", curve)) if one],
+        "curves": [*(_curve("healthy", one) for one in found.healthy.values()), _curve(found.kind or "healthy", curve)],
         "share": {"phase": _numbers(curve.phase), "order": [int(one) for one in curve.order],
                   "value": [_numbers(one) for one in np.where(curve.force > 0, curve.share, np.nan).T]},
         "picture": picture(scene_from(state)),
@@ -244,9 +244,9 @@ TASKS = {
 
 
 def begin() -> None:
-    """Make a new solver process ready: little memory for solved gears, and one pair solved, which loads what methods load late."""
+    """Make a new solver process ready: little memory for solved gears; one pair loads what methods load late."""
     PROCESS.most = KEPT
-    quick(START)
+    answer("quick", START)
 
 
 def answer(kind: str, given: dict[str, Any]) -> bytes:
@@ -257,5 +257,5 @@ def answer(kind: str, given: dict[str, Any]) -> bytes:
         return json.dumps({"refused": str(error).removeprefix("page ")}).encode()
     except MemoryError as error:
         return json.dumps(
-            {"refused": f"not enough memory{f': {error}' if str(error) else ''}; take a coarser or smaller case"}
+            {"refused": f"not enough memory{f': {error}' if str(error) else ''}; take a smaller case"}
         ).encode()

@@ -26,7 +26,7 @@ QUICK_LIMIT = 20.0  # of all others
 MEMORY = 4 * 2**30  # of one process [bytes]
 MOST = 64  # tasks that wait
 STALE = {"stale": True}
-START = 60.0  # seconds that a new process may take until it is ready
+START = 40.0  # seconds that a new process may take until it is ready
 
 
 def _work(pipe: Connection, memory: int) -> None:
@@ -61,11 +61,13 @@ class Worker:
         """Answer to a task in JSON; blocks. If the process ends, or takes too long and is ended, that is the answer."""
         seconds = LIMIT.get(kind, QUICK_LIMIT)
         try:
-            if not self.ready:
-                self.ready = self.pipe.poll(START) and self.pipe.recv() == b"ready"
-            self.pipe.send((kind, given))
-            if self.pipe.poll(seconds):
-                return bytes(self.pipe.recv())
+            if not self.ready and not self.pipe.poll(START):
+                seconds = START
+            else:
+                self.ready = self.ready or self.pipe.recv() == b"ready"
+                self.pipe.send((kind, given))
+                if self.pipe.poll(seconds):
+                    return bytes(self.pipe.recv())
             self.ended = f"this took more than {seconds:g} s and was ended: take a smaller case, or compute it in Python"
         except (EOFError, OSError):
             self.ended = "the solver ended with this case, perhaps out of memory; a new one is started"
