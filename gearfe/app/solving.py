@@ -256,6 +256,4 @@ def answer(kind: str, given: dict[str, Any]) -> bytes:
     except (ValueError, RuntimeError) as error:
         return json.dumps({"refused": str(error).removeprefix("page ")}).encode()
     except MemoryError as error:
-        return json.dumps(
-            {"refused": f"not enough memory{f': {error}' if str(error) else ''}; take a smaller case"}
-        ).encode()
+        return json.dumps({"refused": f"not enough memory{f': {error}' if str(error) else ''}; take a smaller case"}).encode()

@@ -156,10 +156,9 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     state = _fields(name, own, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
     given, made = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
     for place in [*given, *made]:
-        if not _same(given.get(place), made.get(place)):
-            if place == "gear.wheel.beta_deg" and _same(given.get(place), -made.get(place)):
-                notes.append(f"the hand of the wheel's helix, given as {given[place]:g}°, is written as {made[place]:g}°")
-                continue
+        if place == "gear.wheel.beta_deg" and given[place] and _same(given[place], -made[place]):
+            notes.append(f"the hand of the wheel's helix, given as {given[place]:g}°, is written as {made[place]:g}°")
+        elif not _same(given.get(place), made.get(place)):
             raise ValueError(f"{name}: {place} = {shown(given.get(place))}, but the page has {shown(made.get(place))} there: no "
                              "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
     return checked_state(state), [*(f"not taken from {name}: {one}" for one in rest), *notes]
