@@ -13,15 +13,16 @@ async function ask(kind, body, { signal, tell = () => {} } = {}) {
   try {
     const response = await fetch(`task/${kind}`, { method: "POST", body: text, signal });
     const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
-    for (let rest = "", part; !(part = await reader.read()).done;) {
+    let rest = "";
+    for (let part; !(part = await reader.read()).done;) {
       const lines = (rest + part.value).split("\n");
       rest = lines.pop();
-      if (!response.ok) lines.push(rest);
       for (const line of lines.filter(Boolean)) {
         answer = JSON.parse(line);
         if ("waiting" in answer || "expected" in answer) { tell(answer); answer = { stale: true }; }
       }
     }
+    if (rest) answer = JSON.parse(rest);  // a refusal is one text
   } catch (error) {
     if (error.name === "AbortError") return { stale: true };
   }

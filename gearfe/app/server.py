@@ -87,19 +87,17 @@ def application(
         kind = request.path_params["kind"]
         try:
             body = json.loads(await request.body(), parse_constant=_no_number)
-            if kind not in KINDS or not isinstance(body, dict):
-                raise ValueError(f"no task {kind[:40]!r} of this page")
-            lane = "now" if kind in ("quick", "fine") else kind
-            if kind != "load":
-                body = {"page": body.get("page"), "state": checked_state(body.get("state"))}
-            given = body if kind == "load" else body["state"]
-        except (ValueError, RecursionError) as error:
-            told = (
-                str(error)
-                if not isinstance(error, (json.JSONDecodeError, UnicodeDecodeError, RecursionError))
-                else "this is no JSON"
-            )
-            return Response(json.dumps({"refused": told}), 400, media_type="application/json")
+        except (json.JSONDecodeError, UnicodeDecodeError, RecursionError):
+            return _refused("this is no JSON", 400)
+        except ValueError as error:
+            return _refused(str(error), 400)
+        if kind not in KINDS or not isinstance(body, dict):
+            return _refused(f"no task {kind[:40]!r} of this page", 400)
+        try:
+            given = body if kind == "load" else checked_state(body.get("state"))
+        except ValueError as error:
+            return _refused(str(error))
+        lane = "now" if kind in ("quick", "fine") else kind
         return Answer(pool, f"{str(body.get('page'))[:LANE]} {lane}", kind, given)
 
     routes = [Route(path, _file(name, kind)) for path, (name, kind) in FILES.items()]
@@ -107,6 +105,11 @@ def application(
     routes.append(Route("/form", _text(json.dumps(json.loads(form()) | {"open": start, "expected": SLOW}))))
     routes.append(Route("/task/{kind}", task, methods=["POST"]))
     return Guard(Starlette(routes=routes, lifespan=lifespan), hosts, limits)
+
+
+def _refused(text, status=200):
+    """A refusal; of what the page itself may ask with 200, as browsers complain of others in their consoles."""
+    return Response(json.dumps({"refused": text}), status, media_type="application/json")
 
 
 def _no_number(name):

@@ -1,14 +1,22 @@
 """A headless Chromium by the DevTools protocol over its two pipes: what it shows, asks for and complains of."""
 
 import base64
+import contextlib
 import json
 import os
 import select
 import subprocess
+import sys
 import time
 
 OPTIONS = ("--headless", "--no-sandbox", "--remote-debugging-pipe", "--disable-gpu", "--no-first-run", "--hide-scrollbars")
 WAIT = 60.0  # seconds for an answer
+START = """import os, sys
+own = [os.dup2(int(one), high) for one, high in zip(sys.argv[1:3], (90, 91))]
+for one, wanted in zip(own, (3, 4)):
+    os.dup2(one, wanted)
+    os.close(one)
+os.execvp(sys.argv[3], sys.argv[3:])"""  # the browser wants its pipes as files 3 and 4
 
 
 class Browser:
@@ -17,8 +25,9 @@ class Browser:
     def __init__(self, folder):
         (own_in, its_out), (its_in, own_out) = os.pipe(), os.pipe()
         words = ["chromium", *OPTIONS, f"--user-data-dir={folder}", "about:blank"]
-        shell = ["sh", "-c", f'exec "$@" 3<&{its_in} 4>&{its_out}', "sh", *words]
-        self.process = subprocess.Popen(shell, pass_fds=(its_in, its_out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        start = [sys.executable, "-c", START, str(its_in), str(its_out), *words]
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        self.process = subprocess.Popen(start, pass_fds=(its_in, its_out), **quiet)
         os.close(its_in)
         os.close(its_out)
         self.reading, self.writing, self.rest, self.number = own_in, own_out, b"", 0
@@ -28,6 +37,10 @@ class Browser:
         return self
 
     def __exit__(self, *error):
+        with contextlib.suppress(AssertionError, OSError):
+            self("Browser.close")
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self.process.wait(10)
         self.process.kill()
         self.process.wait()
         os.close(self.reading)
