@@ -283,7 +283,7 @@ function traces() {
 function drawCurves() {
   const { grid, ...plain } = look();
   const axis = (title, low, high, more = {}) => ({ ...grid, title: { text: title, standoff: 4 }, domain: [low, high], ...more });
-  const layout = { ...plain, xaxis: { ...grid, title: { text: "mesh phase (0: a pair enters, 1: one base pitch later)" }, anchor: "y3" },
+  const layout = { ...plain, xaxis: { ...grid, title: { text: "mesh phase" }, anchor: "y3" },
     yaxis: axis("k [N/µm]", 0.52, 1), yaxis2: axis("trans. error<br>[µm]", 0.27, 0.47), yaxis3: axis("load share", 0, 0.22, { range: [0, 1.05] }) };
   const fresh = !$("curves").data;
   Plotly.react($("curves"), traces(), layout, OPTIONS);

@@ -70,32 +70,34 @@ def main(minutes):
     began = time.monotonic()
     words = [sys.executable, "-m", "gearfe", "app", "--port", "0", "--no-browser"]
     served = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, Browser(folder) as browser:
-        place = re.search("http://[0-9.:]+/", served.stdout.readline())[0]
-        session = browser.page(place)
-        browser.until(session, READY)
-        print(f"cold start to the first picture: {time.monotonic() - began:.1f} s, the browser's own included", flush=True)
-        for name, (field, start, step) in CHANGES.items():
-            times = []
-            for number in range(COUNT):
-                times.append(browser.run(session, DRAWN.format(name=field, value=start + step * number)))
-                time.sleep(0.05)
-            told(f"change to picture, {name}", times[3:])
-            browser.run(session, "become({...start}); 1")
+    try:
+        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder, Browser(folder) as browser:
+            place = re.search("http://[0-9.:]+/", served.stdout.readline())[0]
+            session = browser.page(place)
             browser.until(session, READY)
-        for count in (2, 8):
-            users(place, count, EIGHT)
-        server, end, number = psutil.Process(served.pid), time.monotonic() + 60 * minutes, 0
-        print(f"memory before dragging: {memory(server):.0f} MB")
-        while time.monotonic() < end:
-            number += 1
-            browser.run(session, DRAWN.format(name="crack_length", value=0.5 + 0.001 * (number % 2500)))
-            if number % 500 == 0:
-                heap = browser.run(session, "performance.memory.usedJSHeapSize") / 2**20
-                print(f"after {number} pictures: solvers and server {memory(server):.0f} MB, page {heap:.0f} MB", flush=True)
-        print(f"memory after dragging: {memory(server):.0f} MB, {number} pictures")
-    served.terminate()
-    served.wait(30)
+            print(f"cold start to the first picture: {time.monotonic() - began:.1f} s, the browser's own included", flush=True)
+            for name, (field, start, step) in CHANGES.items():
+                times = []
+                for number in range(COUNT):
+                    times.append(browser.run(session, DRAWN.format(name=field, value=start + step * number)))
+                    time.sleep(0.05)
+                told(f"change to picture, {name}", times[3:])
+                browser.run(session, "become({...start}); 1")
+                browser.until(session, READY)
+            for count in (2, 8):
+                users(place, count, EIGHT)
+            server, end, number = psutil.Process(served.pid), time.monotonic() + 60 * minutes, 0
+            print(f"memory before dragging: {memory(server):.0f} MB")
+            while time.monotonic() < end:
+                number += 1
+                browser.run(session, DRAWN.format(name="crack_length", value=0.5 + 0.001 * (number % 2500)))
+                if number % 500 == 0:
+                    heap = browser.run(session, "performance.memory.usedJSHeapSize") / 2**20
+                    print(f"after {number} pictures: solvers and server {memory(server):.0f} MB, page {heap:.0f} MB", flush=True)
+            print(f"memory after dragging: {memory(server):.0f} MB, {number} pictures")
+    finally:
+        served.terminate()
+        served.wait(30)
 
 
 if __name__ == "__main__":
