@@ -2,7 +2,8 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
-`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
+`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`;
+`app`; `cli`.
 """
 
 import importlib

@@ -31,6 +31,7 @@ FLOORS = (  # from the ground: a room imports only from floors below its own
     ("gearfe/surrogates", "gearfe/sweeps"),
     ("gearfe/datasets",),
     ("gearfe/reports",),
+    ("gearfe/app",),
     ("gearfe/cli",),
     ("validation",),
 )
@@ -41,6 +42,8 @@ HOME = {  # where heavy libraries may be imported
     "pyvista": "gearfe/stress/",
     "vtk": "gearfe/stress/",
     "matplotlib": "gearfe/pictures/",
+    "starlette": "gearfe/app/",
+    "uvicorn": "gearfe/app/",
 }
 LOADERS = ("import_module", "__import__")  # only the public face, `gearfe/__init__.py`, and the table of methods load by name
 TABLE = "gearfe/stiffness/methods.py"
@@ -165,7 +168,7 @@ def test_no_public_name_is_that_of_a_module():
 
 
 def test_command_line_starts_without_heavy_imports():
-    heavy = "{'numpy', 'scipy', 'skfem', 'gmsh', 'pyvista', 'matplotlib'}"
+    heavy = "{'numpy', 'scipy', 'skfem', 'gmsh', 'pyvista', 'matplotlib', 'starlette', 'uvicorn'}"
     code = f"import sys, gearfe.cli; print(sorted({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
 

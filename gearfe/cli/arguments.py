@@ -161,6 +161,24 @@ def main(argv=None):
     verb.add_argument("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
     verb.add_argument("--pair", metavar="NAME", help="which pair is drawn (default: its first)")
     verb.add_argument("--case", metavar="NAME", help="which case of damage is drawn (default: the first of the pair)")
+    verb = _verb(
+        verbs, "app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once"
+    )
+    verb.add_argument(
+        "scene", metavar="SCENE", nargs="?", help="opened in it: a built-in scene or a .toml file (default: an example)"
+    )
+    verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its only one)")
+    verb.add_argument("--case", metavar="NAME", help="case of damage (default: its only one)")
+    verb.add_argument("--port", type=int, default=8033, metavar="N", help="of 127.0.0.1; 0: any that is free (default: 8033)")
+    verb.add_argument("--no-browser", action="store_true", help="only serve the page, do not open it")
+    verb.add_argument("--workers", type=int, metavar="N", help="solver processes (default: one per core, at least 2)")
+    verb.add_argument(
+        "--public", metavar="NAME", help="also answer to this name, of a reverse proxy on this machine: for a course"
+    )
+    verb.add_argument("--users", type=int, default=40, metavar="N", help="with --public: addresses at a time (default: 40)")
+    verb.add_argument(
+        "--tasks", type=int, default=600, metavar="N", help="with --public: of an address in a minute (default: 600)"
+    )
     verb = _verb(verbs, "completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
     verb.add_argument("shell", choices=("bash", "zsh"), help='eval "$(gearfe completion bash)" in your shell\'s start file')
     verb.set_defaults(verbs=verbs.choices)

@@ -56,6 +56,15 @@ def check(arguments):
         print(f"written: {arguments.picture}")
 
 
+def app(arguments):
+    """``gearfe app``."""
+    from ..app.server import opened, serve
+
+    start = arguments.scene and opened(arguments.scene, arguments.pair, arguments.case)
+    names = ("port", "workers", "public", "users", "tasks")
+    serve(start=start, browser=not arguments.no_browser, **{name: getattr(arguments, name) for name in names})
+
+
 def completion(arguments):
     """``gearfe completion``."""
     from .completion import script
