@@ -44,7 +44,6 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
         "test_literature.py::test_verdict_on_a_printed_number[helical_pitting-contact_ratios",
         "test_literature.py::test_verdict_on_a_printed_number[herringbone_machine-mesh_frequency",
     ),
-    "app": ("app/test_state.py::test_a_state_comes_back_from_its_file",),
     "reports": ("reports/test_page.py::test_unknown_case_and_suffix_are_refused_before_work",),
     "docs": ("docs/test_tutorials.py::test_scripts_are_found", "docs/test_site.py"),
     "pictures": ("pictures/test_look.py",),

@@ -50,6 +50,7 @@ STATES = {
 }
 
 
+@pytest.mark.quick
 @pytest.mark.parametrize("name", STATES)
 def test_a_state_comes_back_from_its_file(name):
     state = checked_state(STATES[name])
