@@ -147,15 +147,20 @@ def main(argv=None):
     verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with all it can say as comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
-    verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
+    verb.add_argument("--teeth", type=int, nargs=2, metavar="Z", help="of pinion and wheel (default: 21 31, of a ring 21 63)")
     verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
     verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
     verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
+    verb.add_argument("--torque", type=float, metavar="NM", help="on the pinion [N m] (default: of 100 N per mm of width)")
+    verb.add_argument(
+        "--crack", type=float, nargs=2, metavar=("MM", "DEG"),
+        help="length [mm] and angle to the centre-line [degrees] of the pinion's root crack (default: level 0.3 at 45 degrees)",
+    )  # fmt: skip
     verb.add_argument(
         "--tip-relief", type=float, nargs=2, metavar=("UM", "MM"),
         help="tip relief of both gears [um], linear over so much roll below the tip [mm]: --tip-relief 20 1.5 (default: none)",
     )  # fmt: skip
-    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
+    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear")
     verb = _verb(verbs, "check", tools.check, "say in words what a scene holds, and how each case would be solved")
     verb.add_argument("scene", metavar="SCENE", help="a .toml file, or a built-in scene (see 'gearfe scenes')")
     verb.add_argument("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
