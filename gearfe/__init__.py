@@ -69,6 +69,7 @@ _HOME = {
     "expected_lines": "gearfe.signal.spectral_lines",
     "fit_surrogate": "gearfe.surrogates.fit",
     "export_mesh": "gearfe.elements.mesh_file",
+    "face_load": "gearfe.studies.pattern",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",

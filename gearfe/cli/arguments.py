@@ -56,19 +56,19 @@ def main(argv=None):
         help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
     )  # fmt: skip
     verb = _verb(
-        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
+        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact pattern, without a screen"
     )
     _scene_arguments(verb, count=False)
     verb.add_argument(
-        "--phase",
-        type=float,
-        metavar="X",
-        help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)",
-    )
+        "--phase", type=float, metavar="X",
+        help="mesh phase (default: where the damaged tooth carries most; of healthy gears: stress of spur gears at 0, others and "
+        "contact where pair 0 carries most)",
+    )  # fmt: skip
     verb.add_argument(
-        "--what", choices=["stress", "contact"], default="stress",
-        help="von Mises stress (in three dimensions for pits and helical gears), or contact pressure along the contact lines and "
-        "load over the face width (default: stress)",
+        "--what", choices=["stress", "contact", "pattern"], default="stress",
+        help="von Mises stress (in three dimensions for pits and helical gears); contact pressure along the contact lines of one "
+        "phase, and load over the face width; or both over a mesh cycle, with the largest pressure and the face load factor "
+        "(default: stress)",
     )  # fmt: skip
     verb.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"

@@ -180,18 +180,24 @@ def render(arguments):
     """``gearfe render``."""
     from ..scene.load import load_scene
     from ..stress.render import render_contact, render_stress
+    from ..studies.pattern import render_pattern
     from ..units import in_newton_per_um
 
-    _check_outputs(arguments, output="picture" if arguments.what == "contact" else "stress")
+    _check_outputs(arguments, output="stress" if arguments.what == "stress" else "picture")
     scene = load_scene(arguments.scene)
-    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
-    if arguments.what == "contact":
+    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "title": _title(scene, arguments)}
+    if arguments.what == "pattern":
+        if arguments.phase is not None:
+            raise ValueError("--what pattern is of a whole mesh cycle: leave out --phase, or take --what contact")
+        with working("contact pattern"):
+            print(render_pattern(pair, arguments.output, **options).told())
+    elif arguments.what == "contact":
         with working("contact lines"):
-            told = render_contact(pair, arguments.output, title=_title(scene, arguments), **options)
+            told = render_contact(pair, arguments.output, phase=arguments.phase, **options)
         print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
-            told = render_stress(pair, arguments.output, refine=arguments.refine, title=_title(scene, arguments), **options)
+            told = render_stress(pair, arguments.output, refine=arguments.refine, phase=arguments.phase, **options)
         print(told["text"])
         print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
     print(f"written: {arguments.output}")

@@ -154,9 +154,9 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
     }  # fmt: skip
-    numbers["mate"] = MATE.format(**numbers)
+    mate = MATE.format(**numbers)
     parts = (CRACK, FLANK, HELD) if pair.gear_2.internal else (CRACK, FLANK, HELD, MACHINE)
-    words = "\n".join(part.format(**numbers) for part in parts)
+    words = "\n".join(part.format(mate=mate, **numbers) for part in parts)
     return PAIR.format(a=pair.a, span=3 * b), _relieved(words, *relief) if relief else words
 
 
