@@ -32,8 +32,10 @@ def main(argv=None):
     verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument(
         "--forces", type=float, nargs="+", metavar="N",
-        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N]: table, --plot",
+        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N], of modified flanks "
+        "beside plain involutes: table, --plot",
     )  # fmt: skip
+    verb.add_argument("--torques", type=float, nargs="+", metavar="NM", help="the same under these torques of the pinion [N m]")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")

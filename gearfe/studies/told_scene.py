@@ -67,6 +67,9 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
     for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
         if side in chosen.flanks:
             yield f"  flank of the {side}: {told_flank(chosen.flanks[side], gear)}"
+    if face == "spur" and 1 < pair.eps_alpha < 2 and any(one.tip_relief or one.root_relief for one in chosen.flanks.values()):
+        shared = (pair.eps_alpha - 1) * pair.p_bt
+        yield f"  two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
     if chosen.misalignment:
         amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
         yield "  misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)

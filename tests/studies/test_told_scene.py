@@ -25,6 +25,7 @@ def test_all_of_a_scene_is_told(everything, capsys):
         "gear pinion: 21 teeth, module 2 mm",
         "2000 N along the line of action, 39.47 N m on the pinion",
         "tip relief 20 um, linear",
+        "share the load over the first and the last 3.63 mm of roll",  # (eps_alpha - 1) p_bt, 0.615 times 5.904 mm
         "misaligned: F_beta 10 um",
         "pinion held by a shaft of 40 mm of 18.4 mm, 40 mm of 18.4 mm, bearings at 0 and 80 mm (200 N/um and 200 N/um)",
         "wheel held by springs: radial 200 N/um",
