@@ -32,8 +32,10 @@ def main(argv=None):
     verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument(
         "--forces", type=float, nargs="+", metavar="N",
-        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N]: table, --plot",
+        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N], of modified flanks "
+        "beside plain involutes: table, --plot",
     )  # fmt: skip
+    verb.add_argument("--torques", type=float, nargs="+", metavar="NM", help="the same under these torques of the pinion [N m]")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")
@@ -56,19 +58,19 @@ def main(argv=None):
         help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
     )  # fmt: skip
     verb = _verb(
-        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
+        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact pattern, without a screen"
     )
     _scene_arguments(verb, count=False)
     verb.add_argument(
-        "--phase",
-        type=float,
-        metavar="X",
-        help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)",
-    )
+        "--phase", type=float, metavar="X",
+        help="mesh phase (default: where the damaged tooth carries most; of healthy gears: stress of spur gears at 0, others and "
+        "contact where pair 0 carries most)",
+    )  # fmt: skip
     verb.add_argument(
-        "--what", choices=["stress", "contact"], default="stress",
-        help="von Mises stress (in three dimensions for pits and helical gears), or contact pressure along the contact lines and "
-        "load over the face width (default: stress)",
+        "--what", choices=["stress", "contact", "pattern"], default="stress",
+        help="von Mises stress (in three dimensions for pits and helical gears); contact pressure along the contact lines of one "
+        "phase, and load over the face width; or both over a mesh cycle, with the largest pressure and the face load factor "
+        "(default: stress)",
     )  # fmt: skip
     verb.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
@@ -147,15 +149,20 @@ def main(argv=None):
     verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with all it can say as comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
-    verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
+    verb.add_argument("--teeth", type=int, nargs=2, metavar="Z", help="of pinion and wheel (default: 21 31, of a ring 21 63)")
     verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
     verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
     verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
+    verb.add_argument("--torque", type=float, metavar="NM", help="on the pinion [N m] (default: of 100 N per mm of width)")
+    verb.add_argument(
+        "--crack", type=float, nargs=2, metavar=("MM", "DEG"),
+        help="length [mm] and angle to the centre-line [degrees] of the pinion's root crack (default: level 0.3 at 45 degrees)",
+    )  # fmt: skip
     verb.add_argument(
         "--tip-relief", type=float, nargs=2, metavar=("UM", "MM"),
         help="tip relief of both gears [um], linear over so much roll below the tip [mm]: --tip-relief 20 1.5 (default: none)",
     )  # fmt: skip
-    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
+    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear")
     verb = _verb(verbs, "check", tools.check, "say in words what a scene holds, and how each case would be solved")
     verb.add_argument("scene", metavar="SCENE", help="a .toml file, or a built-in scene (see 'gearfe scenes')")
     verb.add_argument("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")

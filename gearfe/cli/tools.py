@@ -26,7 +26,8 @@ def new(arguments):
     """``gearfe new``."""
     from ..scene.new import new_scene
 
-    options = {"teeth": tuple(arguments.teeth), "module": arguments.module, "helix_deg": arguments.helix}
+    options = {"teeth": arguments.teeth, "module": arguments.module, "helix_deg": arguments.helix}
+    options |= {"torque_Nm": arguments.torque, "crack": arguments.crack}
     amount, length = arguments.tip_relief or (None, None)
     options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
     made = new_scene(arguments.output, **options)
