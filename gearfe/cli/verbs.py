@@ -253,7 +253,10 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
-    _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
+    report = analysis(found, arguments.channel)
+    _print_analysis(report, arguments, scene.name)
+    if report.too_short:
+        print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
