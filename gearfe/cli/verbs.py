@@ -282,7 +282,7 @@ def _print_analysis(report, arguments, name=""):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram, ", ".join(filter(None, (name, last.name, report.channel))))
+        plot_kurtogram(kurtogram, arguments.kurtogram, f"{name}, {last.name}, {report.channel}" if name else last.name)
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
         report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))

@@ -16,7 +16,7 @@ from .array_file import array_file, hdf_file
 from .found import ANGLES, RATES, SHAFTS, TIMES, Found
 from .recorder_file import parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
-from .tachometer import with_tachometer
+from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
 from .time_axis import step_of
 
@@ -104,6 +104,7 @@ def read_signals(
     scale: float = 1.0,
     tachometer: str | None = None,
     pulses: int = 1,
+    level: float | None = None,
 ) -> dict[str, Signal]:
     """Read channels of a file, by name; see `read_signal` for the formats.
 
@@ -117,9 +118,12 @@ def read_signals(
     rate, header, scale
         As of `read_signal`.
     tachometer : str, optional
-        Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`.
+        Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
+        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, which is told; its integral is the angle.
     pulses : int
         Of the tachometer, in a turn.
+    level : float, optional
+        At which a pulse counts, in the tachometer's unit; default: half its height.
 
     Returns
     -------
@@ -140,7 +144,12 @@ def read_signals(
     if pulse is None:
         return out
     clock = _signal(path, found, pulse, rate=rate, unit="1" if not found.units.get(pulse) else None)
-    return {name: with_tachometer(one, clock, pulses) for name, one in out.items()}
+    if clock.unit in SPEEDS:
+        warnings.warn(
+            f"{path}: {pulse!r} is in {clock.unit}: taken for the shaft's speed, its integral for the angle", stacklevel=3
+        )
+        return {name: with_speed_record(one, clock) for name, one in out.items()}
+    return {name: with_tachometer(one, clock, pulses, level=level) for name, one in out.items()}
 
 
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
