@@ -73,7 +73,8 @@ def run(work, options=()):
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
-        tell("interrupted; nothing half-written is left")
+        resumed = "; the same command goes on where it was" if "dry_run" in options else ""  # of verbs that fill a folder
+        tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
     except (ValueError, RuntimeError) as error:
         tell(as_options(error, options))

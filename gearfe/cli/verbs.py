@@ -127,7 +127,7 @@ def compare(arguments):
         print(text)
     print()
     for why, names in result.reasons().items():
-        print(f"  no {names}: {why}")
+        print(f"  no {names}: {why.partition(' (reference=')[0]}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ..pictures.stiffness_plots import plot_curves, told
