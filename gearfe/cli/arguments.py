@@ -118,10 +118,12 @@ def main(argv=None):
     verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
     verb.add_argument("--teeth", type=int, metavar="Z", help="of a gear: FM0, FM4, NA4 and others from the mean of its turns")
     verb.add_argument("--shaft", type=float, metavar="HZ", help="turns of that gear in a second")
-    verb.add_argument("--tacho", metavar="NAME", help="column with pulses of its shaft, in place of --shaft")
+    verb.add_argument("--tacho", metavar="NAME", help="column with pulses of its shaft, or its speed in rpm, in place of --shaft")
     verb.add_argument("--pulses", type=int, default=1, metavar="N", help="pulses of the tachometer in a turn (default: 1)")
+    verb.add_argument("--level", type=float, metavar="X", help="height at which a pulse counts (default: half the highest)")
     _analysis_arguments(verb)
     verb.add_argument("--cepstrum", metavar="FILE", help="draw the cepstrum of the last case: .png, .svg or .pdf")
+    verb.add_argument("--orders", metavar="FILE", help="draw the spectra by turns of the shaft: .png, .svg or .pdf")
     verb.add_argument("--spectrogram", metavar="FILE", help="draw the spectrogram of the last case: .png, .svg or .pdf")
     verb = _verb(
         verbs, "report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration"

@@ -131,7 +131,7 @@ def compare(arguments):
         print(text)
     print()
     for why, names in result.reasons().items():
-        print(f"  no {names}: {why}")
+        print(f"  no {names}: {why.partition(' (reference=')[0]}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ..pictures.stiffness_plots import plot_curves, told
@@ -266,7 +266,10 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
-    _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
+    report = analysis(found, arguments.channel)
+    _print_analysis(report, arguments, scene.name)
+    if report.too_short:
+        print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
@@ -292,7 +295,7 @@ def _print_analysis(report, arguments, name=""):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram, ", ".join(filter(None, (name, last.name, report.channel))))
+        plot_kurtogram(kurtogram, arguments.kurtogram, f"{name}, {last.name}, {report.channel}" if name else last.name)
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
         report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))

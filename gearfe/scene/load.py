@@ -279,6 +279,9 @@ def _cases(file, damage, gears, name, pairs):
 
 
 def _crack(row):
+    if row["level"] is not None and row["length_mm"] is not None:
+        told = f"level = {row['level']:g} and length_mm = {row['length_mm']:g}"
+        raise ValueError(f"{told}: give one of them; a study varies the one that its scene gives")
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
     return [
         Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})

@@ -150,6 +150,13 @@ def test_an_assumption_of_a_value_that_is_not_there_is_refused(tmp_path):
         gf.load_scene(file)
 
 
+def test_a_crack_of_level_and_length_is_refused_in_the_words_of_the_file(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(PLAIN + '[[crack]]\ncase = "c"\ngear = "one"\nlevel = 0.3\nlength_mm = 2.0\n')
+    with pytest.raises(ValueError, match=r"crack 1.* level = 0.3 and length_mm = 2: give one of them; a study varies the one"):
+        gf.load_scene(file)
+
+
 @pytest.mark.parametrize("count", ["0", "-1", "10000000"])
 def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
     file = tmp_path / "mine.toml"
