@@ -41,7 +41,8 @@ def stiffness(arguments):
     from ..scene.load import load_scene
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
-    from ..studies.losses import beside_health, told_supports, zone_table
+    from ..studies.losses import beside_health, zone_table
+    from ..studies.told_scene import told_supports
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
@@ -105,7 +106,7 @@ def compare(arguments):
     from ..scene.references import printed_stiffness
     from ..studies.by_zone import compare as run
     from ..studies.case_table import printed_cases
-    from ..studies.losses import told_supports
+    from ..studies.told_scene import told_supports
 
     _check_outputs(arguments, plot="picture")
     scene = load_scene(arguments.scene)

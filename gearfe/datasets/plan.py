@@ -111,7 +111,7 @@ class Plan:
         base = self.tables["machine"]["torque_Nm"]
         tables = placed(self.tables, values)
         for pair in tables["pair"].values():
-            pair["torque_Nm" if "torque_Nm" in pair else "force_N"] *= tables["machine"]["torque_Nm"] / base
+            pair["force_N"] *= tables["machine"]["torque_Nm"] / base
         if fault is not None:
             FAULTS[fault["kind"]].enter(tables, severity, fault)
         return scene_of(f"{self.scene} of {self.title!r}", tables)
@@ -223,7 +223,7 @@ def _check_scatter(plan):
     ours |= {f"machine.{one['kind']}_um" for one in plan.fault if not FAULTS[one["kind"]].damage}
     for key, spec in plan.scatter.items():
         check_key(key, plan.tables, {})
-        if key in ours or (key.startswith("pair.") and key.endswith((".force_N", ".torque_Nm"))):
+        if key in ours or (key.startswith("pair.") and key.endswith(".force_N")):
             raise ValueError(f"[scatter] {key!r} is set by the operation or by a fault: leave it out")
         if not isinstance(spec, dict):
             raise ValueError(f"[scatter] {key!r} = {spec!r}: give a distribution, {{ uniform = [low, high] }}")

@@ -14,8 +14,7 @@ from ..steps import part
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
-from ..studies.losses import told_supports
-from ..studies.told_scene import told_details, told_load
+from ..studies.told_scene import told_details, told_load, told_supports
 from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
 from .findings import find
 from .template import page_maker

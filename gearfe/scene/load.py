@@ -46,8 +46,7 @@ TABLES = {
     "pair": {
         "gear_1": (TEXT, REQUIRED),
         "gear_2": (TEXT, REQUIRED),
-        "force_N": (NUMBER, None),
-        "torque_Nm": (NUMBER, None),
+        "force_N": (NUMBER, REQUIRED),
         "a_mm": (NUMBER, None),
         "face": (TEXT, None),
         "groove_mm": (NUMBER, 0.0),
@@ -221,12 +220,13 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
             known(file, where, key, row[key], gears, "gear")
         made = placed(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
-        force = _force(file, where, row, made.gear_1)
+        if not row["force_N"] > 0:
+            raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
         found = _cases(file, damage, gears, name, rows["pair"])
         bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
         askew = misalignment_of(file, where, made, row)
         held = supports_of(file, rows, name, rows["pair"], materials)
-        pairs[name] = ScenePair(made, used, force, row["face"], float(row["groove_mm"]), found, bent, askew, held)
+        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent, askew, held)
     notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
     cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})
@@ -235,17 +235,6 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
     found = () if own else read_references(file, printed, pairs)
     return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, found, changed)
-
-
-def _force(file, where, row, gear):
-    """Force along the line of action [N] of a pair, as such or by the torque of its first gear."""
-    given = {key: row[key] for key in ("force_N", "torque_Nm") if row[key] is not None}
-    if len(given) != 1:
-        raise ValueError(f"{file} [{where}]: give force_N (along the line of action) or torque_Nm (of gear_1), one of them")
-    for key, value in given.items():
-        if not value > 0:
-            raise ValueError(f"{file} [{where}] {key} = {value}: a mesh is pressed together; give {key} > 0")
-    return float(given["force_N"]) if "force_N" in given else 1e3 * given["torque_Nm"] / gear.r_b
 
 
 def _by_case(tables):
@@ -279,9 +268,6 @@ def _cases(file, damage, gears, name, pairs):
 
 
 def _crack(row):
-    if row["level"] is not None and row["length_mm"] is not None:
-        told = f"level = {row['level']:g} and length_mm = {row['length_mm']:g}"
-        raise ValueError(f"{told}: give one of them; a study varies the one that its scene gives")
     numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
     return [
         Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})

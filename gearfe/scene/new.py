@@ -50,7 +50,8 @@ material = "steel"
 [pair.stage]
 gear_1 = "pinion"
 gear_2 = "wheel"
-{load}{face}{pair_words}
+{load}
+{face}{pair_words}
 # What you had to assume; it is printed with every result, until you change the values it holds for.
 [[assumption]]
 what = "{bores}"
@@ -136,7 +137,7 @@ def new_scene(
         wheel = Gear(z=teeth[1], beta=-beta, r_bore=bores[1], **rack)
         support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
     pair = GearPair(pinion, wheel)
-    force, load = _load(pinion, width, torque_Nm)
+    force, load = _force(pinion, width, torque_Nm)
     pair_words, words = vocabulary(pair, force, _relief(pair, tip_relief_um, tip_length_mm))
     text = TEXT.format(
         name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
@@ -151,16 +152,13 @@ def new_scene(
     return path
 
 
-def _load(pinion, width, torque):
-    """Force along the line of action [N], and the line of the file that gives it, as a torque [N m] if there is one."""
-    if torque is None:
-        force = round(100.0 * width, 1)
-        told = f"{force * pinion.r_b * 1e-3:.4g}"
-        return force, f"force_N = {force}  # along the transverse line of action; or of the pinion's torque: torque_Nm = {told}\n"
-    if not 0 < torque < math.inf:
+def _force(pinion, width, torque):
+    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the line of the file that says it."""
+    if torque is not None and not 0 < torque < math.inf:
         raise ValueError(f"torque = {torque} N m: a mesh is pressed together; give a positive torque on the pinion")
-    force = 1e3 * torque / pinion.r_b
-    return force, f"torque_Nm = {torque}  # on the pinion; or, along the transverse line of action, force_N = {force:.6g}\n"
+    force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
+    told = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
+    return force, f"force_N = {force}  # along the transverse line of action: {told}"
 
 
 def _crack(pinion, given):

@@ -57,7 +57,7 @@ def _unit(key):
     if "_per_" in key:
         over, _, under = key.rpartition("_per_")
         return f" in {over.rpartition('_')[2]}/{under}"
-    units = {"mm": "mm", "deg": "degrees", "um": "um", "N": "N", "Nm": "N m", "MPa": "MPa"}
+    units = {"mm": "mm", "deg": "degrees", "um": "um", "N": "N", "MPa": "MPa"}
     end = key.rpartition("_")[2]
     return f" in {units[end]}" if end in units and "_" in key else ""
 

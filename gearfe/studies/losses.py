@@ -85,17 +85,6 @@ def zone_table(curve: StiffnessCurve) -> str:
     return aligned("\n".join(lines))
 
 
-def told_supports(curve: StiffnessCurve) -> str:
-    """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
-    if curve.lte_supports is None:
-        return ""
-    part, own = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
-    return (
-        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
-        f"teeth and bodies alone have {in_newton_per_um(own)} N/um in the mean"
-    )
-
-
 def beside_health(curve: StiffnessCurve, run: dict[str, Any], phases: int) -> str:
     """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
 

@@ -8,10 +8,12 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
 from ..scene.load import Scene, ScenePair
+from ..stiffness.curve import StiffnessCurve
 from ..stiffness.inputs import by_gear, choose, overlap
 from ..stiffness.supported import supports_of
 from ..supports.shaft import Shaft
 from ..supports.support import Support
+from ..units import in_newton_per_um
 from .losses import told_damage
 
 SIDES = ("pinion", "wheel")
@@ -151,3 +153,14 @@ def _machine(scene: Scene) -> str:
     run = scene.machine
     law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
+
+
+def told_supports(curve: StiffnessCurve) -> str:
+    """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
+    if curve.lte_supports is None:
+        return ""
+    part, own = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    return (
+        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
+        f"teeth and bodies alone have {in_newton_per_um(own)} N/um in the mean"
+    )

@@ -1,7 +1,6 @@
 """What a data set may hold: what is refused, how conditions are drawn and split."""
 
 import copy
-from importlib import resources
 
 import numpy as np
 import pytest
@@ -126,13 +125,8 @@ def test_split_by_operation_shares_none():
         conditions(read_plan(changed(repeats=1)))
 
 
-def test_forces_go_with_the_torque(tmp_path):
+def test_forces_go_with_the_torque():
     plan = read_plan(SMALL)
-    text = (resources.files("gearfe.scenes") / "planetary_pitting.toml").read_text()
-    (tmp_path / "own.toml").write_text(text.replace("force_N = 2000.0", "torque_Nm = 40.0", 1))
-    own = read_plan(SMALL | {"scene": str(tmp_path / "own.toml")})
-    first = [own.scene_at({"machine.torque_Nm": torque}).pair().force for torque in (100.0, 50.0)]
-    assert first == pytest.approx([40e3 / 19.7335, 20e3 / 19.7335], rel=1e-5)
     scene = plan.scene_at({"machine.torque_Nm": 50.0}, plan.fault[0], 0.2)
     assert {pair.force for pair in scene.pairs.values()} == {1000.0}
     assert scene.pair().damage["fault"]["pinion"][0].level == 0.2

@@ -41,10 +41,6 @@ def test_the_other_machines(name, cases):
         ("alpha_n_deg = 20.0", "alpha_n_deg = nan", "alpha_n_deg = nan: expected a number in degrees"),
         ("force_N = 2000.0", "force_N = -1.0", "force_N = -1.0"),
         ("force_N = 2000.0", "force_N = true", "expected a number in N"),
-        ("force_N = 2000.0", 'torque_Nm = "4"', "expected a number in N m"),
-        ("force_N = 2000.0", "torque_Nm = 0.0", r"\[pair.sun_planet\] torque_Nm = 0.0: a mesh is pressed together"),
-        ("force_N = 2000.0", "force_N = 2000.0\ntorque_Nm = 40.0", "or torque_Nm .of gear_1., one of them"),
-        ("force_N = 2000.0\n", "", "or torque_Nm .of gear_1., one of them"),
         ('gear_2 = "planet"', 'gear_2 = "moon"', "no such gear; there is sun, planet, ring"),
         ('material = "20CrMnTi"', 'material = "tin"', "no such material; there is 20CrMnTi, 42Cr"),
         ("z = 21", "z = 3", r"\[gear.sun\]: z = 3, but a gear needs at least 5 teeth"),
@@ -150,13 +146,6 @@ def test_an_assumption_of_a_value_that_is_not_there_is_refused(tmp_path):
         gf.load_scene(file)
 
 
-def test_a_crack_of_level_and_length_is_refused_in_the_words_of_the_file(tmp_path):
-    file = tmp_path / "mine.toml"
-    file.write_text(PLAIN + '[[crack]]\ncase = "c"\ngear = "one"\nlevel = 0.3\nlength_mm = 2.0\n')
-    with pytest.raises(ValueError, match=r"crack 1.* level = 0.3 and length_mm = 2: give one of them; a study varies the one"):
-        gf.load_scene(file)
-
-
 @pytest.mark.parametrize("count", ["0", "-1", "10000000"])
 def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
     file = tmp_path / "mine.toml"
@@ -184,9 +173,3 @@ def test_a_copy_with_other_gears_is_no_longer_the_article(tmp_path):
     assert any("face width" in one for one in told)
     assert not any("centre distance" in one or "x = -0.4617" in one for one in told)
     assert any("gear.sun.z = 24" in one for one in scene.changed)
-
-
-def test_torque_of_the_first_gear_is_the_force_over_its_base_radius(tmp_path):
-    (tmp_path / "s.toml").write_text(TEXT.replace("force_N = 2000.0", "torque_Nm = 40.0", 1))
-    chosen = gf.load_scene(tmp_path / "s.toml").pair()
-    assert chosen.force * chosen.pair.gear_1.r_b == pytest.approx(40e3)

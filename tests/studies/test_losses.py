@@ -20,9 +20,9 @@ from gearfe.studies.losses import (
     loss_errors,
     percent_with_doubt,
     told_damage,
-    told_supports,
     within,
 )
+from gearfe.studies.told_scene import told_supports
 
 
 @pytest.fixture(scope="module")
