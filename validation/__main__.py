@@ -20,7 +20,7 @@ PARTS = {  # what is computed at once, where that is not the page
     "machines": ("herringbone_machine", "planetary_pitting", "helical_pitting", "compound_planetary"),
     **dict.fromkeys(("herringbone", "sample"), ("all",)),
     "outlines": ("", "arbiter"),
-    "three": ("all", "decks"),
+    "three": ("", "decks"),
 }
 ROWS = ("detection", "dynamics", "hard", "holes", "map", "outlines", "sample", "sweeps", "three")  # parts: rows, by beginnings
 ALONE = ("speed", "sweeps")  # pages that say what time things take
