@@ -52,34 +52,43 @@ def told_gear(gear: Gear) -> str:
 
 
 def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
-    pair = chosen.pair
-    torques = [chosen.force * gear.r_b * 1e-3 for gear in (pair.gear_1, pair.gear_2)]
-    face = chosen.face or ("helical" if pair.gear_1.beta else "spur")
+    pair, face = chosen.pair, chosen.face or ("helical" if chosen.pair.gear_1.beta else "spur")
     across = f", overlap ratio {overlap(pair, face, chosen.groove):.3f}" if face != "spur" else ""
     yield (
         f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
-        f"contact ratio {pair.eps_alpha:.3f}{across}; "
-        f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+        f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
     )
     if face == "herringbone":
         groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
         yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
-    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
-        if side in chosen.flanks:
-            yield f"  flank of the {side}: {told_flank(chosen.flanks[side], gear)}"
-    if face == "spur" and 1 < pair.eps_alpha < 2 and any(one.tip_relief or one.root_relief for one in chosen.flanks.values()):
-        shared = (pair.eps_alpha - 1) * pair.p_bt
-        yield f"  two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
-    if chosen.misalignment:
-        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
-        yield "  misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
-    for side, held in chosen.supports.items():
-        yield f"  {side} held by {_held(held)}"
+    yield from (f"  {text}" for text in told_details(chosen))
     for case in (None, *chosen.damage):
         damage = chosen.damage.get(case, {}) if case else {}
         what = "healthy" if case is None else f"case {case}: {', '.join(_where(chosen, damage))}"
         yield f"  {what}; {_method(chosen, damage)}"
     yield from (f"  {note}" for note in pair.notes)
+
+
+def told_load(chosen: ScenePair) -> str:
+    """Force of a pair and the torques that it is."""
+    torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
+    return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+
+
+def told_details(chosen: ScenePair) -> Iterator[str]:
+    """Flanks, misalignment and supports of a pair, a line for each; none of a plain pair that is held at its bores."""
+    pair, bent = chosen.pair, chosen.flanks
+    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+        if side in bent:
+            yield f"flank of the {side}: {told_flank(bent[side], gear)}"
+    if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(one.tip_relief or one.root_relief for one in bent.values()):
+        shared = (pair.eps_alpha - 1) * pair.p_bt
+        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
+    if chosen.misalignment:
+        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
+        yield "misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
+    for side, held in chosen.supports.items():
+        yield f"{side} held by {_held(held)}"
 
 
 def told_flank(flank: Flank, gear: Gear) -> str:
