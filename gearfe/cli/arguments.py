@@ -55,7 +55,8 @@ def main(argv=None):
     )
     verb.add_argument(
         "--reference", nargs="?", const="fe3d", metavar="METHOD",
-        help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
+        help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes and gigabytes for "
+        "each (fewer with a smaller --refine); or ritz3d",
     )  # fmt: skip
     verb = _verb(
         verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact pattern, without a screen"

@@ -15,15 +15,19 @@ def working(text):
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.table import Column
 
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TimeElapsedColumn(),
-        TextColumn("gone, left"),
-        TimeRemainingColumn(),
+    def wide(width):
+        return Column(min_width=width, no_wrap=True)
+
+    columns = (  # a long description is cut, never the clock
+        BarColumn(bar_width=16, table_column=wide(16)),
+        TimeElapsedColumn(wide(7)),
+        TextColumn("gone, left", table_column=wide(10)),
+        TimeRemainingColumn(table_column=wide(7)),
+        TextColumn("{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis", ratio=1)),
     )
-    with Progress(*columns, console=Console(stderr=True), transient=True, speed_estimate_period=600) as progress:
+    with Progress(*columns, console=Console(stderr=True), transient=True, expand=True, speed_estimate_period=600) as progress:
         task = progress.add_task(harmless(text), total=None)
 
         def step(what, done):

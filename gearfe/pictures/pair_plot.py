@@ -91,10 +91,15 @@ def plot_pair(
     both[1].set(xlim=(-1.15 * half, 1.15 * half), ylim=(pair.pitch_radius_1 - half, pair.pitch_radius_1 + half))
     both[1].legend(loc="lower right")
     for axes in both:
-        axes.set(aspect="equal", xlabel="[mm]")
+        axes.set(aspect="equal", xlabel="[mm]", ylabel="[mm]")
         axes.grid(visible=False)
+    rim = pair.gear_2.r_rim
+    second = pair.centre_2 - (0.0 if rim is None else 0.5 * (pair.gear_2.r_f + rim))
+    for name, height in (("pinion", 0.0), ("wheel" if rim is None else "ring", second)):
+        both[0].text(0.0, height, name, ha="center", va="center", fontsize=9)
     both[0].set_title(f"{pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart")
-    both[1].set_title(f"the teeth in mesh; contact ratio {pair.eps_alpha:.2f}")
+    seen = ", transverse section" if pair.gear_1.beta else ""
+    both[1].set_title(f"the teeth in mesh{seen}; contact ratio {pair.eps_alpha:.2f}")
     figure.suptitle(title)
     return save_figure(figure, path, dpi=110)
 
