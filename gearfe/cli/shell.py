@@ -55,8 +55,11 @@ def tell(text):
 
 def as_options(error, options):
     """Text of an error or a warning: arguments of Python, ``unit=``, as the verb calls its `options`, ``--unit``."""
-    names = "|".join(map(re.escape, options))
-    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", str(error)) if names else str(error)
+    text, names = str(error), "|".join(map(re.escape, options))
+    if not names:
+        return text
+    text = re.sub(rf"\b({names})_frequency = ", lambda found: f"--{found[1]} ", text)  # of the verb `signal`: --mesh, --fault
+    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", text)
 
 
 def run(work, options=()):
