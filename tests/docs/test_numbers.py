@@ -2,7 +2,7 @@
 
 import re
 from dataclasses import replace
-from math import ceil, cos, radians
+from math import ceil, radians
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +10,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe.studies.harris import harris, harris_table
+from gearfe.studies.pattern import pattern_of
+from gearfe.studies.root_iso import told_root
 from validation.make.readme import outputs
 
 ROOT = Path(__file__).parents[2]
@@ -82,19 +85,31 @@ def test_start(tmp_path, monkeypatch):
     assert gf.compare("my.toml", case="cracked").headline in words_of(SITE / "start.md")
 
 
+def relieved(pair, amount, length):
+    """A pair's tip reliefs on both gears [mm]."""
+    gears = (("pinion", pair.gear_1), ("wheel", pair.gear_2))
+    return {side: gf.Flank(tip_relief=amount, tip_start_roll=gear.roll_a - length) for side, gear in gears}
+
+
 def test_design_relief(pair):
-    record = (ROOT / "tests" / "docs" / "printed" / "picture_16_harris.txt").read_text(encoding="utf-8")
-    assert record in (SITE / "howto" / "design.md").read_text(encoding="utf-8")
-    plain = gf.transmission_error(pair, [500.0, 1000.0, 2000.0, 4000.0], STEEL)
-    says("howto/design.md", "Without relief the peak-to-peak is {}, {}, {} and {} um", *1e6 * plain.peak_to_peak)
+    run = {"pair": pair, "material": STEEL}
+    found = harris(run | {"flanks": relieved(pair, 0.010, 2.6)}, [500.0, 1000.0, 2000.0, 4000.0])
+    assert harris_table(*found, pair.gear_1.r_b) in (SITE / "howto" / "design.md").read_text(encoding="utf-8")
+    short = gf.transmission_error(**run, forces=[2000.0], flanks=relieved(pair, 0.010, 1.0))
+    says("howto/design.md", "10 um over 1 mm leave {} um at 2000 N", 1e6 * short.peak_to_peak[0])
+    says("howto/design.md", "the first and the last {} mm of roll", (pair.eps_alpha - 1) * pair.p_bt)
     pinion = pair.gear_1
     diameter = 2 * np.hypot(pinion.roll_a - 2.6, pinion.r_b)
     says("howto/design.md", "from a diameter of {} mm on", diameter)
 
 
-def test_design_root_stress():
-    iso = 2000 * cos(radians(20)) / (20 * 2) * 1.599 * 1.818
-    says("howto/design.md", "$Y_F = 1.599$ and $Y_S = 1.818$: {} MPa, {} % more", iso, 100 * (iso / 134.2 - 1))
+def test_design_pattern_and_root_stress(tmp_path):
+    text = (SITE / "howto" / "design.md").read_text(encoding="utf-8")
+    scene = gf.new_scene(tmp_path / "my.toml")
+    assert "\n".join(told_root(gf.load_scene(scene).pair())) in text
+    scene.write_text(scene.read_text().replace("#F_beta_um", "F_beta_um"))
+    first, second, *_ = pattern_of(gf.load_scene(scene).pair()).told().splitlines()
+    assert f"{first}\n{second}\n```" in text
 
 
 def test_bores_and_textbook_formulas(pair):
