@@ -118,7 +118,6 @@ def _bands(runs, curve):
     both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
     figure.add_scatter(
         **both,
-        mode="lines",
         fill="toself",
         line={"width": 0},
         fillcolor="rgba(0,114,178,0.25)",
