@@ -10,7 +10,7 @@ MISSING = "not computed, something is missing here"
 def files():
     """Test files with a test marked slow, as paths below the root."""
     there = sorted((places.ROOT / "tests").rglob("test_*.py"))
-    return [path.relative_to(places.ROOT).as_posix() for path in there if "mark.slow" in path.read_text(encoding="utf-8")]
+    return [path.relative_to(places.ROOT).as_posix() for path in there if "pytest.mark.slow" in path.read_text(encoding="utf-8")]
 
 
 class Outcomes:
