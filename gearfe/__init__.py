@@ -2,7 +2,8 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
-`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`; `cli`.
+`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`;
+`app`; `cli`.
 """
 
 import importlib
@@ -16,6 +17,7 @@ _HOME = {
     "Gear": "geometry.tooth.gear",
     "GearMesh": "gearfe.machine.gear_mesh",
     "GearPair": "geometry.pair.gear_pair",
+    "IsoRootStress": "gearfe.studies.root_iso",
     "Layout": "gearfe.machine.layout",
     "Load": "gearfe.machine.tables",
     "Machine": "gearfe.machine.tables",
@@ -69,6 +71,7 @@ _HOME = {
     "expected_lines": "gearfe.signal.spectral_lines",
     "fit_surrogate": "gearfe.surrogates.fit",
     "export_mesh": "gearfe.elements.mesh_file",
+    "face_load": "gearfe.studies.pattern",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
     "housing_signal": "gearfe.signal.housing",
@@ -76,6 +79,7 @@ _HOME = {
     "stage_lines": "gearfe.signal.stage_lines",
     "indicator_table": "gearfe.signal.indicators",
     "integrate": "gearfe.signal.series",
+    "iso_root_stress": "gearfe.studies.root_iso",
     "load_scene": "gearfe.scene.load",
     "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",

@@ -108,6 +108,9 @@ from .studies.by_zone import compare as compare
 from .studies.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
+from .studies.pattern import face_load as face_load
+from .studies.root_iso import IsoRootStress as IsoRootStress
+from .studies.root_iso import iso_root_stress as iso_root_stress
 from .supports.shaft import Shaft as Shaft
 from .supports.support import Support as Support
 from .surrogates.fit import fit_surrogate as fit_surrogate

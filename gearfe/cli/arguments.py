@@ -32,8 +32,10 @@ def main(argv=None):
     verb.add_argument("--error", action="store_true", help=f"estimate the discretisation error of every k ({having('error')})")
     verb.add_argument(
         "--forces", type=float, nargs="+", metavar="N",
-        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N]: table, --plot",
+        help="instead of the stiffness, the transmission error over the mesh cycle under these forces [N], of modified flanks "
+        "beside plain involutes: table, --plot",
     )  # fmt: skip
+    verb.add_argument("--torques", type=float, nargs="+", metavar="NM", help="the same under these torques of the pinion [N m]")
     verb.add_argument("-o", "--output", metavar="FILE", help="save the curve: .csv, .npz, .mat or .json")
     verb.add_argument("--plot", metavar="FILE", help="draw the curve: .png, .svg or .pdf")
     verb = _verb(verbs, "compare", run.compare, "table of every formulation's error against finite elements, by zone, with cost")
@@ -56,19 +58,19 @@ def main(argv=None):
         help="what errors are against: fe3d (default of the option), finite elements of whole gears, minutes for each; or ritz3d",
     )  # fmt: skip
     verb = _verb(
-        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact lines, without a screen"
+        verbs, "render", run.render, "picture of the stress of the loaded teeth, or of their contact pattern, without a screen"
     )
     _scene_arguments(verb, count=False)
     verb.add_argument(
-        "--phase",
-        type=float,
-        metavar="X",
-        help="mesh phase (default: where the damaged tooth carries most; healthy spur gears: 0)",
-    )
+        "--phase", type=float, metavar="X",
+        help="mesh phase (default: where the damaged tooth carries most; of healthy gears: stress of spur gears at 0, others and "
+        "contact where pair 0 carries most)",
+    )  # fmt: skip
     verb.add_argument(
-        "--what", choices=["stress", "contact"], default="stress",
-        help="von Mises stress (in three dimensions for pits and helical gears), or contact pressure along the contact lines and "
-        "load over the face width (default: stress)",
+        "--what", choices=["stress", "contact", "pattern"], default="stress",
+        help="von Mises stress (in three dimensions for pits and helical gears); contact pressure along the contact lines of one "
+        "phase, and load over the face width; or both over a mesh cycle, with the largest pressure and the face load factor "
+        "(default: stress)",
     )  # fmt: skip
     verb.add_argument(
         "-o", "--output", metavar="FILE", required=True, help="picture: .png; stress also as .vtu: mesh, displacement, stress"
@@ -116,10 +118,12 @@ def main(argv=None):
     verb.add_argument("--carrier", type=float, metavar="HZ", help="carrier frequency")
     verb.add_argument("--teeth", type=int, metavar="Z", help="of a gear: FM0, FM4, NA4 and others from the mean of its turns")
     verb.add_argument("--shaft", type=float, metavar="HZ", help="turns of that gear in a second")
-    verb.add_argument("--tacho", metavar="NAME", help="column with pulses of its shaft, in place of --shaft")
+    verb.add_argument("--tacho", metavar="NAME", help="column with pulses of its shaft, or its speed in rpm, in place of --shaft")
     verb.add_argument("--pulses", type=int, default=1, metavar="N", help="pulses of the tachometer in a turn (default: 1)")
+    verb.add_argument("--level", type=float, metavar="X", help="height at which a pulse counts (default: half the highest)")
     _analysis_arguments(verb)
     verb.add_argument("--cepstrum", metavar="FILE", help="draw the cepstrum of the last case: .png, .svg or .pdf")
+    verb.add_argument("--orders", metavar="FILE", help="draw the spectra by turns of the shaft: .png, .svg or .pdf")
     verb.add_argument("--spectrogram", metavar="FILE", help="draw the spectrogram of the last case: .png, .svg or .pdf")
     verb = _verb(
         verbs, "report", tools.report, "one page of a scene, readable without a network: errors, curves, stress, vibration"
@@ -147,20 +151,43 @@ def main(argv=None):
     verb.add_argument("--dry-run", action="store_true", help="say how many windows, how long and how much disk; write nothing")
     verb = _verb(verbs, "new", tools.new, "write a scene of your own to start from, with all it can say as comments")
     verb.add_argument("output", metavar="FILE", help="the new file, for instance my.toml")
-    verb.add_argument("--teeth", type=int, nargs=2, default=(21, 31), metavar="Z", help="of pinion and wheel (default: 21 31)")
+    verb.add_argument("--teeth", type=int, nargs=2, metavar="Z", help="of pinion and wheel (default: 21 31, of a ring 21 63)")
     verb.add_argument("--module", type=float, default=2.0, metavar="MM", help="normal module [mm] (default: 2)")
     verb.add_argument("--helix", type=float, default=0.0, metavar="DEG", help="helix angle of the pinion [degrees] (default: 0)")
     verb.add_argument("--width", type=float, default=20.0, metavar="MM", help="face width [mm] (default: 20)")
+    verb.add_argument("--torque", type=float, metavar="NM", help="on the pinion [N m] (default: of 100 N per mm of width)")
+    verb.add_argument(
+        "--crack", type=float, nargs=2, metavar=("MM", "DEG"),
+        help="length [mm] and angle to the centre-line [degrees] of the pinion's root crack (default: level 0.3 at 45 degrees)",
+    )  # fmt: skip
     verb.add_argument(
         "--tip-relief", type=float, nargs=2, metavar=("UM", "MM"),
         help="tip relief of both gears [um], linear over so much roll below the tip [mm]: --tip-relief 20 1.5 (default: none)",
     )  # fmt: skip
-    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear; give its teeth, e.g. --teeth 31 84")
+    verb.add_argument("--ring", action="store_true", help="the wheel is an internal gear")
     verb = _verb(verbs, "check", tools.check, "say in words what a scene holds, and how each case would be solved")
     verb.add_argument("scene", metavar="SCENE", help="a .toml file, or a built-in scene (see 'gearfe scenes')")
     verb.add_argument("--picture", metavar="FILE", help="draw a pair with its damage to scale: .png, .svg or .pdf")
     verb.add_argument("--pair", metavar="NAME", help="which pair is drawn (default: its first)")
     verb.add_argument("--case", metavar="NAME", help="which case of damage is drawn (default: the first of the pair)")
+    verb = _verb(
+        verbs, "app", tools.app, "a page in the browser: turn a slider, see mesh, stiffness and transmission error at once"
+    )
+    verb.add_argument(
+        "scene", metavar="SCENE", nargs="?", help="opened in it: a built-in scene or a .toml file (default: an example)"
+    )
+    verb.add_argument("--pair", metavar="NAME", help="pair of the scene (default: its only one)")
+    verb.add_argument("--case", metavar="NAME", help="case of damage (default: its only one)")
+    verb.add_argument("--port", type=int, default=8033, metavar="N", help="of 127.0.0.1; 0: any that is free (default: 8033)")
+    verb.add_argument("--no-browser", action="store_true", help="only serve the page, do not open it")
+    verb.add_argument("--workers", type=int, metavar="N", help="solver processes (default: one per core, at least 2)")
+    verb.add_argument(
+        "--public", metavar="NAME", help="also answer to this name, of a reverse proxy on this machine: for a course"
+    )
+    verb.add_argument("--users", type=int, default=40, metavar="N", help="with --public: addresses at a time (default: 40)")
+    verb.add_argument(
+        "--tasks", type=int, default=600, metavar="N", help="with --public: of an address in a minute (default: 600)"
+    )
     verb = _verb(verbs, "completion", tools.completion, "print what completes verbs, options and scenes at the press of a key")
     verb.add_argument("shell", choices=("bash", "zsh"), help='eval "$(gearfe completion bash)" in your shell\'s start file')
     verb.set_defaults(verbs=verbs.choices)

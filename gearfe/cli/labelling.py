@@ -25,3 +25,4 @@ def dataset(arguments):
     if lost:
         print(f"  {len(lost)} conditions could not be simulated, the first: {next(iter(lost.values()))}")
     print(f"written: {arguments.output}, described in card.md")
+    print(f"  in Python: gearfe.open_dataset({str(arguments.output)!r}).windows({{'side': 'train'}})")

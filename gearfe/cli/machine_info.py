@@ -17,6 +17,8 @@ OPTIONAL = {  # package: (module, what it is good for); of the project's extras
     "pyarrow": ("pyarrow", "sweeps, and signals in Parquet"),
     "dask": ("dask", "sweeps on a cluster"),
     "distributed": ("distributed", "sweeps on a cluster"),
+    "starlette": ("starlette", "gearfe app"),
+    "uvicorn": ("uvicorn", "gearfe app"),
 }
 
 

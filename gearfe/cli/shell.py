@@ -54,7 +54,7 @@ def tell(text):
 
 
 def as_options(error, options):
-    """Text of an error in which arguments of Python, ``unit=``, are called as the verb calls its `options`, ``--unit``."""
+    """Text of an error or a warning: arguments of Python, ``unit=``, as the verb calls its `options`, ``--unit``."""
     names = "|".join(map(re.escape, options))
     return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", str(error)) if names else str(error)
 
@@ -68,12 +68,13 @@ def run(work, options=()):
     try:
         with warnings.catch_warnings(), contextlib.redirect_stdout(sys.stdout and Harmless(sys.stdout)):
             warnings.simplefilter("always", UserWarning)
-            warnings.showwarning = lambda message, *_: tell(f"note: {message}")
+            warnings.showwarning = lambda message, *_: tell(f"note: {as_options(message, options)}")
             work()
             if sys.stdout is not None:
                 sys.stdout.flush()
     except KeyboardInterrupt:
-        tell("interrupted; nothing half-written is left")
+        resumed = "; the same command goes on where it was" if "dry_run" in options else ""  # of verbs that fill a folder
+        tell(f"interrupted; nothing half-written is left{resumed}")
         return 130
     except (ValueError, RuntimeError) as error:
         tell(as_options(error, options))

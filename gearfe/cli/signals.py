@@ -5,35 +5,59 @@ from dataclasses import replace
 
 def signal(arguments):
     """``gearfe signal``."""
+    from ..markdown import aligned
     from ..steps import part
     from ..studies.vibration import analyse
     from .progress import working
     from .verbs import _check_outputs, _print_analysis
 
-    _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture")
+    _check_outputs(arguments, plot="picture", kurtogram="picture", cepstrum="picture", spectrogram="picture", orders="picture")
     if arguments.list:
         _print_channels(arguments)
         return
-    if arguments.teeth is not None and arguments.shaft is None and arguments.tacho is None:
-        raise ValueError("--teeth needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
+    for option in ("teeth", "orders"):
+        if getattr(arguments, option) is not None and arguments.shaft is None and arguments.tacho is None:
+            raise ValueError(f"--{option} needs the turns of that gear's shaft: give --shaft HZ or --tacho COLUMN")
     if arguments.pulses < 1:
         raise ValueError(f"--pulses {arguments.pulses}: a tachometer gives one or more in a turn")
     with working("reading"):
         with part("", 0.0, 0.5):
             signals = _read(arguments)
         with part("spectra and indicators", 0.5, 1.0):
-            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=next(iter(signals)))
+            found = analyse(signals, arguments.mesh, arguments.fault, carrier=arguments.carrier, channel=", ".join(signals))
+    for one in signals.values():
+        print(_told(one))
     _print_analysis(found, arguments)
     if arguments.teeth is not None:
         from ..signal.gear_indicators import gear_indicator_table, gear_table_text
 
         table = gear_indicator_table(signals, arguments.teeth)
-        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{gear_table_text(table)}")
+        print(f"\ngear of {arguments.teeth} teeth, from the average of its turns\n\n{aligned(gear_table_text(table))}")
     _draw(list(signals.values())[-1], arguments)
+    if arguments.orders:
+        _draw_orders(signals, arguments)
+
+
+def _told(one):
+    """What a record is: samples, rate, length, and the turns of its shaft."""
+    import numpy as np
+
+    text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"
+    if one.angle is None:
+        return text
+    turns = float(one.angle[-1] - one.angle[0]) / (2 * np.pi)
+    if turns < 2:
+        return f"{text}; shaft {turns:.2g} turns"
+    whole = np.interp(one.angle[0] + 2 * np.pi * np.arange(int(turns) + 1), one.angle, one.time)
+    speed = 1 / np.diff(whole)
+    text += f"; shaft {speed.min():.4g} to {speed.max():.4g} turns per second, {turns:.1f} turns"
+    smeared = (speed.max() - speed.min()) * turns > speed.mean()  # the first order leaves its bin
+    return f"{text}; lines are smeared in Hz, not by turns (--orders)" if smeared else text
 
 
 def _print_channels(arguments):
     """What each file holds."""
+    from ..signal.found import ANGLES, TIMES
     from ..signal.signal_file import channels
 
     for file in arguments.file:
@@ -42,6 +66,11 @@ def _print_channels(arguments):
         for name in found.channels():
             rate = f", {found.rates[name]:g} Hz" if name in found.rates else ""
             print(f"  {name} [{found.units.get(name) or 'no unit'}]: {found.vectors[name].size} samples{rate}")
+        for name in [*found.axes(TIMES), *found.axes(ANGLES)]:
+            values = found.vectors[name]
+            print(f"  {name} [{found.units.get(name) or 'no unit'}]: from {values[0]:.9g} to {values[-1]:.9g}")
+        for name, value in found.stated.items():
+            print(f"  stated: {name} = {value}")
         for text in found.other:
             print(f"  not read: {text}")
 
@@ -56,6 +85,7 @@ def _read(arguments):
         found = read_signals(
             file, None if arguments.column is None else [arguments.column], units=arguments.unit, rate=arguments.rate,
             header=arguments.header, scale=arguments.scale, tachometer=arguments.tacho, pulses=arguments.pulses,
+            level=arguments.level,
         )  # fmt: skip
         if len(found) > 1:
             raise ValueError(f"{file}: {len(found)} channels, {', '.join(map(repr, found))}: choose one by --column")
@@ -81,3 +111,16 @@ def _draw(one, arguments):
 
         plot_spectrogram(spectrogram(one), arguments.spectrogram, one.name)
         print(f"written: {arguments.spectrogram}")
+
+
+def _draw_orders(signals, arguments):
+    """Spectra by turns of the shaft, with the lines of the gear's mesh if its teeth are given."""
+    from ..pictures.vibration_plots import plot_spectra
+    from ..signal.orders import order_spectrum
+    from ..signal.spectral_lines import expected_lines
+
+    lines = expected_lines(arguments.teeth, 1.0, count=2, harmonics=2) if arguments.teeth else {"f_fault": 1.0}
+    named = {name.replace("f_m", "mesh").replace("f_fault", "turn"): order for name, order in lines.items()}
+    spectra = {name: order_spectrum(one) for name, one in signals.items()}
+    plot_spectra(spectra, named, arguments.orders, top=None if arguments.teeth else spectra[next(iter(spectra))].frequency[-1])
+    print(f"written: {arguments.orders}")

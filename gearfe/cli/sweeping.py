@@ -23,3 +23,5 @@ def sweep(arguments):
     for text, n in table["error"].value_counts().head(3).items():
         print(f"  {n} times: {text}")
     print(f"written: {arguments.output}")
+    print(f"  in Python: gearfe.open_runs({str(arguments.output)!r}).table()")
+    print(f"  gearfe report {arguments.output} -o runs.html")

@@ -26,7 +26,8 @@ def new(arguments):
     """``gearfe new``."""
     from ..scene.new import new_scene
 
-    options = {"teeth": tuple(arguments.teeth), "module": arguments.module, "helix_deg": arguments.helix}
+    options = {"teeth": arguments.teeth, "module": arguments.module, "helix_deg": arguments.helix}
+    options |= {"torque_Nm": arguments.torque, "crack": arguments.crack}
     amount, length = arguments.tip_relief or (None, None)
     options |= {"width": arguments.width, "ring": arguments.ring, "tip_relief_um": amount, "tip_length_mm": length}
     made = new_scene(arguments.output, **options)
@@ -54,6 +55,15 @@ def check(arguments):
         title = ", ".join((scene.name, arguments.pair or next(iter(scene.pairs)), case or "healthy"))
         plot_pair(chosen.pair, chosen.case(case).get("damage"), arguments.picture, title)
         print(f"written: {arguments.picture}")
+
+
+def app(arguments):
+    """``gearfe app``."""
+    from ..app.server import opened, serve
+
+    start = arguments.scene and opened(arguments.scene, arguments.pair, arguments.case)
+    names = ("port", "workers", "public", "users", "tasks")
+    serve(start=start, browser=not arguments.no_browser, **{name: getattr(arguments, name) for name in names})
 
 
 def completion(arguments):

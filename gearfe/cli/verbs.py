@@ -42,6 +42,7 @@ def stiffness(arguments):
     from ..stiffness.methods import fitted
     from ..stiffness.solve import mesh_stiffness
     from ..studies.losses import beside_health, zone_table
+    from ..studies.told_scene import told_supports
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
@@ -51,7 +52,7 @@ def stiffness(arguments):
     run, left_out = fitted(arguments.method, chosen.case(arguments.case))
     for text in left_out:
         print(f"{text}\n")
-    if arguments.forces:
+    if arguments.forces or arguments.torques:
         _transmission_error(scene, arguments, run)
         _print_assumptions(scene, arguments.assumptions)
         return
@@ -64,6 +65,8 @@ def stiffness(arguments):
         answer = beside_health(curve, solved, arguments.phases) if arguments.case else zone_table(curve)
     print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
     print(answer)
+    if soft := told_supports(curve):
+        print(f"\n{soft}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.output:
         curve.save(arguments.output)
@@ -76,24 +79,23 @@ def stiffness(arguments):
 
 
 def _transmission_error(scene, arguments, run):
-    """``gearfe stiffness --forces``."""
-    from ..stiffness.transmission_error import transmission_error
+    """``gearfe stiffness --forces`` and ``--torques``."""
+    from ..pictures.error_plots import plot_transmission_error
+    from ..pictures.stiffness_plots import told
+    from ..studies.harris import harris, harris_table
 
-    if arguments.output or arguments.force is not None:
-        raise ValueError("--forces prints and draws the transmission error of several loads: leave out --output and --force")
-    run = {name: value for name, value in run.items() if name != "force"}
+    if arguments.output or arguments.force is not None or (arguments.forces and arguments.torques):
+        raise ValueError("--forces, or --torques, is the transmission error of several loads: leave out --output and --force")
+    r_b = run["pair"].gear_1.r_b
+    forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
         options = {"extended": not arguments.no_extended, "refine": arguments.refine, "span": "cycle"}
-        pair, material = run.pop("pair"), run.pop("material")
-        found = transmission_error(
-            pair, arguments.forces, material, method=arguments.method, phases=arguments.phases, **run, **options
-        )
+        found, plain = harris(run, forces, method=arguments.method, phases=arguments.phases, **options)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
-    print(found.table())
+    print(harris_table(found, plain, r_b))
     if arguments.plot:
-        from ..pictures.stiffness_plots import told
-
-        found.plot(arguments.plot, _title(scene, arguments, told(found.curves[0], load=False)))
+        title = _title(scene, arguments, told(found.curves[0], load=False))
+        plot_transmission_error(found, arguments.plot, title, plain)
         print(f"written: {arguments.plot}")
 
 
@@ -104,6 +106,7 @@ def compare(arguments):
     from ..scene.references import printed_stiffness
     from ..studies.by_zone import compare as run
     from ..studies.case_table import printed_cases
+    from ..studies.told_scene import told_supports
 
     _check_outputs(arguments, plot="picture")
     scene = load_scene(arguments.scene)
@@ -119,6 +122,8 @@ def compare(arguments):
     load = f"{meta['force_N']:g} N on {meta['width_mm']:g} mm"
     print(f"{scene.title}\n\n{result.headline}\n")
     print(f"{result.pair_name}: mesh stiffness along the line of action, {load};\n{result.definition}")
+    if soft := told_supports(result.reference):
+        print(soft)
     if result.healthy:
         print(f"\nwhat the damage takes, ± its estimated error\n\n{aligned(result.loss_table())}")
     print(f"\nerrors against {meta['method']}; the estimate is its own discretisation error\n")
@@ -127,7 +132,7 @@ def compare(arguments):
         print(text)
     print()
     for why, names in result.reasons().items():
-        print(f"  no {names}: {why}")
+        print(f"  no {names}: {why.partition(' (reference=')[0]}")
     _print_assumptions(scene, arguments.assumptions)
     if arguments.plot:
         from ..pictures.stiffness_plots import plot_curves, told
@@ -180,20 +185,29 @@ def render(arguments):
     """``gearfe render``."""
     from ..scene.load import load_scene
     from ..stress.render import render_contact, render_stress
+    from ..studies.pattern import render_pattern
+    from ..studies.root_iso import told_root
     from ..units import in_newton_per_um
 
-    _check_outputs(arguments, output="picture" if arguments.what == "contact" else "stress")
+    _check_outputs(arguments, output="stress" if arguments.what == "stress" else "picture")
     scene = load_scene(arguments.scene)
-    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "phase": arguments.phase}
-    if arguments.what == "contact":
+    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "title": _title(scene, arguments)}
+    if arguments.what == "pattern":
+        if arguments.phase is not None:
+            raise ValueError("--what pattern is of a whole mesh cycle: leave out --phase, or take --what contact")
+        with working("contact pattern"):
+            print(render_pattern(pair, arguments.output, **options).told())
+    elif arguments.what == "contact":
         with working("contact lines"):
-            told = render_contact(pair, arguments.output, title=_title(scene, arguments), **options)
+            told = render_contact(pair, arguments.output, phase=arguments.phase, **options)
         print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
-            told = render_stress(pair, arguments.output, refine=arguments.refine, title=_title(scene, arguments), **options)
+            told = render_stress(pair, arguments.output, refine=arguments.refine, phase=arguments.phase, **options)
         print(told["text"])
         print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
+        for line in () if arguments.case else told_root(pair):
+            print(line)
     print(f"written: {arguments.output}")
 
 
@@ -253,7 +267,10 @@ def dynamics(arguments):
             print(f"  {case}: reference used because {stats['switched']}")
         if "chaotic" in stats:
             print(f"  {case}: {stats['chaotic']}")
-    _print_analysis(analysis(found, arguments.channel), arguments, scene.name)
+    report = analysis(found, arguments.channel)
+    _print_analysis(report, arguments, scene.name)
+    if report.too_short:
+        print(f"longer: --duration {report.resolving:.3g}")
     _print_assumptions(scene, arguments.assumptions, scene.assumptions)
     if arguments.output:
         list(found.values())[-1].save(arguments.output)
@@ -279,7 +296,7 @@ def _print_analysis(report, arguments, name=""):
     if arguments.kurtogram:
         from ..pictures.vibration_plots import plot_kurtogram
 
-        plot_kurtogram(kurtogram, arguments.kurtogram, ", ".join(filter(None, (name, last.name, report.channel))))
+        plot_kurtogram(kurtogram, arguments.kurtogram, f"{name}, {last.name}, {report.channel}" if name else last.name)
         print(f"written: {arguments.kurtogram}")
     if arguments.plot:
         report.plot(arguments.plot, ", ".join(filter(None, (name, report.channel))))

@@ -76,14 +76,14 @@ def plot_contact(
         _draw_envelope(bottom, contact.cells)
     else:
         _draw_loads(bottom, contact.cells[phase])
-    bottom.set_ylim(bottom=0)
+    bottom.set_ylim(0, 1.08 * bottom.dataLim.ymax)
     bottom.set_xlabel("along the width [mm]")
     figure.legend(fontsize=8, loc="outside lower center", ncol=6)
     return save_figure(figure, path, dpi=110)
 
 
 def _draw_lines(axes, pair, shown):
-    """Loaded and unloaded pieces of contact lines, and the edges that carry most."""
+    """Loaded pieces of contact lines by pressure from 0 on, unloaded ones grey, and the edges that carry most."""
     from matplotlib.collections import LineCollection
 
     segments, pressures, edges = [], [], {"tip corner": [], "end face": []}
@@ -94,13 +94,19 @@ def _draw_lines(axes, pair, shown):
             along = np.interp(ends, z, radius)
             segments += [[(a, r), (b, s)] for a, b, r, s in zip(*ends, *along, strict=True)]
             loaded = cells.load[at] > 0
-            pressures.append(np.where(loaded, cells.pressure[at], np.nan) if len(shown) > 1 else cells.pressure[at])
+            pressures.append(np.where(loaded, cells.pressure[at], -1.0))
             corner = loaded & (cells.corner[at] > 0)
             edges["tip corner"] += list(zip(z[corner], radius[corner], strict=True))
         edges["end face"] += [(z, float(np.hypot(pair.gear_1.r_b, roll))) for z, roll in cells.at_ends(pair)]
-    drawn = LineCollection(segments, cmap="viridis", linewidths=5 if len(shown) == 1 else 2, zorder=2)
-    drawn.set_array(np.concatenate(pressures))
+    thick, pressure = 5 if len(shown) == 1 else 2, np.concatenate(pressures)
+    idle = LineCollection([segments[i] for i in np.flatnonzero(pressure < 0)], color="0.85", linewidths=thick, zorder=1)
+    drawn = LineCollection(segments, cmap="viridis", linewidths=thick, zorder=2)
+    drawn.set_array(np.where(pressure < 0, np.nan, pressure))
+    drawn.set_clim(0.0, max(np.nanmax(pressure), 1.0))
+    axes.add_collection(idle)
     axes.add_collection(drawn)
+    if idle.get_segments():
+        axes.plot([], [], color="0.85", linewidth=thick, label="without load")
     for (name, places), (mark, colour) in zip(edges.items(), ((".", "#d55e00"), ("s", "#cc79a7")), strict=True):
         if places:
             axes.plot(*np.array(places).T, mark, color=colour, markersize=3, zorder=3, label=f"edge contact: {name}")
@@ -110,7 +116,7 @@ def _draw_lines(axes, pair, shown):
 
 def _draw_loads(axes, cells):
     colours = [f"C{k}" for k in range(10)]
-    for at in _lines_of(cells):
+    for at in (one for one in _lines_of(cells) if cells.load[one].any()):
         order = int(cells.order[at[0]])
         z, load = _stairs(cells.z[at], cells.width[at], cells.load[at] / cells.width[at])
         named = f"pair {order:+d}" if f"pair {order:+d}" not in axes.get_legend_handles_labels()[1] else None

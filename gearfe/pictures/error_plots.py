@@ -3,10 +3,11 @@
 import numpy as np
 
 from ..files import save_figure
+from .look import COLOURS
 from .stiffness_plots import told
 
 
-def plot_transmission_error(found, path=None, title=None):
+def plot_transmission_error(found, path=None, title=None, plain=None):
     """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` if given.
 
     Parameters
@@ -16,6 +17,8 @@ def plot_transmission_error(found, path=None, title=None):
         Picture file; its suffix decides (png, svg, pdf).
     title : str, optional
         Default: teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`.
+    plain : TransmissionError, optional
+        That of the same pair with plain involutes: its peak-to-peak is drawn too.
 
     Returns
     -------
@@ -27,7 +30,7 @@ def plot_transmission_error(found, path=None, title=None):
     figure = Figure(figsize=(8, 6.5), layout="constrained")
     top, bottom = figure.subplots(2, 1, height_ratios=[2, 1])
     order = np.argsort(found.force)[::-1]
-    colours = colormaps["viridis"](np.linspace(0.05, 0.9, order.size))
+    colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))  # no paler: light loads are lines on white, too
     for i, colour in zip(order.tolist(), colours, strict=True):
         phase, te = _closed(found.phase, found.te[i])
         top.plot(phase, 1e6 * te, color=colour, label=f"{found.force[i]:g} N")
@@ -38,7 +41,11 @@ def plot_transmission_error(found, path=None, title=None):
     top.set_ylabel("transmission error [µm]")
     top.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     rising, swing = order[::-1], 1e6 * found.peak_to_peak
-    bottom.plot(found.force[rising], swing[rising], "o-", label="under load")
+    bottom.plot(
+        found.force[rising], swing[rising], "o-", color=COLOURS[0], label="under load" if plain is None else "modified flanks"
+    )
+    if plain is not None:
+        bottom.plot(plain.force[rising], 1e6 * plain.peak_to_peak[rising], "s--", color=COLOURS[1], label="plain involutes")
     bottom.axhline(1e6 * np.ptp(found.unloaded), color="black", linestyle=":", label="unloaded")
     bottom.set_xlim(left=0)
     bottom.set_ylim(bottom=0)

@@ -15,6 +15,7 @@ LOOK = {
     "legend": {"orientation": "h", "y": -0.22, "x": 0},
     "hovermode": "x unified",
 }
+CLEAR = "rgba(0,0,0,0)"  # the page's own ground, dark or light
 POINTS = 4000  # of a spectrum that is drawn
 
 
@@ -76,7 +77,7 @@ def share_figure(curve):
 
 def spectra_figure(found):
     """Spectra of an `Analysis` by case, its expected lines marked and named."""
-    figure = _figure(height=460, hovermode="closest", margin=LOOK["margin"] | {"t": 70})
+    figure = _figure(height=485, hovermode="closest", margin=LOOK["margin"] | {"t": 95})
     end = 1.15 * max(found.lines.values()) if found.lines else None
     for number, (name, one) in enumerate(found.spectra.items()):
         last = one.frequency.size if end is None else int(np.searchsorted(one.frequency, end)) + 1
@@ -122,5 +123,5 @@ def tooth_figure(pressed, field, scale, largest):
     camera = {"eye": dict(zip("xyz", 1.15 * view, strict=True)), "up": dict(zip("xyz", up, strict=True))}
     camera["projection"] = {"type": "orthographic"}
     axes = {f"{name}axis": {"visible": False} for name in "xyz"}
-    figure.update_layout(scene={"aspectmode": "data", "camera": camera, **axes})
+    figure.update_layout(scene={"aspectmode": "data", "camera": camera, "bgcolor": CLEAR, **axes})
     return figure

@@ -43,10 +43,11 @@ class Findings:
 
     @property
     def headline(self):
-        """The answer in one sentence, that of the pair of `hurt_pair`."""
+        """The answer in one sentence, that of the pair of `hurt_pair`, which is named if there are others."""
         name = self.hurt_pair
         case = self.case if self.case in self.scene.pairs[name].damage else None
-        return f"{name}: {self.comparisons[name, case].headline}"
+        said = self.comparisons[name, case].headline
+        return f"{name}: {said}" if len(self.scene.pairs) > 1 else said[:1].upper() + said[1:]
 
     @property
     def hurt_pair(self):
@@ -118,11 +119,9 @@ def _tooth(found):
     """The damaged tooth with its load in three dimensions; None, with a note, for damage that cannot be drawn so."""
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
-    run = chosen.case(case)
+    options = {name: getattr(chosen, name) for name in ("face", "groove", "flanks", "misalignment", "supports")}
     try:
-        pressed = pressed_tooth(
-            chosen.pair, chosen.force, chosen.materials, run.get("damage"), face=chosen.face, groove=chosen.groove
-        )
+        pressed = pressed_tooth(chosen.pair, chosen.force, chosen.materials, chosen.case(case).get("damage"), **options)
     except ValueError as error:
         found.notes.append(f"no tooth in three dimensions: {error}")
         return None

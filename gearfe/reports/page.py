@@ -9,16 +9,17 @@ from importlib import resources
 from pathlib import Path
 
 from ..markdown import table_cells
-from ..scene.load import Scene
+from ..scene.load import Scene, scene_names
 from ..steps import part
 from ..stiffness.methods import METHODS
 from ..stiffness.provenance import provenance
 from ..stress.render import enlarged, render_stress, rounded_up
+from ..studies.told_scene import told_details, told_load, told_supports
 from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
 from .findings import find
 from .template import page_maker
 
-PICTURE = (1120, 840)  # of stress [px]
+PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
 CONFIG = {"responsive": True, "displaylogo": False}
 
 
@@ -65,7 +66,8 @@ def report(
         pictures = _pictures(found)
     figures = _Figures()
     return write(
-        found=found, headline=found.headline, scene=found.scene, case=found.case, pairs=_pairs(found, figures), pictures=pictures,
+        found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
+        pairs=_pairs(found, figures), pictures=pictures,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
         versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
         turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
@@ -96,16 +98,9 @@ def _pairs(found, figures):
     out = []
     for name, chosen in found.scene.pairs.items():
         pair = chosen.pair
-        facts = {
-            "teeth": f"{pair.gear_1.z} / {pair.gear_2.z}{' (ring)' if pair.gear_2.internal else ''}",
-            "normal module": f"{pair.gear_1.m_n:g} mm",
-            "centre distance": f"{pair.a:.5g} mm",
-            "contact ratio, overlap": f"{pair.eps_alpha:.4g}, {pair.eps_beta:.3g}",
-            "face widths": f"{pair.gear_1.b:g} / {pair.gear_2.b:g} mm",
-            "force along the line of action": f"{chosen.force:g} N",
-        }
+        told = [told_load(chosen), *told_details(chosen), *pair.notes]
         parts = [_comparison(found.comparisons[key], key[1], figures) for key in found.comparisons if key[0] == name]
-        out.append({"name": name, "drawing": pair._repr_html_(), "facts": facts, "parts": parts, "notes": pair.notes})
+        out.append({"name": name, "drawing": pair._repr_html_(), "told": told, "parts": parts})
         if found.case in chosen.damage:
             out[-1]["cases"] = figures(cases_figure(_both(found, name)))
     return out
@@ -135,7 +130,7 @@ def _comparison(one, case, figures):
         "seconds": [one.seconds[name] for name in names],
         "curves": figures(curves_figure(one.curves)),
         "share": figures(share_figure(one.reference)),
-        "why": one.reference.meta.get("why", ""),
+        "supports": told_supports(one.reference),
     }
 
 
@@ -148,12 +143,12 @@ def _pictures(found):
             file = Path(folder) / "stress.png"
             title = f"{found.scene.name}, {name}, {case or 'healthy'}"
             try:
-                told = render_stress(chosen, file, case=case, size=PICTURE, refine=0.7, title=title)
+                told = render_stress(chosen, file, case=case, size=PICTURE, refine=REFINE, title=title)
             except (RuntimeError, ValueError) as error:
                 out.append({"missing": f"{title}: {error}"})
                 continue
             data = base64.b64encode(file.read_bytes()).decode()
-        out.append({"data": data, "title": title, "told": told})
+        out.append({"data": data, "title": title, "told": told, "refine": REFINE})
     return out
 
 
@@ -197,6 +192,12 @@ def _methods(found):
     """Methods that were used, and what each is."""
     used = dict.fromkeys(name for one in found.comparisons.values() for name in one.curves)
     return {name: METHODS[name] for name in used if name in METHODS}
+
+
+def _command(found):
+    """What was typed for the page, the file of a scene of one's own without its folder."""
+    name = found.scene.name if found.scene.name in scene_names() else f"{found.scene.name}.toml"
+    return f"gearfe report {name}{f' --case {found.case}' if found.case else ''} -o page.html"
 
 
 def _versions(found):

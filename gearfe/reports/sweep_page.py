@@ -115,9 +115,15 @@ def _bands(runs, curve):
         return ""
     phase, (low, middle, high) = found["phase"].to_numpy(), found[curve].to_numpy()
     figure = _figure(xaxis={"title": "mesh phase"}, yaxis={"title": f"{curve} [{runs.units[curve]}]"})
-    both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]])}
+    both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
     figure.add_scatter(
-        **both, fill="toself", line={"width": 0}, fillcolor="rgba(0,114,178,0.25)", name="5 to 95 %", hoverinfo="skip"
+        **both,
+        mode="lines",
+        fill="toself",
+        line={"width": 0},
+        fillcolor="rgba(0,114,178,0.25)",
+        name="5 to 95 %",
+        hoverinfo="skip",
     )
-    figure.add_scatter(x=phase, y=middle, line={"color": "#0072b2"}, name="middle")
+    figure.add_scatter(x=phase, y=middle, mode="lines", line={"color": "#0072b2"}, name="middle")
     return _html(figure, "figure-bands")

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from geometry.damage.crack import Crack
+from geometry.damage.crack import Crack, crack_path
 from geometry.damage.front import path_length
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
@@ -50,7 +50,7 @@ material = "steel"
 [pair.stage]
 gear_1 = "pinion"
 gear_2 = "wheel"
-force_N = {force}  # along the transverse line of action: torque of the pinion over its base radius of {r_b} mm
+{load}
 {face}{pair_words}
 # What you had to assume; it is printed with every result, until you change the values it holds for.
 [[assumption]]
@@ -58,11 +58,11 @@ what = "{bores}"
 why = "a start: give the true ones"
 holds = {{ "gear.pinion.r_bore_mm" = {bore}, {held} }}
 
-# Damage, by case. A root crack at 45 degrees; at a level of 0.5 it reaches the centre-line of the tooth.
+# Damage, by case: a root crack.
 [[crack]]
 case = "cracked"
 gear = "pinion"
-level = 0.3  # or as a length: length_mm = {crack:.2f}
+{crack}
 
 {words}"""
 FACE = 'face = "helical"  # or "herringbone" with groove_mm, the relief groove as part of b_mm\n'
@@ -73,11 +73,13 @@ RACK = "addendum = 1.0\ndedendum = 1.25\ntip_radius = 0.38\n"
 def new_scene(
     path: str | Path,
     *,
-    teeth: tuple[int, int] = (21, 31),
+    teeth: tuple[int, int] | None = None,
     module: float = 2.0,
     helix_deg: float = 0.0,
     width: float = 20.0,
     ring: bool = False,
+    torque_Nm: float | None = None,
+    crack: tuple[float, float] | None = None,
     tip_relief_um: float | None = None,
     tip_length_mm: float | None = None,
 ) -> Path:
@@ -89,8 +91,8 @@ def new_scene(
     ----------
     path : path
         Of the new file, ``.toml``. An existing file is not overwritten.
-    teeth : (int, int)
-        Of pinion and wheel.
+    teeth : (int, int), optional
+        Of pinion and wheel; default 21 and 31, of a ring 21 and 63.
     module : float
         Normal module [mm].
     helix_deg : float
@@ -99,6 +101,10 @@ def new_scene(
         Face width [mm].
     ring : bool
         The wheel is an internal gear.
+    torque_Nm : float, optional
+        On the pinion [N m]; default: that of 100 N along the line of action for each mm of width.
+    crack : (float, float), optional
+        Length [mm] and angle to the centre-line [degrees] of the pinion's root crack; default: level 0.3 at 45 degrees.
     tip_relief_um, tip_length_mm : float, optional
         Linear tip relief of both gears [um], and the length of roll below the tip over which it runs [mm]: give both.
 
@@ -117,6 +123,7 @@ def new_scene(
         raise ValueError(f"{path}: a scene is a .toml file; give a name such as my.toml")
     if path.exists():
         raise ValueError(f"{path} exists and is not overwritten: give another name, or remove it")
+    teeth = teeth or ((21, 63) if ring else (21, 31))
     rack: dict[str, Any] = {"m_n": module, "alpha_n": math.radians(20), "b": width}
     blank = [Gear(z=z, beta=math.radians(helix_deg), r_bore=0.1 * module, **rack) for z in teeth]
     bores = [round(0.5 * gear.r_f, 1) for gear in blank]
@@ -130,19 +137,40 @@ def new_scene(
         wheel = Gear(z=teeth[1], beta=-beta, r_bore=bores[1], **rack)
         support, held = f"r_bore_mm = {bores[1]}", f'"gear.wheel.r_bore_mm" = {bores[1]}'
     pair = GearPair(pinion, wheel)
-    force = round(100.0 * width, 1)
+    force, load = _force(pinion, width, torque_Nm)
     pair_words, words = vocabulary(pair, force, _relief(pair, tip_relief_um, tip_length_mm))
     text = TEXT.format(
         name=path.name, title=f"Pair {teeth[0]}/{teeth[1]}, module {module:g} mm", z_1=teeth[0], z_2=teeth[1], m_n=float(module),
         beta=float(helix_deg), mate_beta=math.degrees(wheel.beta) + 0.0, width=float(width), bore=bores[0],
-        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, force=force, r_b=f"{pinion.r_b:.4g}",
-        pair_words=pair_words, words=words, crack=path_length(pinion, Crack(level=0.3)),
+        wheel_rack=RING_RACK if ring else RACK, wheel_support=support, load=load,
+        pair_words=pair_words, words=words, crack=_crack(pinion, crack),
         face=FACE if helix_deg else "", held=held,
         bores=f"bore {bores[0]} mm (pinion) and {'rim ' + str(rim) if ring else 'bore ' + str(bores[1])} mm (wheel), held",
     )  # fmt: skip
     with written(path) as name:
         Path(name).write_text(text, encoding="utf-8")
     return path
+
+
+def _force(pinion, width, torque):
+    """Force along the line of action [N], of a torque on the pinion [N m] if given, and the line of the file that says it."""
+    if torque is not None and not 0 < torque < math.inf:
+        raise ValueError(f"torque = {torque} N m: a mesh is pressed together; give a positive torque on the pinion")
+    force = round(100.0 * width, 1) if torque is None else round(1e3 * torque / pinion.r_b, 3)
+    told = f"{force * pinion.r_b * 1e-3:.4g} N m over the base radius, {pinion.r_b:.5g} mm"
+    return force, f"force_N = {force}  # along the transverse line of action: {told}"
+
+
+def _crack(pinion, given):
+    """Keys of the crack: its level, or the length [mm] and angle [degrees] that are given; the length is checked on its gear."""
+    if given is None:
+        length = path_length(pinion, Crack(level=0.3))
+        return f"level = 0.3  # at 0.5 it reaches the centre-line; or as a length: length_mm = {length:.2f}\nangle_deg = 45.0"
+    length, angle = given
+    if not 5 <= angle <= 90:
+        raise ValueError(f"a crack of {length:g} mm at {angle:g} degrees: the angle to the centre-line is from 5 to 90 degrees")
+    crack_path(pinion, Crack(length=length, angle=math.radians(angle)))
+    return f"length_mm = {length}\nangle_deg = {angle}  # to the centre-line"
 
 
 def _relief(pair, amount, length):

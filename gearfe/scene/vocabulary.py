@@ -83,6 +83,12 @@ FLANK = """\
 #eccentric_tooth = 0.0
 # Measured: table_roll_mm = [...] with table_removed_um = [...]; wear_roll_mm with wear_um; for each tooth pitch_um (how far it
 # lies behind its place) and tooth_scale (factor of its profile and lead).
+{mate}"""
+MATE = """\
+#[flank.wheel]  # with the same keys
+#gear = "wheel"
+#tip_relief_um = {amount:.1f}
+#tip_start_length_mm = {length:.3f}
 """
 HELD = """\
 # What holds the hubs; without, the bores are rigid. Springs:
@@ -114,14 +120,21 @@ MACHINE = """\
 #[machine]
 #model = "helical_pair"  # spur pairs too; or planetary, compound_planetary, herringbone_planetary with their gears
 #speed_rpm = 1500.0  # of the pinion
-#torque_Nm = {torque:.2f}  # on the pinion: force_N times its base radius
+#torque_Nm = {torque:.2f}  # on the pinion
 #n_planets = 3  # of planetary sets
-#contact = "linear"  # or "impact": Hertz's law with damping; its keys are in [machine.impact]
+#contact = "linear"  # or "impact": Hertz's law with damping, its keys in [machine.impact] below
 #backlash_um = 0.0
 #profile_error_um = 0.0  # at mesh frequency
 #runout_um = 0.0  # of the pinion
 #misplaced_um = 0.0  # of the wheel, away from the pinion
 #misplaced_y_um = 0.0  # and across
+#
+#[machine.impact]  # read where contact = "impact"
+#damping_Ns_per_mm = 300.0  # largest damping; left out: as a number a thousandth of Hertz's K [N/mm**1.5]
+#depth_mm = 0.1  # penetration from which the damping is full
+# Of the model "planetary" only: friction = [0.08, 0.05], static and dynamic, at slips of friction_speeds_mm_per_s = [0.1, 10.0];
+# pulses of the load on the carrier: pulse_Nm = 250.0, pulse_period_s = 0.5, pulse_width_s = 0.05.
+# Of "herringbone_planetary": [machine.bodies.sun], planet, ring, carrier with mass_kg and inertia_kgm2; else from the gears.
 """
 
 
@@ -141,15 +154,16 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
     }  # fmt: skip
+    mate = MATE.format(**numbers)
     parts = (CRACK, FLANK, HELD) if pair.gear_2.internal else (CRACK, FLANK, HELD, MACHINE)
-    words = "\n".join(part.format(**numbers) for part in parts)
+    words = "\n".join(part.format(mate=mate, **numbers) for part in parts)
     return PAIR.format(a=pair.a, span=3 * b), _relieved(words, *relief) if relief else words
 
 
 def _relieved(words, amount, length):
     """The commented lines with those of a tip relief in force, of both gears."""
     given = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
-    words = words.replace('#[flank.pinion]\n#gear = "pinion"', '[flank.pinion]\ngear = "pinion"')
+    words = re.sub(r"^#(\[flank\.\w+\].*)\n#(gear = )", r"\1\n\2", words, flags=re.M)
     for line in given:
         words = re.sub(rf"^#{line.split(' ')[0]} = [\d.]+", line, words, flags=re.M)
-    return "\n".join((words, "[flank.wheel]", 'gear = "wheel"', *given, ""))
+    return words

@@ -31,6 +31,8 @@ class Found:
         What else the file holds, in words, for the answer to who finds no channel in it.
     hint : str
         Of a file whose columns have no names: what to do.
+    parts : bool
+        Whether the values are parts of a full scale that the file does not say.
     """
 
     vectors: dict[str, NDArray[Any]]
@@ -40,6 +42,7 @@ class Found:
     nested: str = ""
     other: list[str] = field(default_factory=list)
     hint: str = ""
+    parts: bool = False
 
     def state(self, name: str, value: Any) -> None:
         """Note a value, if `KEYS` has its name."""
@@ -54,6 +57,10 @@ class Found:
             if near:
                 return near
         return list(fit.values())
+
+    def named(self, kind: tuple[str, ...]) -> str:
+        """What is stated under names of a kind, with these names, in words."""
+        return " and ".join(f"{name} = {value}" for name, value in self.stated.items() if plain(self.leaf(name)) in kind)
 
     def leaf(self, name: str) -> str:
         """Name without its groups."""

@@ -24,7 +24,7 @@ DAMAGE += (NotImplementedError, OSError, RecursionError, TypeError, ValueError, 
 
 
 def wav_file(path: str | os.PathLike[str]) -> Found:
-    """Channels of a WAV file as parts of its full scale: whole numbers are divided by the largest the file can hold."""
+    """Channels of a WAV file: whole numbers as parts of its full scale, divided by the largest the file can hold."""
     from scipy.io import wavfile
 
     try:
@@ -36,7 +36,7 @@ def wav_file(path: str | os.PathLike[str]) -> Found:
     except DAMAGE as error:
         raise _damaged(path, "WAV", error) from error
     values = _full_scale(np.atleast_2d(data.T))
-    found = Found({f"channel {i}": one for i, one in enumerate(values, 1)})
+    found = Found({f"channel {i}": one for i, one in enumerate(values, 1)}, parts=data.dtype.kind != "f")
     found.rates = dict.fromkeys(found.vectors, float(rate))
     return found
 

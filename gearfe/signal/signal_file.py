@@ -3,6 +3,7 @@
 import math
 import os
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from .array_file import array_file, hdf_file
 from .found import ANGLES, RATES, SHAFTS, TIMES, Found
 from .recorder_file import parquet_file, tdms_file, uff_file, wav_file
 from .series import Signal
-from .tachometer import with_tachometer
+from .tachometer import SPEEDS, with_speed_record, with_tachometer
 from .text_table import text_table
 from .time_axis import step_of
 
@@ -24,6 +25,7 @@ TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
 LONGEST = 60  # characters of a unit
 AGREE = 1e-3  # between a stated rate and the time column
+SAME = {"m/s²": "m/s^2", "m/s2": "m/s^2", "m/s**2": "m/s^2", "m/s/s": "m/s^2", "µm": "um", "μm": "um"}  # spellings of a unit
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
     ".unv": uff_file, ".uf": uff_file, ".tdms": tdms_file, ".parquet": parquet_file,
@@ -49,11 +51,12 @@ def read_signal(
       the numbers, or the last comment (# or %), names the columns and their units: ``time [s], housing [m/s^2]``; units may
       stand in a row below the names. Rows above are titles. Time in s, ms or us, a shaft's ``angle`` in rad or deg. Titles and
       comments may state ``rate = 61440 Hz``, ``unit = m/s^2``, ``shaft_frequency = 16.7 Hz``. In UTF-8 or UTF-16. Warned of:
-      Windows-1252, marks between thousands, times rounded to more than a tenth of a step.
+      Windows-1252, marks between thousands, empty cells, times of a clock (``2024-03-12 10:00:00.25``, ``10:00:00,25``), which
+      are the time, times rounded to more than a tenth of a step.
     - ``.mat`` (also of version 7.3), ``.npz``, ``.h5``, ``.hdf5``: vectors by name, columns of long matrices (``acc 1``), fields
       of structs (``run.acc``) and cells (``run{2}``); ``time`` [s], ``angle`` [rad]; scalars ``rate``, ``shaft_frequency`` [Hz];
       text or attribute ``unit``. A response that gearfe wrote: columns by channel.
-    - ``.wav``: ``channel 1``...; parts of full scale, to be given `unit` and `scale`.
+    - ``.wav``: ``channel 1``...; whole numbers as parts of full scale, to be given `unit` and `scale`.
     - ``.uff``, ``.unv`` (data sets 58, functions over time), ``.tdms``, ``.parquet``: channels with the units and steps stated;
       dates of a clock in Parquet are the time.
 
@@ -101,6 +104,7 @@ def read_signals(
     scale: float = 1.0,
     tachometer: str | None = None,
     pulses: int = 1,
+    level: float | None = None,
 ) -> dict[str, Signal]:
     """Read channels of a file, by name; see `read_signal` for the formats.
 
@@ -114,9 +118,12 @@ def read_signals(
     rate, header, scale
         As of `read_signal`.
     tachometer : str, optional
-        Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`.
+        Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
+        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, which is told; its integral is the angle.
     pulses : int
         Of the tachometer, in a turn.
+    level : float, optional
+        At which a pulse counts, in the tachometer's unit; default: half its height.
 
     Returns
     -------
@@ -137,7 +144,12 @@ def read_signals(
     if pulse is None:
         return out
     clock = _signal(path, found, pulse, rate=rate, unit="1" if not found.units.get(pulse) else None)
-    return {name: with_tachometer(one, clock, pulses) for name, one in out.items()}
+    if clock.unit in SPEEDS:
+        warnings.warn(
+            f"{path}: {pulse!r} is in {clock.unit}: taken for the shaft's speed, its integral for the angle", stacklevel=3
+        )
+        return {name: with_speed_record(one, clock) for name, one in out.items()}
+    return {name: with_tachometer(one, clock, pulses, level=level) for name, one in out.items()}
 
 
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
@@ -177,12 +189,15 @@ def _signal(
     if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
     time, angle = (_axis(path, found, name, names, factors) for names, factors in ((TIMES, TIME), (ANGLES, TURN)))
-    turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)])
-    rates = found.nearest(found.stated, name, RATES) + ([found.rates[name]] if name in found.rates else [])
+    turning = _one(path, "shaft_frequency", [shaft_frequency, *found.nearest(found.stated, name, SHAFTS)], found.named(SHAFTS))
     values = found.vectors[name]
+    _whole(path, name, values)
+    if found.parts and scale == 1 and unit and unit != "1":
+        told = f"full scale is taken for 1 {unit}; give what it is as scale="
+        warnings.warn(f"{path}: the values are parts of full scale, and {told}", stacklevel=4)
     return Signal(
         values if scale == 1 else scale * np.asarray(values, dtype=float),
-        _rate(path, rate, rates, time, values.size),
+        _rate(path, found, name, rate, time),
         _unit(path, found, name, unit, scale),
         f"{Path(path).stem} {name}",
         angle,
@@ -192,12 +207,17 @@ def _signal(
 
 def _unit(path, found, name, given, scale):
     said = [found.units.get(name, ""), *map(str, found.nearest(found.stated, name, ("unit",)))]
-    stated = {text.strip() for text in said if text.strip()}
-    if given and given.strip() and scale != 1:
-        return given.strip()
-    stated |= {given.strip()} if given and given.strip() else set()
+    stated = {SAME.get(text.strip(), text.strip()) for text in said if text.strip()}
+    asked = SAME.get((given or "").strip(), (given or "").strip())
+    if asked and scale != 1:
+        return asked
+    stated |= {asked} if asked else set()
     if len(stated) != 1:
         text = f"units {', '.join(sorted(stated))}" if stated else "no unit"
+        if found.parts:
+            raise ValueError(
+                f"{path}: {text} for {name!r}, whose values are parts of full scale: give what that is as scale= and unit="
+            )
         raise ValueError(f"{path}: {text} for {name!r}; give one, in the file ('{name} [m/s^2]', 'unit = m/s^2') or as unit=")
     return stated.pop()
 
@@ -212,8 +232,9 @@ def _axis(path: Any, found: Found, channel: str, names: tuple[str, ...], factors
     unit = found.units.get(chosen[0], "")
     if unit not in factors:
         raise ValueError(
-            f"{path}: column {chosen[0]!r} has unit {unit!r}, but must state one of {', '.join(factors)}: "
-            f"'{chosen[0]} [{next(iter(factors))}]' in the file, or for a text table in header=, the names of all its columns"
+            f"{path}: column {chosen[0]!r} has {f'unit {unit!r}' if unit else 'no unit'}, but must state one of "
+            f"{', '.join(factors)}: '{chosen[0]} [{next(iter(factors))}]' in the file, or for a text table in header=, "
+            "the names of all its columns"
         )
     return factors[unit] * found.vectors[chosen[0]]
 
@@ -236,17 +257,19 @@ def _choose(path, found, column):
     raise ValueError(f"{path}: {asked}; it has {found.told()}: give one as column=")
 
 
-def _one(path, name, values):
-    """The one finite positive number among `values` [Hz], the first of which may be None; None if there is none."""
+def _one(path, name, values, where=""):
+    """The one finite positive number among `values` [Hz], the first of which may be None; None if there is none.
+
+    `where` says what states them.
+    """
     numbers = [_hertz(path, name, value) for value in values if value is not None]
     if not numbers:
         return None
     if values[0] is not None and any(abs(number / numbers[0] - 1) < 1e-9 for number in numbers[1:]):
         return numbers[0]
     if max(numbers) > min(numbers) * (1 + 1e-9):
-        raise ValueError(
-            f"{path}: {name} is given as {' and '.join(f'{number:g}' for number in numbers)} Hz; say which holds by {name}="
-        )
+        told = f"{' and '.join(f'{number:g}' for number in numbers)} Hz{f' ({where})' if where else ''}"
+        raise ValueError(f"{path}: {name} is given as {told}; say which holds by {name}=")
     return numbers[0]
 
 
@@ -261,13 +284,17 @@ def _hertz(path, name, value):
     return number
 
 
-def _rate(path, given, stated, time, samples):
-    rate = _one(path, "rate", [given, *stated])
+def _rate(path, found, name, given, time):
+    stated = found.nearest(found.stated, name, RATES) + ([found.rates[name]] if name in found.rates else [])
+    rate = _one(path, "rate", [given, *stated], found.named(RATES))
+    samples = found.vectors[name].size
     if time is None:
         if rate is None:
-            raise ValueError(
-                f"{path} states no sampling rate: add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
-            )
+            others = found.channels() if len(found.channels()) > 1 else []
+            rising = [one for one in others if np.all(np.diff(found.vectors[one]) > 0)]
+            clock = f"; if {rising[0]!r}, which rises all along, is the time, name it so by header=" if rising else ""
+            told = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
+            raise ValueError(f"{path} states no sampling rate: {told}{clock}")
         return rate
     if time.size != samples or samples < 2:
         raise ValueError(f"{path}: {time.size} times for {samples} samples")
@@ -276,3 +303,17 @@ def _rate(path, given, stated, time, samples):
         told = "leave rate= out, or mend the times" if given is not None else "mend one of them in the file"
         raise ValueError(f"{path}: rate = {rate:g} Hz, but its times are {1 / step:g} Hz; {told}")
     return 1 / step if rate is None else rate
+
+
+def _whole(path, name, values):
+    """Raise ValueError if samples are missing: how many, and the longest stretch without."""
+    bad = np.flatnonzero(~np.isfinite(values))
+    if not bad.size:
+        return
+    edges = np.concatenate([[-1], bad, [values.size]])
+    most = int(np.argmax(np.diff(edges)))
+    first, last = edges[most] + 1, edges[most + 1] - 1
+    raise ValueError(
+        f"{path}: {name!r}: sample {bad[0]} is {values[bad[0]]}, the first of {bad.size} that are missing; cut the file to "
+        f"samples {first} to {last}, its longest whole stretch, or fill the gaps: nothing is filled unasked"
+    )

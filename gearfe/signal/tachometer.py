@@ -1,4 +1,4 @@
-"""The angle of a shaft from the pulses of a tachometer or an encoder."""
+"""The angle of a shaft from the pulses of a tachometer or an encoder, or from its speed."""
 
 from dataclasses import replace
 
@@ -8,6 +8,7 @@ from scipy.interpolate import CubicSpline
 
 from .series import Signal
 
+SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
 FEWEST = 4  # pulses
 QUIET = 0.25  # of the height of the pulses: how far below the level a signal must fall before it can rise again
 MISSED = 1.7  # times the intervals before and after it: one that long hides a pulse that was lost
@@ -45,7 +46,7 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
     if rises.size < FEWEST:
         raise ValueError(
             f"{tachometer.name}: {rises.size} pulses through {-level if falling else level:g} {tachometer.unit}, but an angle "
-            f"needs {FEWEST} or more; give their level, or a longer record"
+            f"needs {FEWEST} or more; give their height as level=, or a longer record"
         )
     before = x[rises - 1]
     part = np.clip((level - before) / (x[rises] - before), 0, 1)
@@ -93,11 +94,40 @@ def tachometer_angle(
         at = times[lost[0] + 1]
         raise ValueError(
             f"{tachometer.name}: no pulse for {gaps[lost[0] + 1]:.4g} s after {at:.6g} s, between intervals of "
-            f"{gaps[lost[0]]:.4g} s: one was lost, or the shaft has a mark missing; give another level, or cut there"
+            f"{gaps[lost[0]]:.4g} s: one was lost, or the shaft has a mark missing; give another height as level=, or cut there"
         )
     samples = np.flatnonzero((tachometer.time >= times[0]) & (tachometer.time <= times[-1]))
     angle = CubicSpline(times, 2 * np.pi / pulses * np.arange(times.size))(samples / tachometer.rate)
     return angle, samples
+
+
+def with_speed_record(signal: Signal, speed: Signal) -> Signal:
+    """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
+
+    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not.
+
+    Parameters
+    ----------
+    signal, speed : Signal
+        Of one rate and length; the speed in one of the units of `SPEEDS`.
+
+    Returns
+    -------
+    Signal
+
+    Raises
+    ------
+    ValueError
+        If the two differ in rate or length, or the shaft stands still or turns back.
+    """
+    _check_together(signal, speed)
+    low = int(np.argmin(speed.values))
+    if not speed.values[low] > 0:
+        raise ValueError(
+            f"{speed.name}: {speed.values[low]:g} {speed.unit} at sample {low}, but orders need a shaft that turns on"
+        )
+    turns = np.cumsum((speed.values[1:] + speed.values[:-1]) / 2) * SPEEDS[speed.unit] / speed.rate
+    return replace(signal, angle=2 * np.pi * np.append(0.0, turns), shaft_frequency=None)
 
 
 def with_tachometer(
@@ -127,10 +157,14 @@ def with_tachometer(
     ValueError
         If the two differ in rate or length; if pulses are missing.
     """
-    if (signal.rate, signal.values.size) != (tachometer.rate, tachometer.values.size):
-        raise ValueError(
-            f"{signal.name}: {signal.values.size} samples at {signal.rate:g} Hz, but {tachometer.name} has "
-            f"{tachometer.values.size} at {tachometer.rate:g} Hz: give records that were taken together"
-        )
+    _check_together(signal, tachometer)
     angle, samples = tachometer_angle(tachometer, pulses, level=level, falling=falling)
     return replace(signal, values=signal.values[samples], angle=angle, shaft_frequency=None)
+
+
+def _check_together(signal, other):
+    if (signal.rate, signal.values.size) != (other.rate, other.values.size):
+        raise ValueError(
+            f"{signal.name}: {signal.values.size} samples at {signal.rate:g} Hz, but {other.name} has {other.values.size} at "
+            f"{other.rate:g} Hz: give records that were taken together"
+        )

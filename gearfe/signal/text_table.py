@@ -1,6 +1,5 @@
 """Channels of text tables as people export them: title rows, comments, units below the names, decimal commas, no names at all."""
 
-import csv
 import os
 import re
 import warnings
@@ -9,21 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .found import KEYS, Found, plain
+from .found import KEYS, TIMES, Found, plain
+from .text_cells import CLOCK, DATE, GROUPS, cells_of, is_number, numbers, plain_number, since_start, value
 
 SEPARATORS = (";", "\t", ",", None)  # of cells; None: blanks
 LOOKED = 200  # rows at the end of a table by which its way of writing numbers is told
 UNITS = re.compile(
-    r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|\[.*\]|\(.*\)"
+    r"-|%|V|mV|pC|g|s|ms|us|rad|deg|°|k?Hz|rpm|1/min|[munkM]?(m|N|Nm|Pa|W|A)|[mu]?m/s(\^?2|²|\*\*2)?|°C|K|bar|hh:mm:ss\S*|\[.*\]|\(.*\)"
 )
 STATEMENT = re.compile(r"([\w ]+?)\s*(?:[\[(](\w+)[\])])?\s*[:=;,\t]+\s*([^;,\t]+(?:,\d+)?)[;,\t\s]*(\w*)[;,\t\s]*")
-
-
-SPACE = "[ \xa0\u2009\u202f]"  # blanks, also those that do not break
-GROUPS = {  # by decimal mark, what stands between thousands (a regular expression), and numbers that have it
-    mark: {one: re.compile(rf"[-+]?\d{{1,3}}({one}\d{{3}})+({re.escape(mark)}\d*)?(e[-+]?\d+)?", re.IGNORECASE) for one in groups}
-    for mark, groups in {".": (",", "'", SPACE), ",": (r"\.", "'", SPACE)}.items()
-}
 
 
 class Way(NamedTuple):
@@ -75,6 +68,7 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
         raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
     table = _table(path, rows[way.above :], way, len(names))
     found.vectors, found.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
+    _clocks(path, found, cells_of(rows[way.above][1], way.separator, len(names)))
     for line in (*titles, *comments):
         _state(path, found, line, way.mark)
     return found
@@ -84,34 +78,6 @@ def named(cell: str) -> tuple[str, str]:
     """Name and unit of ``housing [m/s^2]`` or ``housing (m/s^2)``."""
     match = re.fullmatch(r"(.*?)\s*(?:\[([^\[]*)\]|\(([^(]*)\))?", cell.strip().strip('"').strip(), re.DOTALL)
     return (match[1], (match[2] or match[3] or "").strip()) if match else (cell.strip(), "")
-
-
-def _cells(line, separator):
-    if separator is not None and '"' in line:  # a separator between quotes parts nothing
-        return [cell.strip() for cell in next(csv.reader([line.rstrip(f"{separator} ")], delimiter=separator))]
-    whole = line if separator is None else line.rstrip(f"{separator} ")
-    return [cell.strip().strip('"').strip() for cell in whole.split(separator)]
-
-
-def _plain(cell, mark, group=""):
-    """A number as Python reads it."""
-    if group and GROUPS[mark][group].fullmatch(cell):
-        cell = re.sub(group, "", cell)
-    return cell.replace(mark, ".") if mark == "." or "." not in cell else ""
-
-
-def _is_number(cell, mark, group=""):
-    try:
-        float(_plain(cell, mark, group))
-    except ValueError:
-        return False
-    return True
-
-
-def _numbers(line, separator, mark, group=""):
-    """Count of cells if all are numbers, else 0."""
-    found = _cells(line, separator)
-    return len(found) if all(_is_number(cell, mark, group) for cell in found) else 0
 
 
 def _way(rows, given):
@@ -139,10 +105,10 @@ def _ways(rows, marks, most):
         for separator in SEPARATORS:
             if group and separator in (None, mark):  # thousands parted like cells would be cells
                 continue
-            counts = Counter(n for _, line in rows[-LOOKED:] if (n := _numbers(line, separator, mark, group)))
+            counts = Counter(n for _, line in rows[-LOOKED:] if (n := numbers(line, separator, mark, group)))
             score, count = sum(counts.values()), counts.most_common(1)[0][0] if counts else 0
             if score and score >= most:
-                above = next((i for i, (_, line) in enumerate(rows) if _numbers(line, separator, mark, group) == count), 0)
+                above = next((i for i, (_, line) in enumerate(rows) if numbers(line, separator, mark, group) == count), 0)
                 way = Way(separator, mark, count, above, group)
                 best, most = [*best, way] if score == most else [way], score
     return best, most
@@ -153,19 +119,19 @@ def _fits(rows, way):
     if not way.above:
         return False
     line = rows[way.above - 1][1]
-    return len(_cells(line, way.separator)) == way.columns and not any(_numbers(line, way.separator, mark) for mark in ".,")
+    return len(cells_of(line, way.separator)) == way.columns and not any(numbers(line, way.separator, mark) for mark in ".,")
 
 
 def _names(titles, comments, way, found):
     """Names of the columns with their units, from the rows above the numbers, or the comments."""
-    rows = [cells for line in titles if len(cells := _cells(line, way.separator)) == way.columns]
+    rows = [cells for line in titles if len(cells := cells_of(line, way.separator)) == way.columns]
     if len(rows) > 1 and all(UNITS.fullmatch(cell) for cell in rows[-1]):
         return [f"{name} [{unit.strip('[]()')}]" for name, unit in zip(*rows[-2:], strict=True)]
-    if titles and len(_cells(titles[-1], way.separator)) == way.columns:
+    if titles and len(cells_of(titles[-1], way.separator)) == way.columns:
         return rows[-1]
-    if titles and not rows and len(cells := _cells(titles[-1], way.separator)) > 1:
+    if titles and not rows and len(cells := cells_of(titles[-1], way.separator)) > 1:
         return cells  # a header whose count does not fit is told with the first row
-    rows = [cells for line in comments if len(cells := _cells(line, way.separator)) == way.columns]
+    rows = [cells for line in comments if len(cells := cells_of(line, way.separator)) == way.columns]
     rows = [cells for cells in rows if len(cells) > 1 or re.fullmatch(r"[^:=]+\[.+\]", cells[0])] or rows[:0]
     if rows:
         return rows[-1]
@@ -176,39 +142,54 @@ def _names(titles, comments, way, found):
 
 
 def _table(path, rows, way, count):
-    if way.group:
-        return _grouped(path, rows, way, count)
+    """Values, nan where a cell is empty."""
+    last = cells_of(rows[-1][1], way.separator)
+    if way.group or way.mark == way.separator or not all(is_number(cell, way.mark) for cell in last):
+        return _by_cell(path, rows, way, count)
     lines = [line if way.separator is None else line.rstrip(f"{way.separator} ") for _, line in rows]
-    if way.mark == ",":
-        if any("." in line for line in lines):  # 1.5 among decimal commas, or 1.234,5
-            raise ValueError(_bad_row(path, rows, way, count))
-        lines = [line.replace(",", ".") for line in lines]
+    if way.mark == "," and any("." in line for line in lines):  # 1.5 among decimal commas, or 1.234,5
+        return _by_cell(path, rows, way, count)
     try:
-        table = np.loadtxt(lines, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
-    except ValueError as error:
-        raise ValueError(_bad_row(path, rows, way, count) or f"{path}: {error}") from error
-    if table.shape[1] != count:
-        raise ValueError(_bad_row(path, rows, way, count))
-    return table
+        plain = [line.replace(",", ".") for line in lines] if way.mark == "," else lines
+        table = np.loadtxt(plain, delimiter=way.separator, ndmin=2, quotechar='"', comments=None)
+    except ValueError:  # a cell is empty, or wrong
+        return _by_cell(path, rows, way, count)
+    return table if table.shape[1] == count else _by_cell(path, rows, way, count)
 
 
-def _grouped(path, rows, way, count):
-    """Numbers with something between their thousands, which is told."""
-    wrong = _bad_row(path, rows, way, count)
-    if wrong:
-        raise ValueError(wrong)
-    cells = [_cells(line, way.separator) for _, line in rows]
-    one = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-    warnings.warn(f"{path}: thousands are taken to be parted: {one!r} is {_plain(one, way.mark, way.group)}", stacklevel=6)
-    return np.array([[float(_plain(cell, way.mark, way.group)) for cell in row] for row in cells])
+def _by_cell(path, rows, way, count):
+    """The same, cell by cell: with thousands that are parted, commas between quotes, empty cells; which is told."""
+    cells = [cells_of(line, way.separator, count) for _, line in rows]
+    table = [[value(cell, way.mark, way.group) for cell in row] for row in cells]
+    wrong = next((i for i, row in enumerate(table) if len(row) != count or None in row), None)
+    if wrong is not None:
+        line = rows[wrong][1]
+        shown = line if len(line) <= 80 else f"{line[:80]}..."
+        raise ValueError(f"{path}, line {rows[wrong][0]}: {shown!r} is not a row of {count} numbers")
+    if way.group:
+        one = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
+        told = f"thousands are taken to be parted: {one!r} is {plain_number(one, way.mark, way.group)}"
+        warnings.warn(f"{path}: {told}", stacklevel=6)
+    empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
+    if empty:
+        warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)
+    return np.array(table)
 
 
-def _bad_row(path, rows, way, count):
-    for i, line in rows:
-        if _numbers(line, way.separator, way.mark, way.group) != count:
-            shown = line if len(line) <= 80 else f"{line[:80]}..."
-            return f"{path}, line {i}: {shown!r} is not a row of {count} numbers"
-    return None
+def _clocks(path, found, first):
+    """Make a column of clock times, of whose cells `first` are the first row, the time; take dates away."""
+    for name, cell in zip(list(found.vectors), first, strict=True):
+        if DATE.fullmatch(cell):
+            found.other.append(f"{name!r} (dates)")
+            del found.vectors[name]
+        elif CLOCK.fullmatch(cell):
+            seconds = since_start(found.vectors.pop(name))
+            if found.axes(TIMES):
+                found.other.append(f"{name!r} (of a clock, beside {found.axes(TIMES)[0]!r})")
+                continue
+            taken = name if plain(name) in TIMES else "time"
+            found.vectors[taken], found.units[taken] = seconds, "s"
+            warnings.warn(f"{path}: {name!r} ({cell}) is taken for the time, in seconds from its first row on", stacklevel=5)
 
 
 def _state(path, found, line, mark):

@@ -42,7 +42,8 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
     coarse, i = float(printed.max()), int(np.argmax(off)) if step > 0 else time.size - 1
     told = f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
     if not step > 0 or coarse < UNEVEN * step or (np.diff(time) < 0).any():
-        raise ValueError(f"{told}a gap, or a varying rate; resample first")
+        gap = _gap(time)
+        raise ValueError(f"{path}: {gap}" if gap else f"{told}a gap, or a varying rate; resample first")
     if rate is None and coarse > BLURRED * (time[-1] - time[0]):
         raise ValueError(f"{told}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
     found, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
@@ -55,6 +56,20 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
         stacklevel=6,
     )
     return found
+
+
+def _gap(time):
+    """What to do where times that else rise evenly leap; empty if they do not."""
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    leaps = np.flatnonzero(steps > 1.5 * usual)
+    if not (usual > 0 and 0 < leaps.size < steps.size / 10 and np.ptp(np.delete(steps, leaps)) < UNEVEN * usual):
+        return ""
+    worst = int(leaps[np.argmax(steps[leaps])])
+    lost = round(steps[worst] / usual) - 1
+    more = f", the widest of {leaps.size} gaps" if leaps.size > 1 else ""
+    between = f"between {time[worst]:.9g} and {time[worst + 1]:.9g} s"
+    return f"{lost} samples are missing {between}{more}; cut the file there, or fill the gap"
 
 
 def rounding(time: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -8,10 +8,12 @@ from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
 from ..scene.load import Scene, ScenePair
-from ..stiffness.inputs import by_gear, choose
+from ..stiffness.curve import StiffnessCurve
+from ..stiffness.inputs import by_gear, choose, overlap
 from ..stiffness.supported import supports_of
 from ..supports.shaft import Shaft
 from ..supports.support import Support
+from ..units import in_newton_per_um
 from .losses import told_damage
 
 SIDES = ("pinion", "wheel")
@@ -52,27 +54,43 @@ def told_gear(gear: Gear) -> str:
 
 
 def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
-    pair = chosen.pair
-    torques = [chosen.force * gear.r_b * 1e-3 for gear in (pair.gear_1, pair.gear_2)]
+    pair, face = chosen.pair, chosen.face or ("helical" if chosen.pair.gear_1.beta else "spur")
+    across = f", overlap ratio {overlap(pair, face, chosen.groove):.3f}" if face != "spur" else ""
     yield (
-        f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, contact ratio {pair.eps_alpha:.3f}; "
-        f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+        f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
+        f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
     )
-    if chosen.face:
-        yield f"  teeth run {chosen.face}" + (f", with a groove of {chosen.groove:g} mm" if chosen.groove else "")
-    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
-        if side in chosen.flanks:
-            yield f"  flank of the {side}: {told_flank(chosen.flanks[side], gear)}"
-    if chosen.misalignment:
-        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
-        yield "  misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
-    for side, held in chosen.supports.items():
-        yield f"  {side} held by {_held(held)}"
+    if face == "herringbone":
+        groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
+        yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
+    yield from (f"  {text}" for text in told_details(chosen))
     for case in (None, *chosen.damage):
         damage = chosen.damage.get(case, {}) if case else {}
         what = "healthy" if case is None else f"case {case}: {', '.join(_where(chosen, damage))}"
         yield f"  {what}; {_method(chosen, damage)}"
     yield from (f"  {note}" for note in pair.notes)
+
+
+def told_load(chosen: ScenePair) -> str:
+    """Force of a pair and the torques that it is."""
+    torques = [chosen.force * gear.r_b * 1e-3 for gear in (chosen.pair.gear_1, chosen.pair.gear_2)]
+    return f"{chosen.force:g} N along the line of action, {torques[0]:.4g} N m on the pinion, {torques[1]:.4g} N m on the wheel"
+
+
+def told_details(chosen: ScenePair) -> Iterator[str]:
+    """Flanks, misalignment and supports of a pair, a line for each; none of a plain pair that is held at its bores."""
+    pair, bent = chosen.pair, chosen.flanks
+    for side, gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
+        if side in bent:
+            yield f"flank of the {side}: {told_flank(bent[side], gear)}"
+    if not pair.gear_1.beta and 1 < pair.eps_alpha < 2 and any(one.tip_relief or one.root_relief for one in bent.values()):
+        shared = (pair.eps_alpha - 1) * pair.p_bt
+        yield f"two pairs of teeth share the load over the first and the last {shared:.3g} mm of roll, one carries in between"
+    if chosen.misalignment:
+        amounts = {axis: 1e3 * getattr(chosen.misalignment, axis) for axis in ("F_beta", "f_sigma_beta", "f_sigma_delta")}
+        yield "misaligned: " + ", ".join(f"{axis} {value:g} um" for axis, value in amounts.items() if value)
+    for side, held in chosen.supports.items():
+        yield f"{side} held by {_held(held)}"
 
 
 def told_flank(flank: Flank, gear: Gear) -> str:
@@ -105,7 +123,9 @@ def _held(held: Support | Shaft) -> str:
     if isinstance(held, Shaft):
         parts = ", ".join(f"{one.length:g} mm of {one.diameter:g} mm" for one in held.segments)
         places = " and ".join(f"{at:g}" for at in held.bearings)
-        return f"a shaft of {parts}, bearings at {places} mm, gear at {held.gear:g} mm" + (", one piece" if held.integral else "")
+        stiff = " and ".join("rigid" if math.isinf(one) else f"{1e-3 * one:g} N/um" for one in held.bearing_stiffness)
+        whole = ", one piece" if held.integral else ""
+        return f"a shaft of {parts}, bearings at {places} mm ({stiff}), gear at {held.gear:g} mm{whole}"
     units = {"radial": ("N/um", 1e3), "axial": ("N/um", 1e3), "tilt": ("Nm/mrad", 1e6), "torsion": ("Nm/mrad", 1e6)}
     values = {name: getattr(held, name) for name in units}
     soft = [f"{name} {value / units[name][1]:g} {units[name][0]}" for name, value in values.items() if math.isfinite(value)]
@@ -133,3 +153,14 @@ def _machine(scene: Scene) -> str:
     run = scene.machine
     law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
+
+
+def told_supports(curve: StiffnessCurve) -> str:
+    """How much of the deflection is that of shafts and springs, in words; empty if the hubs are held rigidly."""
+    if curve.lte_supports is None:
+        return ""
+    part, own = float(curve.lte_supports.mean() / curve.lte.mean()), curve.without_supports().k.mean()
+    return (
+        f"shafts and springs take {100 * part:.0f} % of the deflection, and are in k; "
+        f"teeth and bodies alone have {in_newton_per_um(own)} N/um in the mean"
+    )

@@ -20,6 +20,7 @@ from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import BINS, expected_lines, find_lines
 from ..steps import part, steps
+from .record_length import resolving_seconds, too_short
 
 FREE = 1e-3  # what is left of a free vibration when a record begins, of its size at the start
 UNDAMPED = 0.5  # of the duration, before it, left out where a free vibration does not die out
@@ -38,7 +39,8 @@ class Analysis:
     """Spectra and indicators of one channel of some responses, or of a measured signal, by case.
 
     `signals` are what was analysed, `fault` the frequency of the fault looked for [Hz], `lines` the expected frequencies by name
-    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicator_table`.
+    [Hz], `spectra` by case, `amplitudes` by case and line, `indicators` as of `gearfe.indicator_table`, `resolving` the
+    seconds of a record that part the lines of the fault from those beside them (`resolving_seconds`).
     """
 
     channel: str
@@ -48,6 +50,12 @@ class Analysis:
     spectra: dict
     amplitudes: dict
     indicators: dict
+    resolving: float = 0.0
+
+    @property
+    def too_short(self):
+        """What to do if the record is too short to resolve the lines of the fault; empty if it is not."""
+        return too_short(min(one.duration for one in self.signals.values()), self.resolving)
 
     @property
     def unit(self):
@@ -79,9 +87,11 @@ class Analysis:
             sizes = (f"{self.amplitudes[case][name]:.3g}" for case in self.spectra)
             rows.append([in_words(name), f"{self.lines[name]:.2f}", *sizes])
         hidden = [f"{in_words(name)} ({value:.2f} Hz)" for name, value in self.lines.items() if name not in shown]
-        against = f" and {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
+        against = f" or {RISE:g} times the healthy one" if len(self.spectra) > 1 else ""
         least = f"{FLOOR:g} times the noise around it, {RANGE:g} of the record's rms{against}"
-        told = f"\n\nnot above {least}: {', '.join(hidden)}" if hidden else ""
+        told = f"\n\nno more than {least}: {', '.join(hidden)}" if hidden else ""
+        if hidden and self.too_short:
+            told += f"\n\n{self.too_short}"
         return "\n".join(map(table_row, rows)) + told
 
     def envelope(self):
@@ -94,6 +104,7 @@ class Analysis:
         none = f"fewer than {PULSES} lines of the fault have {FLOOR:g} times their noise floor" + (
             f" and {RISE:g} times healthy" if compared else ""
         )
+        none += f"; {self.too_short}" if self.too_short else ""
         name = list(self.signals)[-1]
         return found, f"{name}: squared envelope from {low:.0f} to {high:.0f} Hz, its most impulsive band: " + (
             "; ".join(told.values()) or none
@@ -308,7 +319,8 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
     amplitudes = {case: {name: two[1] for name, two in one.items()} for case, one in placed.items()}
     both = (mesh, fault or turning) if mesh and (fault or turning) else (None, None)
     table = indicator_table(signals, *both, healthy=next(iter(signals)))
-    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table)
+    resolving = resolving_seconds(fault, turning, carrier)
+    return Analysis(channel, signals, fault or turning, lines, spectra, amplitudes, table, resolving)
 
 
 def _lines(mesh, fault, turning, carrier, resolution):

@@ -21,7 +21,7 @@ def test_bash_completes_verbs_options_choices_and_scenes(capsys):
     assert completed(script, "gearfe", "stiffness", "pl") == ["planetary_pitting"]
     assert set(completed(script, "gearfe", "compare", "")) >= set(scene_names())
     assert completed(script, "gearfe", "stiffness", "x", "--pha") == ["--phases"]
-    assert completed(script, "gearfe", "render", "x", "--what", "") == ["stress", "contact"]
+    assert completed(script, "gearfe", "render", "x", "--what", "") == ["stress", "contact", "pattern"]
     assert completed(script, "gearfe", "completion", "z") == ["zsh"]
 
 

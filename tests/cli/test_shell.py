@@ -23,6 +23,11 @@ def failing(error):
     return work
 
 
+def test_interrupted_work_that_goes_on_says_so(capfd):
+    assert shell.run(failing(KeyboardInterrupt()), ["output", "dry_run"]) == 130
+    assert capfd.readouterr().err.endswith("the same command goes on where it was\n")
+
+
 @pytest.mark.parametrize(
     ("error", "code", "said"),
     [

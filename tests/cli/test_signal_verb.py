@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.io import savemat
 
 from gearfe.cli import main
@@ -28,7 +29,7 @@ def test_a_gear_with_a_tachometer(runs, capsys):
     pictures = ["--cepstrum", str(runs / "c.png"), "--spectrogram", str(runs / "s.png")]
     assert main([*line, "--teeth", str(Z), *pictures]) == 0
     out = capsys.readouterr().out
-    rows = {m[1]: (float(m[2]), float(m[3])) for m in re.finditer(r"^\| (\S+) \| ([\d.]+) \| ([\d.]+) \|$", out, re.MULTILINE)}
+    rows = {m[1]: (float(m[2]), float(m[3])) for m in re.finditer(r"^\| (\S+) +\| +([\d.]+) \| +([\d.]+) \|$", out, re.MULTILINE)}
     assert rows["FM4"][1] > 2 * rows["FM4"][0]
     assert rows["NA4"][1] > 2 * rows["NA4"][0]
     assert (runs / "c.png").stat().st_size > 5000
@@ -37,7 +38,29 @@ def test_a_gear_with_a_tachometer(runs, capsys):
 
 def test_channels_are_listed(runs, capsys):
     assert main(["signal", str(runs / "new.mat"), "--list"]) == 0
-    assert "run.tacho [no unit]: 12000 samples" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "run.tacho [no unit]: 12000 samples" in out
+    assert "stated: run.fs = 4000.0" in out
+
+
+def test_the_speed_of_a_shaft_is_told_and_drawn_by_turns(runs, capsys):
+    """By pulses, from the first to the last, and by a column of the speed: 10 to 16 turns a second, 39 turns."""
+
+    def told(*line):
+        assert main(["signal", *line]) == 0
+        out, err = capsys.readouterr()
+        shown = re.search(r"shaft ([\d.]+) to ([\d.]+) turns per second, ([\d.]+) turns; lines are smeared", out)
+        return [float(one) for one in shown.groups()], err
+
+    record = [str(runs / "worn.mat"), "--unit", "m/s^2", "--column", "acc", "--tacho", "tacho"]
+    pulses, _ = told(*record, "--orders", str(runs / "o.png"), "--teeth", str(Z))
+    assert_allclose(pulses, [10.3, 15.7, 37.0], rtol=0.01)
+    assert (runs / "o.png").stat().st_size > 5000
+    table = np.transpose([TIME, np.cos(9 * TIME), 60 * (10 + 2 * TIME)])
+    np.savetxt(runs / "s.csv", table, delimiter=",", header="time [s],a [g],n [rpm]", comments="")
+    speed, said = told(str(runs / "s.csv"), "--tacho", "n", "--teeth", str(Z))
+    assert "'n' is in rpm: taken for the shaft's speed" in said
+    assert_allclose(speed, [10.05, 15.95, 39.0], rtol=0.01)
 
 
 @pytest.mark.parametrize(

@@ -120,6 +120,7 @@ def test_card_counts_what_is_there(made):
     count = ((labels["fault"] == "crack") & (labels["side"] == "train")).sum()
     assert f"| crack | 0.4 | {count} | 0 |" in text
     assert "hears nothing" not in text
+    assert "half of the amplitude at 4000 Hz" in text
 
 
 def test_stopped_and_continued_is_the_same(made, plan, tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.pictures.error_plots import plot_transmission_error
 from gearfe.pictures.inline import line_svg
 from gearfe.pictures.look import COLOURS, DASHES, MARKS, look
 from gearfe.pictures.stiffness_plots import plot_lengths
@@ -35,6 +36,19 @@ def test_lengths_are_not_squashed_by_an_axis_from_zero():
     assert axes.get_ylim()[0] > 30
     assert len({line.get_linestyle() for line in axes.lines[:2]}) == 2
     assert [text.get_text() for text in axes.get_legend().get_texts()][-1] == "mild, by a formula"
+
+
+def test_lines_of_every_load_stand_out_from_the_paper():
+    """WCAG 2, 1.4.11: a contrast of 3 to 1."""
+    from matplotlib.colors import to_rgb
+
+    loads = np.array([500.0, 1000.0, 2000.0, 4000.0, 8000.0])
+    phase, te = np.arange(8) / 8, np.outer(loads, np.ones(8)) * 1e-9
+    found = gf.TransmissionError(loads, phase, te, np.zeros(8), ())
+    figure = plot_transmission_error(found, title="")
+    for line in figure.axes[0].lines:
+        rgb = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(line.get_color())]
+        assert 1.05 / (np.dot(rgb, [0.2126, 0.7152, 0.0722]) + 0.05) >= 3.0, line.get_label()
 
 
 def test_portraits_say_what_they_show():

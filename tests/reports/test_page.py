@@ -3,11 +3,14 @@
 import re
 import shutil
 import subprocess
+from importlib import resources
 
 import pytest
+from matplotlib.colors import to_rgb
 
 import gearfe as gf
-from gearfe.reports.findings import find
+from gearfe.pictures.look import COLOURS
+from gearfe.reports.findings import Findings, _tooth, find
 
 pytest.importorskip("plotly")
 pytest.importorskip("jinja2")
@@ -32,6 +35,8 @@ def test_page_is_one_file_with_all_its_parts(page):
     assert HOSTILE not in text
     assert "No picture of" in own or own.count("data:image/png;base64,") == 2
     assert "cracked" in text
+    assert "gearfe report own.toml --case cracked -o page.html" in text
+    assert "N along the line of action, " in text
 
 
 def test_numbers_of_the_page_are_those_of_compare(page):
@@ -42,6 +47,57 @@ def test_numbers_of_the_page_are_those_of_compare(page):
         for k, error in others.values():
             assert f"<td>{k / 1e6:.1f}</td>" in text
             assert f">{100 * error:+.1f} %</td>" in text
+
+
+def test_first_sentence_is_the_answer(page):
+    text = page.read_text(encoding="utf-8")
+    said = gf.compare(page.parent / "own.toml", case="cracked", phases=12).headline
+    assert re.search(r'</h1>\s*<p class="answer">(.*?)</p>', text)[1] == f"{said}."
+
+
+def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
+    """Flanks, misalignment and supports go to the tooth in three dimensions, which would look well without them, too."""
+    text = gf.new_scene(tmp_path / "own.toml", tip_relief_um=10.0, tip_length_mm=2.0).read_text()
+    (tmp_path / "own.toml").write_text(text.replace("#F_beta_um", "F_beta_um"))
+    given = {}
+
+    def pressed_tooth(*_, **options):
+        given.update(options)
+        raise ValueError("seen")
+
+    monkeypatch.setattr("gearfe.reports.findings.pressed_tooth", pressed_tooth)
+    scene = gf.load_scene(tmp_path / "own.toml")
+    assert _tooth(Findings(scene, "cracked")) is None
+    chosen = scene.pair()
+    assert given["flanks"] == chosen.flanks
+    assert set(given["flanks"]) == {"pinion", "wheel"}
+    assert given["misalignment"] == chosen.misalignment
+    assert given["misalignment"].F_beta == 0.01
+
+
+def luminance(colour):
+    rgb = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(colour)]
+    return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+
+
+def contrast(one, other):
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def test_colours_are_legible_on_light_and_dark_grounds():
+    """WCAG 2: 4.5 to 1 for text, 3 to 1 for lines; on paper always the light ones."""
+    style = (resources.files("gearfe.reports") / "page.css").read_text(encoding="utf-8")
+    light, dark = (dict(re.findall(r"--(\w+): ([#\w]+);", rules)) for rules in re.findall(r":root \{(.*?)\}", style, re.S))
+    assert style.count("prefers-color-scheme") == style.count("@media screen and (prefers-color-scheme: dark)") == 1
+    assert light.keys() == dark.keys()
+    for own in (light, dark):
+        for ground in ("paper", "band", "note"):
+            for text in ("ink", "soft", "blue", "far"):
+                assert contrast(own[text], own[ground]) >= 4.5, (text, ground)
+    bright = float(re.search(r"legendlines\) \{ filter: brightness\(([\d.]+)\)", style)[1])
+    for colour in COLOURS:
+        assert contrast([min(1.0, bright * c) for c in to_rgb(colour)], dark["paper"]) >= 3.0, colour
 
 
 def test_surface_of_the_tooth_points_outwards():

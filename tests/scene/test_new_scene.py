@@ -7,11 +7,12 @@ import gearfe as gf
 from gearfe.cli import main
 from gearfe.scene.flank_table import FLANK, MISALIGNMENT
 from gearfe.scene.load import DAMAGE, TABLES
-from gearfe.scene.machine_table import MACHINE
+from gearfe.scene.machine_table import BODY, IMPACT, MACHINE
 from gearfe.scene.support_table import SUPPORTS
 
 RELIEF = {"tip_relief_um": 15.0, "tip_length_mm": 1.2}
-OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)}, RELIEF)
+LOADED = {"torque_Nm": 60.0, "crack": (1.5, 60.0)}
+OPTIONS = ({}, {"ring": True, "teeth": (31, 84)}, {"helix_deg": 15.0}, {"module": 4.5, "teeth": (19, 19)}, RELIEF, LOADED)
 
 
 @pytest.mark.parametrize("options", OPTIONS)
@@ -36,6 +37,20 @@ def test_tip_relief_of_both_gears_starts_so_far_below_the_tip(tmp_path):
     for wrong in ({"tip_relief_um": 15.0}, {"tip_relief_um": -1.0, "tip_length_mm": 1.0}, RELIEF | {"tip_length_mm": 50.0}):
         with pytest.raises(ValueError, match="tip relief"):
             gf.new_scene(tmp_path / "other.toml", **wrong)
+
+
+def test_torque_and_crack_asked_for_are_those_of_the_scene(tmp_path):
+    chosen = gf.load_scene(gf.new_scene(tmp_path / "my.toml", **LOADED)).pair()
+    assert chosen.force * chosen.pair.gear_1.r_b == pytest.approx(60e3)
+    (crack,) = chosen.damage["cracked"]["pinion"]
+    assert (crack.length, math.degrees(crack.angle)) == pytest.approx((1.5, 60.0))
+    for wrong, words in (({"torque_Nm": -1.0}, "positive torque"), ({"crack": (2.0, 120.0)}, "5 to 90 degrees")):
+        with pytest.raises(ValueError, match=words):
+            gf.new_scene(tmp_path / "other.toml", **wrong)
+
+
+def test_a_ring_of_the_default_teeth_needs_no_trimming(tmp_path):
+    assert not gf.load_scene(gf.new_scene(tmp_path / "my.toml", ring=True)).pair().pair.notes
 
 
 def test_its_assumption_goes_with_the_value(tmp_path):
@@ -67,7 +82,7 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     text = gf.new_scene(tmp_path / "my.toml", **options).read_text()
     keys = [*FLANK, *MISALIGNMENT, *SUPPORTS["support"], *SUPPORTS["shaft"], *DAMAGE["crack"], *DAMAGE["pits"]]
     keys += [key for key in TABLES["pair"] if key not in ("face", "groove_mm")]
-    keys += [] if options.get("ring") else MACHINE
+    keys += [] if options.get("ring") else [*MACHINE, *IMPACT, *BODY]
     assert not [key for key in keys if not re.search(rf"\b{key}\b", text)]
     (tmp_path / "all.toml").write_text(re.sub(r"^#(?=[\w\[])", "", text, flags=re.M))
     scene = gf.load_scene(tmp_path / "all.toml")
@@ -77,6 +92,7 @@ def test_all_that_a_scene_can_say_stands_in_it_and_holds(options, tmp_path):
     assert chosen.flanks["pinion"].tip_relief == pytest.approx(
         1e-3 * options.get("tip_relief_um", 10 * options.get("module", 2.0))
     )
+    assert chosen.flanks["wheel"].tip_relief == chosen.flanks["pinion"].tip_relief
     assert chosen.misalignment.F_beta == 0.01
     assert bool(scene.machine) is not options.get("ring", False)
     if scene.machine:
@@ -87,7 +103,7 @@ def test_length_of_the_crack_beside_its_level_is_the_same_crack(tmp_path):
     path = gf.new_scene(tmp_path / "my.toml")
     run = {"phases": [0.8], "method": "ritz"}
     level = gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run)
-    path.write_text(re.sub(r"^level = 0.3  # or as a length: (length_mm = [\d.]+)", r"\1", path.read_text(), flags=re.M))
+    path.write_text(re.sub(r"^level = 0.3  #.* or as a length: (length_mm = [\d.]+)", r"\1", path.read_text(), flags=re.M))
     crack = gf.load_scene(path).pair().damage["cracked"]["pinion"][0]
     assert crack.level is None
     assert gf.mesh_stiffness(**gf.load_scene(path).pair().case("cracked"), **run).k[0] == pytest.approx(level.k[0], rel=2e-3)

@@ -62,8 +62,10 @@ def test_a_gap_is_told_from_rounding(seed):
 
 def test_a_gap_in_exact_times_stays_one():
     exact = np.delete(times(5000), slice(1000, 1003))
-    with pytest.raises(ValueError, match=r"does not fit a step of .*: a gap, or a varying rate; resample first"):
+    with pytest.raises(ValueError, match=r"3 samples are missing between 0.195117188 and 0.195898437 s; cut the file there"):
         step_of("x", exact)
+    with pytest.raises(ValueError, match="a gap, or a varying rate; resample first"):
+        step_of("x", times(5000) ** 1.1)
     with pytest.raises(ValueError, match=r"rounded to 0.01 s; print them with more digits, or give rate= too"):
         step_of("x", np.round(times(3000), 2))
 
@@ -109,10 +111,69 @@ def test_thousands_between_quotes_and_what_is_no_thousand(tmp_path):
 def test_code_pages(tmp_path, encoding, told, recwarn):
     path = written(tmp_path / "c.csv", times(50), np.arange(50), "{:.9f}\t{:g}\n", "time [s]\ta [m/s²]\n", encoding)
     found = gf.read_signal(path)
-    assert found.unit == "m/s²"
+    assert found.unit == "m/s^2", "one spelling, so that files can be compared"
     assert_allclose(found.rate, RATE, rtol=1e-6)
     said = [str(one.message) for one in recwarn]
     assert said == ([f"{path} is not UTF-8: read as Windows-1252 (Latin-1)"] if told else [])
+
+
+CLOCKS = [  # the first cells of a row: a date and a time of a clock, its seconds left to be filled in
+    "2026-03-12T23:59:{:09.6f}Z;", "2026-03-12 23:59:{:09.6f}+01:00;", "12.03.2026;23:59:{:09.6f};", "23:59:{:09.6f};",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("clock", CLOCKS)
+@pytest.mark.parametrize("mark", [".", ","])
+def test_times_of_a_clock(tmp_path, clock, mark):
+    """Over midnight; dates of another column are left aside."""
+    names = "Date;Timestamp;" if clock.count(";") > 1 else "Timestamp;"
+    rows = [(clock.format(59.5 + i / 1000) + f"{i % 7:.2f}") for i in range(500)]
+    rows += [(clock.replace("23:59", "00:00").format(i / 1000) + f"{i % 7:.2f}") for i in range(500)]
+    path = tmp_path / "c.csv"
+    path.write_text(f"{names}a [g]\n" + "\n".join(row.replace(".", mark) if "12.03" not in row else row for row in rows) + "\n")
+    with pytest.warns(UserWarning, match=r"'Timestamp' \(.*\) is taken for the time, in seconds from its first row on"):
+        found = gf.read_signal(path)
+    assert_allclose(found.rate, 1000.0, rtol=1e-6)
+    assert found.values.size == 1000
+
+
+def test_commas_between_quotes_are_decimal(tmp_path):
+    path = tmp_path / "q.csv"
+    path.write_text('"Zeit [s]","a [m/s²]"\n' + "".join(f'"{i / 100:.4f}","-{i % 7}.25"\n'.replace(".", ",") for i in range(50)))
+    found = gf.read_signal(path)
+    assert_allclose(found.rate, 100.0, rtol=1e-9)
+    assert_array_equal(found.values[:2], [-0.25, -1.25])
+
+
+@pytest.mark.parametrize("empty", ["0.02,,1", "0.02,1,", '"0.02","","1"'])
+def test_empty_cells_are_told_and_refuse_their_own_column_only(tmp_path, empty):
+    path = tmp_path / "e.csv"
+    path.write_text("time [s],a [g],b [g]\n" + "".join(f"{empty if i == 2 else f'{i / 100},{i},{-i}'}\n" for i in range(9)))
+    lost, whole = ("b", "a") if empty.endswith(",") else ("a", "b")
+    with pytest.warns(UserWarning, match="1 rows have empty cells, the first in line 4: read as missing"):
+        assert gf.read_signal(path, column=whole).values.size == 9
+    told = f"'{lost}': sample 2 is nan, the first of 1 that are missing; cut the file to samples 3 to 8"
+    with pytest.warns(UserWarning, match="empty"), pytest.raises(ValueError, match=told):
+        gf.read_signal(path, column=lost)
+
+
+def test_a_column_that_rises_may_be_the_time(tmp_path):
+    path = written(tmp_path / "epoch.csv", times(50, start=1.7e9), np.arange(50) % 7, "{:.6f},{:g}\n", "timestamp,a [g]\n")
+    with pytest.raises(ValueError, match="if 'timestamp', which rises all along, is the time, name it so by header="):
+        gf.read_signal(path, column="a")
+
+
+def test_parts_of_full_scale_are_told(tmp_path, capsys):
+    from scipy.io import wavfile
+
+    path = tmp_path / "w.wav"
+    wavfile.write(path, 8000, (1000 * np.sin(np.arange(4000))).astype(np.int16))
+    assert main(["signal", str(path)]) == 1
+    assert "parts of full scale: give what that is as --scale and --unit" in capsys.readouterr().err
+    assert main(["signal", str(path), "--unit", "m/s^2"]) == 0
+    assert "full scale is taken for 1 m/s^2; give what it is as --scale" in capsys.readouterr().err
+    assert main(["signal", str(path), "--unit", "m/s^2", "--scale", "500"]) == 0
+    assert "full scale" not in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", ["Zeit", "Temps"])
@@ -161,11 +222,11 @@ def test_two_rates_and_how_to_say_which(tmp_path, capsys):
 
     path = tmp_path / "two.mat"
     savemat(path, {"a": np.arange(40.0), "sr": 5120.0, "rate": 10240.0, "unit": "g"})
-    with pytest.raises(ValueError, match=r"rate is given as \d+ and \d+ Hz; say which holds by rate="):
+    with pytest.raises(ValueError, match=r"as 5120 and 10240 Hz \(sr = 5120.0 and rate = 10240.0\); say which holds by rate="):
         gf.read_signal(path)
     assert gf.read_signal(path, rate=5120.0).rate == 5120.0
     assert main(["signal", str(path)]) == 1
-    assert "Hz; say which holds by --rate\n" in capsys.readouterr().err
+    assert "; say which holds by --rate\n" in capsys.readouterr().err
     csv = written(tmp_path / "x.csv", times(50), np.arange(50), "{:.9f},{:g}\n")
     assert main(["signal", str(csv), "--rate", "100"]) == 1
     assert re.search(r"rate = 100 Hz, but its times are 5120 Hz; leave --rate out", capsys.readouterr().err)

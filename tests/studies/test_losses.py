@@ -12,7 +12,17 @@ from gearfe.cli import main
 from gearfe.reports.page import _comparison
 from gearfe.stiffness.methods import METHODS
 from gearfe.studies.case_table import case_table
-from gearfe.studies.losses import damage_phases, headline, kind_of, loss, loss_errors, percent_with_doubt, told_damage, within
+from gearfe.studies.losses import (
+    damage_phases,
+    headline,
+    kind_of,
+    loss,
+    loss_errors,
+    percent_with_doubt,
+    told_damage,
+    within,
+)
+from gearfe.studies.told_scene import told_supports
 
 
 @pytest.fixture(scope="module")
@@ -159,3 +169,18 @@ def test_reference_that_cannot_be_is_refused(scene):
         gf.compare(scene, reference="textbook")
     with pytest.raises(ValueError, match="pits change along the width"):
         gf.compare("planetary_pitting", case="mild", reference="fe")
+
+
+def test_what_shafts_and_springs_take_is_told(scene, tmp_path, capsys):
+    text = scene.read_text()
+    for line in ("[support.output]", 'gear = "wheel"\n#pair = "stage"\n#radial_N_per_um = 200.0'):
+        text = text.replace(f"#{line}", line.replace("\n#", "\n"))
+    (tmp_path / "soft.toml").write_text(text)
+    assert main(["stiffness", str(tmp_path / "soft.toml"), "--phases", "8"]) == 0
+    (alone,) = re.findall(
+        r"take \d+ % of the deflection, and are in k; teeth and bodies alone have (\S+) N/um", capsys.readouterr().out
+    )
+    chosen = gf.load_scene(scene).pair()
+    rigid = gf.mesh_stiffness(**chosen.case(), phases=8)
+    assert float(alone) == pytest.approx(rigid.k.mean() / 1e6, rel=0.01)
+    assert not told_supports(rigid)

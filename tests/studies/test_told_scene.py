@@ -25,8 +25,9 @@ def test_all_of_a_scene_is_told(everything, capsys):
         "gear pinion: 21 teeth, module 2 mm",
         "2000 N along the line of action, 39.47 N m on the pinion",
         "tip relief 20 um, linear",
+        "share the load over the first and the last 3.63 mm of roll",  # (eps_alpha - 1) p_bt, 0.615 times 5.904 mm
         "misaligned: F_beta 10 um",
-        "pinion held by a shaft of 40 mm of 18.4 mm",
+        "pinion held by a shaft of 40 mm of 18.4 mm, 40 mm of 18.4 mm, bearings at 0 and 80 mm (200 N/um and 200 N/um)",
         "wheel held by springs: radial 200 N/um",
         "2 mm crack at 60 degrees in the pinion's tooth 0; solved by ritz3d: cracks change along the width",
         "5 pits in the pinion's tooth 0",
@@ -48,6 +49,15 @@ def test_method_told_is_the_one_taken(name):
             method = gf.mesh_stiffness(**chosen.case(case), phases=1).meta["method"]
             line = next(one for one in told(scene) if ("healthy;" if case is None else f"case {case}:") in one)
             assert f"solved by {method}:" in line
+
+
+def test_overlap_of_helical_and_herringbone_pairs_is_told(tmp_path):
+    """b sin(beta) / (pi m_n), ISO 21771."""
+    chosen = gf.load_scene(gf.new_scene(tmp_path / "my.toml", helix_deg=15.0)).pair().pair
+    assert chosen.eps_beta == pytest.approx(20.0 * math.sin(math.radians(15)) / (2.0 * math.pi))
+    scene = gf.load_scene(tmp_path / "my.toml")
+    assert f"overlap ratio {chosen.eps_beta:.3f};" in "\n".join(told(scene))
+    assert "the overlap ratio is that of one half" in "\n".join(told(gf.load_scene("herringbone")))
 
 
 def test_starts_of_a_relief_are_one_place():

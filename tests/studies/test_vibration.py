@@ -1,5 +1,6 @@
 """From a scene to the vibration of its machine."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -120,10 +121,32 @@ def test_command_line(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "mesh frequencies [Hz]: 168, 182" in text
     assert "| mean amplitude of the first sidebands " in text
+    assert "0.3 s are too short to part the lines of the fault from those beside them: record 2.86 s or longer" in text
+    assert "\nlonger: --duration 2.86\n" in text
     assert out.stat().st_size > 1000
     assert plot.stat().st_size > 10000
     assert main(["dynamics", "compound_planetary", "--case", "none"]) == 1
     assert "it has crack10" in capsys.readouterr().err
+
+
+def test_a_short_record_says_how_long_it_should_be():
+    """A sun tooth at 40 Hz, its gear at 13.3 Hz: in 0.2 s lines fill all bins; so long as is asked for, the fault stands out."""
+    rng = np.random.default_rng(1)
+    turn, carrier, rate = 40 / 3, 10 / 3, 4096.0
+
+    def found(seconds):
+        time = np.arange(round(seconds * rate)) / rate
+        mesh = np.cos(2 * np.pi * 280 * time) + 1e-3 * rng.standard_normal(time.size)
+        lines = sum(0.02 * (1 + (k % 3 == 0)) * np.cos(2 * np.pi * k * turn * time + k**2) for k in range(1, 100))
+        signals = {"healthy": gf.Signal(mesh, rate, "N"), "worn": gf.Signal(mesh + lines, rate, "N")}
+        return analyse(signals, 280.0, 40.0, turning=turn, carrier=carrier)
+
+    short = found(0.2)
+    assert short.standing() == ["f_m", "2 f_m"]
+    needed = float(re.search(r"0.2 s are too short .* record ([\d.]+) s or longer", short.lines_text())[1])
+    enough = found(needed)
+    assert {"f_fault", "f_m - f_fault", "f_m + f_fault"} <= set(enough.standing())
+    assert enough.too_short == ""
 
 
 def test_a_record_begins_when_free_vibrations_have_died_out():

@@ -1,0 +1,109 @@
+"""Whom the server answers, and what a browser may do with its pages: for this machine alone, or for a course behind a proxy."""
+
+import json
+import time
+from collections import OrderedDict, deque
+from typing import Any
+
+LARGEST = 100_000  # bytes of a request: a state or a scene
+DRAINED = 10 * LARGEST  # of a request that is refused, read and forgotten
+SAFE = {
+    "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; connect-src 'self'; "
+    "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}  # plotly writes styles (no scripts) into the page
+MINUTE, AWAY = 60.0, 300.0  # seconds over which requests are counted, and after which somebody has left
+
+
+class Limits:
+    """What a server of many users allows: users at a time, and tasks a minute of each address.
+
+    Parameters
+    ----------
+    users : int
+        Addresses that may use the page at a time; one that was silent for `AWAY` seconds has left.
+    tasks : int
+        Of one address in a minute. A class behind one router has one address.
+    """
+
+    def __init__(self, users: int, tasks: int):
+        self.users, self.tasks = users, tasks
+        self.seen: OrderedDict[str, deque[float]] = OrderedDict()
+
+    def refused(self, address: str, now: float | None = None) -> str:
+        """Why a task of an address is not taken, empty if it is."""
+        now = time.monotonic() if now is None else now
+        while self.seen and now - next(iter(self.seen.values()))[-1] > AWAY:
+            self.seen.popitem(last=False)
+        if address not in self.seen and len(self.seen) >= self.users:
+            return f"{self.users} users are here, as many as this server takes: please try again in some minutes"
+        times = self.seen.setdefault(address, deque())
+        self.seen.move_to_end(address)
+        while times and now - times[0] > MINUTE:
+            times.popleft()
+        if len(times) >= self.tasks:
+            return f"{self.tasks} tasks a minute is what this server takes from one address: please wait a little"
+        times.append(now)
+        return ""
+
+
+class Guard:
+    """ASGI: refuses what does not come from the page itself, and adds the headers of `SAFE`.
+
+    Parameters
+    ----------
+    app : ASGI application
+    hosts : tuple of str
+        Values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
+    limits : Limits, optional
+    """
+
+    def __init__(self, app: Any, hosts: tuple[str, ...], limits: Limits | None = None):
+        self.app, self.hosts, self.limits = app, hosts, limits
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Answer a request, or pass it on."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        status, why = self._refused(scope, headers)
+
+        async def safe(message):
+            if message["type"] == "http.response.start":
+                own = [(name.encode(), value.encode()) for name, value in SAFE.items()]
+                message = message | {"headers": [*message.get("headers", ()), *own]}
+            await send(message)
+
+        if not why:
+            await self.app(scope, receive, safe)
+            return
+        read, more = 0, scope["method"] == "POST"
+        while more and read <= DRAINED:  # whoever is still writing would not see the answer
+            message = await receive()
+            read, more = read + len(message.get("body", b"")), message.get("more_body", False)
+        kind = [(b"content-type", b"application/json"), (b"connection", b"close")]
+        await safe({"type": "http.response.start", "status": status, "headers": kind})
+        await safe({"type": "http.response.body", "body": json.dumps({"refused": why}).encode()})
+
+    def _refused(self, scope, headers):
+        host, site = headers.get("host", ""), headers.get("sec-fetch-site", "none")
+        if host not in self.hosts:
+            return 421, f"Host {host[:80]!r} is not this server: open http://{self.hosts[0]}/"
+        link = scope["method"] == "GET" and scope["path"] == "/" and headers.get("sec-fetch-mode") == "navigate"
+        if site not in ("none", "same-origin") and not link:
+            return 403, f"a request from another site ({site[:20]}): only the page itself may ask"
+        if scope["method"] != "POST":
+            return 0, ""
+        length = headers.get("content-length", "")
+        if not (length.isascii() and length.isdigit()):
+            return 411, "a request without its length"
+        if int(length[:12]) > LARGEST:
+            return 413, f"{length[:12]} bytes, but a scene has at most {LARGEST}: this is not one"
+        if self.limits:
+            why = self.limits.refused((scope.get("client") or ("",))[0])
+            return (429, why) if why else (0, "")
+        return 0, ""

@@ -1,0 +1,78 @@
+"""The program in Python that prints the numbers of the page."""
+
+from dataclasses import fields
+from typing import Any
+
+from ..scene.load import Scene
+from ..stiffness.inputs import by_gear, choose
+from ..studies.losses import damage_phases, damaged_tooth
+
+TEXT = """\
+import numpy as np
+
+import gearfe as gf
+
+# {title}: lengths in mm, angles in rad, E in MPa, force in N along the line of action
+pair = gf.GearPair(
+    {one},
+    {two},
+    a={a!r},
+)
+run = dict(
+    force={force!r},
+    material={material},{options}
+    method={method!r},
+    phases={phases},{why}
+)
+healthy = gf.mesh_stiffness(pair, **run)
+{damaged}for zone, k in healthy.zones().items():
+    print(f"{{zone}}: healthy {{k / 1e6:.4g}} N/um{printed}")
+"""
+DAMAGED = """\
+damage = {damage}
+damaged = gf.mesh_stiffness(pair, damage=damage, **run)
+"""
+
+
+def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
+    """Text of a program that prints the zones of a scene's pair, healthy and damaged, as the page shows them.
+
+    `phases` in a mesh cycle of a section, `solid` of three dimensions.
+    """
+    chosen = scene.pair()
+    pair, damage = chosen.pair, next(iter(chosen.damage.values()), {})
+    cracks, pits = by_gear(pair, damage)
+    method = "ritz3d" if chosen.wide else choose("auto", pair, cracks, pits, chosen.face, None)[0]
+    count = solid if method == "ritz3d" else phases
+    spelled, why = str(count), ""
+    if damage:
+        first = damage_phases(pair, count, damaged_tooth(damage), face=chosen.face, groove=chosen.groove)[0]
+        spelled, why = f"({round(first * count)} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
+    options = {name: value for name in ("face", "groove", "flanks", "misalignment") if (value := getattr(chosen, name))}
+    if method == "ritz" and options.get("face", "spur") != "spur":
+        options.pop("face")
+    hurt = ", damaged {damaged.zones()[zone] / 1e6:.4g} N/um" if damage else ""
+    return TEXT.format(
+        title=" ".join(scene.title.split()), one=said(pair.gear_1), two=said(pair.gear_2), a=pair.a, force=chosen.force,
+        material=said(chosen.materials), options="".join(f"\n    {name}={said(one)}," for name, one in options.items()),
+        method=method, phases=spelled, why=why, damaged=DAMAGED.format(damage=said(damage)) if damage else "", printed=hurt,
+    )  # fmt: skip
+
+
+def said(one: Any) -> str:
+    """A value as a program writes it; of gearfe's own classes only what is not their default.
+
+    >>> from gearfe import Crack
+    >>> said({"pinion": [Crack(length=2.0)]})
+    "{'pinion': [gf.Crack(length=2.0)]}"
+    """
+    if isinstance(one, dict):
+        return "{" + ", ".join(f"{name!r}: {said(value)}" for name, value in one.items()) + "}"
+    if isinstance(one, list):
+        return f"[{', '.join(map(said, one))}]"
+    if isinstance(one, tuple):
+        return f"({', '.join(map(said, one))}{',' if len(one) == 1 else ''})"
+    if not hasattr(one, "__dataclass_fields__"):
+        return repr(one)
+    given = [(f.name, getattr(one, f.name)) for f in fields(one) if f.init and getattr(one, f.name) != f.default]
+    return f"gf.{type(one).__name__}({', '.join(f'{name}={said(value)}' for name, value in given)})"

@@ -1,0 +1,259 @@
+"""What a solver process computes of a state: curves beside health, the mesh to scale, stress, spectrum, files to carry away."""
+
+import base64
+import json
+import math
+import tempfile
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.damage.crack import Crack, crack_path
+from geometry.damage.pit import rolls
+from geometry.tooth.drawing import outline_points
+from geometry.tooth.profile import cartesian, flank
+
+from ..flexibility.solved import PROCESS
+from ..markdown import table_cells
+from ..pictures.pair_plot import NEAR
+from ..pictures.stiffness_plots import closed
+from ..scene.assumed import of_stiffness
+from ..scene.load import Scene, scene_names, scene_of
+from ..scene.strict import shown
+from ..stiffness.methods import fitted
+from ..stiffness.solve import mesh_stiffness
+from ..studies.by_zone import Comparison
+from ..studies.losses import damage_phases, damaged_tooth, engaged_phases, kind_of, loss_errors, told_damage, within
+from ..threads import own_warnings
+from ..units import NEWTON_PER_UM
+from .fields import START
+from .program import program
+from .state import CASE, SeveralError, read, tables_of, toml
+
+QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
+KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
+ALONG = {"pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0}  # what changes along the width, as a section has it
+STRESS = (1000, 750)  # picture [px]
+SECONDS = 0.5  # of vibration
+SHOWN = 1500  # points of a spectrum that is drawn
+UM = 1e6  # m to um
+
+
+def scene_from(state: dict[str, Any]) -> Scene:
+    """Scene of a checked state."""
+    return scene_of("page", tables_of(state))
+
+
+def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
+    """A scene's pair, in its case of damage beside health, by one method as `gearfe.compare` has it; and what that leaves out."""
+    chosen = scene.pair()
+    case = CASE if chosen.damage else None
+    run, left_out = fitted(method, chosen.case(case))
+    run |= {"method": method, "phases": phases}
+    if case is None:
+        return Comparison("stage", {method: mesh_stiffness(**run, error=error)}, {method: 0.0}), left_out
+    damage = run.pop("damage")
+    shape = {"face": run["face"], "groove": run["groove"]}
+    cycle = damage_phases(run["pair"], phases, damaged_tooth(damage), **shape)
+    run["phases"] = engaged_phases(run["pair"], phases, damaged_tooth(damage), **shape)
+    whole = mesh_stiffness(**run, error=error)
+    hurt = mesh_stiffness(**run, damage=damage, error=error)
+    again = {name: value for name, value in run.items() if name != "method"} | {"damage": damage, "phases": cycle}
+    doubt = loss_errors(within(whole, cycle), within(hurt, cycle), method, again, 1.0) if error else {}
+    said = told_damage(chosen.pair, damage), kind_of(damage)
+    return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *said, {}, cycle), left_out
+
+
+def quick(state: dict[str, Any]) -> dict[str, Any]:
+    """The picture while a slider moves: the section, without estimates."""
+    return _answer(state, "ritz", QUICK, error=False)
+
+
+def fine(state: dict[str, Any]) -> dict[str, Any]:
+    """The picture when the hand rests, with estimated errors."""
+    return _answer(state, "ritz", FINE, error=True)
+
+
+def solid(state: dict[str, Any]) -> dict[str, Any]:
+    """The same in three dimensions: helical teeth, pits, what changes along the width."""
+    return _answer(state, "ritz3d", SOLID, error=False)
+
+
+def _answer(state, method, phases, *, error):
+    with own_warnings() as told:
+        scene, left_out = scene_from(state), ()
+        wide = {name for name, plain in ALONG.items() if state[name] != plain}
+        if method == "ritz" and wide:
+            scene = scene_from(state | ALONG)
+            left_out = ("pits, crowning along the width and misalignment are not in this section: solve in three dimensions",)
+        found, more = compared(scene, method, phases, error=error)
+    curve = found.reference
+    return {
+        "headline": found.headline,
+        "definition": found.definition,
+        "method": f"{method}: {phases} phases in a mesh cycle"
+        + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),
+        "section": bool(left_out or more),
+        "table": _table(found),
+        "curves": [*(_curve("healthy", one) for one in found.healthy.values()), _curve(found.kind or "healthy", curve)],
+        "share": {"phase": _numbers(curve.phase), "order": [int(one) for one in curve.order],
+                  "value": [_numbers(one) for one in np.where(curve.force > 0, curve.share, np.nan).T]},
+        "picture": picture(scene_from(state)),
+        "notes": [*left_out, *more, *dict.fromkeys(str(one.message) for one in told), *scene.pair().pair.notes],
+        "assumed": [one["what"] for one in of_stiffness(scene.assumptions)] + [f"changed: {one}" for one in scene.changed],
+    }  # fmt: skip
+
+
+def _numbers(values):
+    """Finite numbers as they are, others as null."""
+    return [value if math.isfinite(value) else None for value in np.asarray(values, dtype=float).tolist()]
+
+
+def _curve(name, curve):
+    phase, k = closed(curve)
+    error = [] if curve.error is None else _numbers(curve.error / NEWTON_PER_UM)
+    return {"name": name, "phase": _numbers(phase), "k": _numbers(k), "at": _numbers(curve.phase), "solved": _numbers(curve.k),
+            "error": error, "te": _numbers(curve.te * UM)}  # fmt: skip
+
+
+def _table(found):
+    """Cells of the table by zone: what damage takes; of a healthy pair its stiffness."""
+    text = found.loss_table() or found.table()
+    rows = [table_cells(line) for line in text.splitlines() if line.startswith("|")]
+    kept = [row for row in rows if row[0] != "seconds" and not set("".join(row)) <= set("-: ")]
+    return [["" if cell == "± nan %" else cell for cell in row] for row in kept]
+
+
+def picture(scene: Scene) -> dict[str, Any]:
+    """What is drawn of the teeth in mesh, in mm and radians: outlines of one tooth, turns at phase 0 and by phase, damage."""
+    chosen = scene.pair()
+    pair, gears = chosen.pair, []
+    starts, later = (pair.turn(pair.path[0] + at * pair.p_bt) for at in (0.0, 0.01))
+    for i, gear in enumerate((pair.gear_1, pair.gear_2)):
+        points = outline_points(gear, points=9)
+        step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
+        hurt = [_mark(gear, one) for own in chosen.damage.values() for one in own.get(("pinion", "wheel")[i], [])]
+        gears.append({
+            "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
+            "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,
+            "centre": (0.0, pair.centre_2)[i],
+        })  # fmt: skip
+    return {
+        "gears": gears, "pitch": pair.pitch_radius_1, "half": NEAR * pair.gear_1.m_n, "alpha": pair.alpha_w,
+        "path": [one - pair.gear_1.r_b * math.tan(pair.alpha_w) for one in pair.path], "p_bt": pair.p_bt, "r_b": pair.gear_1.r_b,
+        "told": f"centre distance {pair.a:.5g} mm, contact ratio {pair.eps_alpha:.3f}"
+        + (f", overlap ratio {pair.eps_beta:.3f}" if pair.eps_beta else ""),
+    }  # fmt: skip
+
+
+def _mark(gear, one):
+    line = crack_path(gear, one) if isinstance(one, Crack) else cartesian(*flank(gear, np.linspace(*rolls(gear, one), 9)))
+    return {"kind": type(one).__name__.lower(), "line": line.T.round(5).tolist()}
+
+
+def stress(state: dict[str, Any]) -> dict[str, Any]:
+    """Picture of von Mises stress (PNG)."""
+    from ..stress.render import render_stress
+
+    scene = scene_from(state)
+    case = CASE if scene.pair().damage else None
+    with own_warnings() as told, tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "stress.png"
+        found = render_stress(scene.pair(), file, case=case, size=STRESS, refine=0.7, title=scene.title)
+        data = base64.b64encode(file.read_bytes()).decode()
+    text = f"{found['text']}; largest von Mises stress on the fillets {found['root']:.0f} MPa"
+    return {"png": data, "text": " ".join(text.splitlines()), "notes": [str(one.message) for one in told]}
+
+
+def spectrum(state: dict[str, Any]) -> dict[str, Any]:
+    """Spectra of the mesh force, healthy and damaged, with the lines that are expected."""
+    from ..studies.vibration import analysis, in_words, responses
+
+    if not state["speed"]:
+        raise ValueError("speed of the pinion = 0 rpm, but a vibration needs one: give it a speed under Load")
+    with own_warnings() as told:
+        scene = scene_from(state)
+        found = analysis(responses(scene, CASE if scene.pair().damage else None, duration=SECONDS))
+    last = 1.15 * max(found.lines.values(), default=math.inf)
+    spectra = []
+    for name, one in found.spectra.items():
+        rows = slice(1, min(int(np.searchsorted(one.frequency, last)) + 1, SHOWN))
+        spectra.append({"name": name, "f": _numbers(one.frequency[rows]), "value": _numbers(one.values[rows])})
+    lines = [{"name": name, "f": value} for name, value in found.lines.items() if name in found.standing()]
+    words = ", ".join(f"{in_words(one['name'])} {one['f']:.1f} Hz" for one in lines)
+    text = f"{SECONDS:g} s of vibration; lines that stand out: {words or 'none'}"
+    title = f"{found.channel} [{found.unit}]"
+    return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in told]}
+
+
+def load(given: dict[str, Any]) -> dict[str, Any]:
+    """State of a scene's text, or of a built-in one by its name; the choices if it is more than one pair in one case."""
+    name, text = str(given.get("name")), given.get("text")
+    if text is None and name in scene_names():
+        text = (resources.files("gearfe.scenes") / f"{name}.toml").read_text(encoding="utf-8")
+    if not isinstance(text, str):
+        raise ValueError(
+            f"no scene {shown(name)}: give the text of one, or the name of a built-in one: {', '.join(scene_names())}"
+        )
+    chosen = {key: given.get(key) for key in ("pair", "case")}
+    if not all(isinstance(one, str | None) for one in chosen.values()):
+        raise ValueError(f"pair and case = {shown(chosen)}: give their names")
+    try:
+        state, notes = read(name, text, **chosen)
+    except SeveralError as error:
+        return {"refused": str(error), "choices": error.choices}
+    return {"state": state, "notes": notes}
+
+
+def as_toml(state: dict[str, Any]) -> dict[str, Any]:
+    """The scene as a file."""
+    return {"file": "scene.toml", "kind": "application/toml", "text": toml(tables_of(state))}
+
+
+def as_python(state: dict[str, Any]) -> dict[str, Any]:
+    """The program that prints the numbers of the page."""
+    return {"file": "gear.py", "kind": "text/x-python", "text": program(scene_from(state))}
+
+
+def as_csv(state: dict[str, Any]) -> dict[str, Any]:
+    """The curve, healthy or damaged, as `StiffnessCurve.to_csv` writes it."""
+    scene = scene_from(state)
+    method = "ritz3d" if any(state[name] != plain for name, plain in ALONG.items()) or state["beta"] else "ritz"
+    with own_warnings(), tempfile.TemporaryDirectory() as folder:
+        found, _ = compared(scene, method, SOLID if method == "ritz3d" else FINE, error=method == "ritz")
+        file = Path(folder) / "curve.csv"
+        found.reference.to_csv(file)
+        return {"file": "curve.csv", "kind": "text/csv", "text": file.read_text(encoding="utf-8")}
+
+
+def report(state: dict[str, Any]) -> dict[str, Any]:
+    """The page of `gearfe report`."""
+    from ..reports.page import report as made
+
+    with own_warnings(), tempfile.TemporaryDirectory() as folder:
+        file = made(scene_from(state), Path(folder) / "report.html", phases=QUICK)
+        return {"file": "report.html", "kind": "text/html", "text": file.read_text(encoding="utf-8")}
+
+
+TASKS = {
+    "quick": quick, "fine": fine, "solid": solid, "stress": stress, "spectrum": spectrum, "load": load, "toml": as_toml,
+    "python": as_python, "csv": as_csv, "report": report,
+}  # fmt: skip
+
+
+def begin() -> None:
+    """Make a new solver process ready: little memory for solved gears; one pair loads what methods load late."""
+    PROCESS.most = KEPT
+    answer("quick", START)
+
+
+def answer(kind: str, given: dict[str, Any]) -> bytes:
+    """What a task gives, or a refusal in gearfe's words, as JSON."""
+    try:
+        return json.dumps(TASKS[kind](given), allow_nan=False).encode()
+    except (ValueError, RuntimeError) as error:
+        return json.dumps({"refused": str(error).removeprefix("page ")}).encode()
+    except MemoryError as error:
+        return json.dumps({"refused": f"not enough memory{f': {error}' if str(error) else ''}; take a smaller case"}).encode()

@@ -1,0 +1,186 @@
+"""Solver processes, one task each; the tasks that wait for them, newest first wins; what is done when a process dies.
+
+A task has a lane, that of a page or of one of its buttons. A newer task of the same lane takes the place of one that still
+waits. Tasks that take seconds never have all processes, so that a slider of somebody else still moves.
+"""
+
+import asyncio
+import contextlib
+import json
+import multiprocessing
+import time
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any
+
+SLOW = {
+    "solid": 8.0,
+    "stress": 8.0,
+    "spectrum": 6.0,
+    "report": 40.0,
+    "csv": 2.0,
+}  # kinds that take seconds: as long as these, at first
+LIMIT = {"report": 300.0, "solid": 120.0, "stress": 120.0, "spectrum": 120.0}  # seconds after which a task is ended
+QUICK_LIMIT = 20.0  # of all others
+MEMORY = 4 * 2**30  # of one process [bytes]
+MOST = 64  # tasks that wait
+STALE = {"stale": True}
+START = 40.0  # seconds that a new process may take until it is ready
+
+
+def _work(pipe: Connection, memory: int) -> None:
+    """A solver process: it answers one task after another until its pipe is closed."""
+    import signal
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server ends it
+    with contextlib.suppress(ImportError, ValueError, OSError):  # not on Windows; not above what the system allows
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
+    from .solving import answer, begin
+
+    begin()
+    with contextlib.suppress(EOFError, BrokenPipeError):
+        pipe.send(b"ready")
+        while True:
+            pipe.send(answer(*pipe.recv()))
+
+
+class Worker:
+    """One solver process and the pipe to it; `ended` says why it is none any more, empty while it is."""
+
+    def __init__(self, context: Any, memory: int):
+        self.pipe, other = context.Pipe()
+        self.process = context.Process(target=_work, args=(other, memory), daemon=True, name="gearfe solver")
+        self.process.start()
+        other.close()
+        self.ready, self.ended = False, ""
+
+    def ask(self, kind: str, given: dict[str, Any]) -> bytes:
+        """Answer to a task in JSON; blocks. If the process ends, or takes too long and is ended, that is the answer."""
+        seconds = LIMIT.get(kind, QUICK_LIMIT)
+        try:
+            if not self.ready and not self.pipe.poll(START):
+                seconds = START
+            else:
+                self.ready = self.ready or self.pipe.recv() == b"ready"
+                self.pipe.send((kind, given))
+                if self.pipe.poll(seconds):
+                    return bytes(self.pipe.recv())
+            self.ended = f"this took more than {seconds:g} s and was ended: take a smaller case, or compute it in Python"
+        except (EOFError, OSError):
+            self.ended = "the solver ended with this case, perhaps out of memory; a new one is started"
+        return _json({"refused": self.ended})
+
+    def end(self) -> None:
+        """Kill the process, whatever it does."""
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+
+
+@dataclass(eq=False, slots=True)
+class Task:
+    """A task that waits for a process, or has one."""
+
+    lane: str
+    kind: str
+    given: dict[str, Any]
+    answer: "asyncio.Future[bytes]"
+    worker: Worker | None = None
+
+    @property
+    def slow(self) -> bool:
+        """Whether it takes seconds."""
+        return self.kind in SLOW
+
+
+class Pool:
+    """Solver processes and who waits for them; all its methods are called in one event loop.
+
+    Parameters
+    ----------
+    count : int
+        Processes, at least 2: one is kept free of tasks that take seconds.
+    memory : int
+        Of each [bytes].
+    most : int
+        Tasks that may wait; others are refused in a sentence.
+    """
+
+    def __init__(self, count: int, *, memory: int = MEMORY, most: int = MOST):
+        names = multiprocessing.get_all_start_methods()
+        self.context: Any = multiprocessing.get_context("forkserver" if "forkserver" in names else "spawn")
+        if "forkserver" in names:
+            self.context.set_forkserver_preload(["gearfe.app.solving"])
+        self.memory, self.most, self.count = memory, most, max(count, 2)
+        self.free = [Worker(self.context, memory) for _ in range(self.count)]
+        self.waiting: list[Task] = []
+        self.running: set[asyncio.Task] = set()
+        self.expected = dict(SLOW)
+        self.slow = 0  # tasks under way that take seconds
+
+    async def ask(self, lane: str, kind: str, given: dict[str, Any], tell: Callable[[dict], Awaitable[object]]) -> bytes:
+        """Answer to a task in JSON.
+
+        `tell` gets, twice a second, how many wait before it, then once the seconds that are expected of a slow one. Whoever
+        is cancelled (a page that was closed) gives his place up; a slow task under way is ended with its process.
+        """
+        for other in [one for one in self.waiting if one.lane == lane]:
+            self.waiting.remove(other)
+            other.answer.set_result(_json(STALE))
+        if len(self.waiting) >= self.most:
+            return _json({"refused": f"{len(self.waiting)} others wait for the solvers: please try again in a while"})
+        own = Task(lane, kind, given, asyncio.get_running_loop().create_future())
+        self.waiting.append(own)
+        self._deal()
+        try:
+            told = False
+            while not own.answer.done():
+                if own.slow and own.worker and not told:
+                    told = True
+                    await tell({"expected": self.expected[kind]})
+                await asyncio.wait([own.answer], timeout=0.5)
+                if own in self.waiting:
+                    await tell({"waiting": self.waiting.index(own)})
+            return own.answer.result()
+        finally:
+            if own in self.waiting:
+                self.waiting.remove(own)
+            elif own.slow and own.worker and not own.answer.done():
+                own.worker.process.kill()
+
+    def _deal(self) -> None:
+        """Give free processes to those who wait longest; tasks that take seconds leave one free."""
+        for one in list(self.waiting):
+            if self.free and not (one.slow and self.slow >= self.count - 1):
+                self.waiting.remove(one)
+                self.slow += one.slow
+                one.worker = self.free.pop()
+                run = asyncio.ensure_future(self._run(one, one.worker))
+                self.running.add(run)
+                run.add_done_callback(self.running.discard)
+
+    async def _run(self, task: Task, worker: Worker) -> None:
+        started = time.perf_counter()
+        found = await asyncio.to_thread(worker.ask, task.kind, task.given)
+        if not task.answer.done():
+            task.answer.set_result(found)
+        if worker.ended:
+            await asyncio.to_thread(worker.end)
+            worker = await asyncio.to_thread(Worker, self.context, self.memory)
+        elif task.slow:
+            self.expected[task.kind] = time.perf_counter() - started
+        self.slow -= task.slow
+        self.free.append(worker)
+        self._deal()
+
+    def end(self) -> None:
+        """Kill the processes that are free; those at work are daemons, which end with the server."""
+        while self.free:
+            self.free.pop().end()
+
+
+def _json(answer: dict[str, Any]) -> bytes:
+    return json.dumps(answer).encode()

@@ -1,0 +1,51 @@
+"""S. L. Harris's map of a scene's pair: transmission error under a row of loads, with its flanks and beside plain involutes."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..stiffness.transmission_error import TransmissionError, transmission_error
+
+
+def harris(run: dict[str, Any], forces: Sequence[float], **options: Any) -> tuple[TransmissionError, TransmissionError | None]:
+    """Transmission error of a pair as it is and, if its flanks are modified, by the same method of the pair without `flanks`.
+
+    Parameters
+    ----------
+    run : dict
+        As of `gearfe.scene.load.ScenePair.case`; its force is left aside.
+    forces : sequence of float
+        Along the line of action [N].
+    **options
+        As of `gearfe.mesh_stiffness`.
+    """
+    run = {name: value for name, value in run.items() if name != "force"}
+    found = transmission_error(forces=forces, **run, **options)
+    if not run.pop("flanks", None):
+        return found, None
+    options["method"] = found.curves[0].meta["method"]
+    return found, transmission_error(forces=forces, **run, **options)
+
+
+def harris_table(found: TransmissionError, plain: TransmissionError | None, r_b: float) -> str:
+    """Peak-to-peak, beside that of plain involutes if given, mean and first harmonics by load, as text [um].
+
+    Parameters
+    ----------
+    found, plain : TransmissionError
+        As of `harris`.
+    r_b : float
+        Base radius of the pinion [mm], for its torque.
+    """
+    beside = found.peak_to_peak if plain is None else plain.peak_to_peak
+    head = "" if plain is None else "  of involutes"
+    lines = [f"   force [N]  torque [N m]  peak-to-peak{head}      mean  harmonics 1 to 3 [um]"]
+    for i, parts in enumerate(found.harmonics(3)):
+        other = "" if plain is None else f"  {1e6 * beside[i]:12.3f}"
+        load = f"{found.force[i]:12.6g}  {1e-3 * found.force[i] * r_b:12.4g}"
+        told = "  ".join(f"{1e6 * part:7.3f}" for part in parts)
+        lines.append(f"{load}  {1e6 * found.peak_to_peak[i]:12.3f}{other}  {1e6 * found.te[i].mean():8.3f}  {told}")
+    other = "" if plain is None else f"  {1e6 * np.ptp(plain.unloaded):12.3f}"
+    mean = round(1e6 * float(found.unloaded.mean()), 3) + 0.0  # no -0.000
+    return "\n".join([*lines, f"    unloaded  {'':12}  {1e6 * np.ptp(found.unloaded):12.3f}{other}  {mean:8.3f}"])

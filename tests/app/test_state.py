@@ -1,0 +1,198 @@
+"""The state of the page is a scene: nothing of it is lost on the way there and back, and what no field holds is refused."""
+
+import json
+import tomllib
+from importlib import resources
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import gearfe as gf
+from gearfe.app.fields import BY_NAME, FIELDS, START, checked_state, form
+from gearfe.app.solving import answer, compared, scene_from
+from gearfe.app.state import CASE, PAIR, SeveralError, read, tables_of, toml
+from gearfe.scene.load import scene_names
+from gearfe.studies.losses import damage_phases
+from gearfe.units import in_newton_per_um
+
+NEW = "new.toml"
+
+
+def values(field):
+    """Any value that the field takes."""
+    if field.choices:
+        return st.sampled_from(field.choices)
+    return st.integers(int(field.low), int(field.high)) if field.whole else st.floats(field.low, field.high)
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.fixed_dictionaries({one.name: values(one) for one in FIELDS}), st.text(max_size=20))
+def test_any_state_is_written_and_read_alike(state, title):
+    """As TOML, with whatever text: what the file says is what the tables say. (Most such gears cannot be.)"""
+    state = checked_state(state | {"title": title, "speed": 0.0})
+    tables = tables_of(state)
+    assert tomllib.loads(toml(tables)) == tables
+
+
+STATES = {
+    "start": {},
+    "healthy": {"crack": "none", "title": 'a "name" with \\ and é'},
+    "level": {"crack": "level", "crack_level": 0.4, "turning": "yes", "crack_gear": "wheel"},
+    "ring": {"wheel": "ring", "z_2": 84, "held_2": 95.0, "addendum_2": 0.8, "tip_radius_2": 0.2, "crack": "none"},
+    "helix": {"beta": -12.5, "lead_1": 4.0, "F_beta": 10.0, "speed": 1500.0},
+    "herringbone": {"beta": 16.0, "b_1": 30.0, "b_2": 30.0, "face": "herringbone", "groove": 4.0},
+    "pits": {"pits": "yes", "crack": "none", "pit_count": 3},
+    "one pit": {"pits": "yes", "pit_count": 1, "pit_first": 10.0, "pit_last": 10.0},
+    "flanks": {"tip_relief_1": 20.0, "tip_length_1": 1.2, "tip_exponent_1": 2.0, "crowning_2": 3.0, "a": 52.1},
+    "materials": {"E_1": 210000.0, "nu_2": 0.25, "x_1": 0.2, "x_2": -0.1, "force": 1234.5},
+    "assumed": {"assumption": [{"what": "bore", "why": "a start", "holds": {"gear.pinion.r_bore_mm": 9.2}}]},
+}
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("name", STATES)
+def test_a_state_comes_back_from_its_file(name):
+    state = checked_state(STATES[name])
+    back, notes = read(NEW, toml(tables_of(state)))
+    assert notes == []
+    assert tables_of(back) == tables_of(state)
+    assert {name: back[name] for name in STATES[name]} == {name: state[name] for name in STATES[name]}
+
+
+def test_a_new_scene_opens_whole(tmp_path):
+    """What `gearfe new` writes has a field for everything, also with a relief, and its stiffness is the page's."""
+    file = gf.new_scene(tmp_path / NEW, teeth=(20, 33), tip_relief_um=20.0, tip_length_mm=1.5)
+    state, notes = read(NEW, file.read_text())
+    assert notes == []
+    assert state["tip_relief_2"] == 20.0
+    scene = gf.load_scene(file)
+    mine = scene_from(state)
+    assert mine.title == scene.title
+    assert [one["what"] for one in mine.assumptions] == [one["what"] for one in scene.assumptions]
+    wanted, got = scene.pair().case("cracked"), mine.pair().case(CASE)
+    assert got == wanted
+
+
+@pytest.mark.parametrize("scene", scene_names())
+def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
+    text = (resources.files("gearfe.scenes") / f"{scene}.toml").read_text(encoding="utf-8")
+    with pytest.raises(SeveralError, match="choose a pair and case") as caught:
+        read(scene, text)
+    whole = gf.load_scene(scene)
+    assert caught.value.choices == {name: ["", *one.damage] for name, one in whole.pairs.items()}
+    pair, cases = next(iter(caught.value.choices.items()))
+    state, notes = read(scene, text, pair, cases[1])
+    assert any("not taken" in one for one in notes)
+    mine, own = scene_from(state).pair(), whole.pair(pair)
+    assert mine.pair.gear_1 == own.pair.gear_1
+    assert mine.materials == own.materials
+    assert mine.damage[CASE] == own.damage[cases[1]]
+    assert mine.force == own.force
+
+
+REFUSED = {
+    'z_cutter = 25\nz = 21': "gear.pinion.z_cutter = 25",
+    'z = 21\n[support.soft]\ngear = "pinion"\nradial_N_per_um = 200.0': "rigid bores only",
+    'z = 21\n[flank.p]\ngear = "pinion"\nslope_um = 3.0': "flank.pinion.slope_um = 3.0",
+    'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "2 tables [[crack]]",
+    'z = 21\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 7.0\nrunout_um = 3.0': "machine helical_pair",
+    "z = 300": "this page takes 6 to 160",
+    'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nfirst_mm = 3.0\naxes_mm = [0.5, 0.5]\n'
+    "depth_mm = 0.1\nangle_deg = 30.0": "pits.angle_deg = 30.0",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("more", REFUSED)
+def test_what_no_field_holds_is_refused_by_its_name(more):
+    text = toml(tables_of(START))
+    head, _, tail = more.partition("\n[")
+    text = text.replace("z = 21", head, 1) + (f"[{tail}\n" if tail else "")
+    with pytest.raises(ValueError, match=r"new\.toml|page takes") as caught:
+        read(NEW, text)
+    assert REFUSED[more] in str(caught.value)
+
+
+WRONG = {
+    "a list": [1],
+    "no field": {"zz": 1},
+    "a text for a number": {"z_1": "21"},
+    "half a tooth": {"z_1": 21.5},
+    "infinite": {"force": 1e400},
+    "thousands of digits": {"z_1": 10**5000},
+    "beyond": {"b_1": 1e6},
+    "no choice": {"crack": "maybe"},
+    "a long title": {"title": "a" * 5000},
+    "assumptions that are none": {"assumption": [{"what": "a", "else": 1}]},
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_state_that_cannot_be_is_refused_in_a_line(name):
+    with pytest.raises(ValueError, match=r"but|expected|no field") as caught:
+        checked_state(WRONG[name])
+    assert len(str(caught.value)) < 1500
+
+
+def test_the_form_has_every_field_within_its_bounds():
+    found = json.loads(form())
+    assert found["start"] == checked_state({})
+    for field in found["fields"]:
+        assert field["choices"] or field["low"] < field["high"]
+        name, _, wanted = field["when"].partition("=")
+        assert not name or set(wanted.split(",")) <= set(BY_NAME[name].choices)
+
+
+@pytest.mark.parametrize("kind", ["quick", "fine"])
+def test_numbers_of_the_page_are_those_of_mesh_stiffness(kind, tmp_path):
+    """Of the scene that the page's own TOML makes, to the last bit; printed ones to their last digit."""
+    state = checked_state({"z_1": 19, "force": 1500.0, "crack_length": 1.5})
+    found = json.loads(answer(kind, state))
+    file = tmp_path / "page.toml"
+    file.write_text(json.loads(answer("toml", state))["text"], encoding="utf-8")
+    scene = gf.load_scene(file)
+    error = kind == "fine"
+    for curve, case in zip(found["curves"], (None, CASE), strict=True):
+        run = scene.pair(PAIR).case(case) | {"phases": curve["at"], "method": "ritz", "error": error}
+        own = gf.mesh_stiffness(**run)
+        assert curve["solved"] == own.k.tolist()
+        assert curve["te"] == (own.te * 1e6).tolist()
+        assert curve["error"] == ((own.error / 1e6).tolist() if error else [])
+    chosen, count = scene.pair(PAIR), 64 if error else 32
+    cycle = damage_phases(chosen.pair, count)
+    zones = [gf.mesh_stiffness(**chosen.case(case), phases=cycle, method="ritz").zones() for case in (None, CASE)]
+    for zone, *two, _ in found["table"][1:-1]:
+        assert two == [in_newton_per_um(one[zone]) for one in zones]
+    if error:
+        assert "±" in found["headline"]
+
+
+def test_the_program_prints_the_numbers_of_the_page(capsys):
+    state = checked_state({"crack_length": 1.2, "tip_relief_1": 15.0})
+    text = json.loads(answer("python", state))["text"]
+    exec(compile(text, "gear.py", "exec"), {})
+    lines = {line.split(":")[0]: line for line in capsys.readouterr().out.splitlines()}
+    for zone, healthy, damaged, _ in json.loads(answer("fine", state))["table"][1:-1]:
+        assert lines[zone] == f"{zone}: healthy {float(healthy):.4g} N/um, damaged {float(damaged):.4g} N/um"
+
+
+def test_csv_is_the_curve(tmp_path):
+    state = checked_state({"crack": "none"})
+    file = tmp_path / "k.csv"
+    file.write_text(json.loads(answer("csv", state))["text"], encoding="utf-8")
+    curve = gf.StiffnessCurve.from_csv(file)
+    assert curve.k.tolist() == json.loads(answer("fine", state))["curves"][0]["solved"]
+
+
+def test_what_a_section_cannot_show_is_said():
+    found = json.loads(answer("quick", checked_state({"pits": "yes", "crack": "none", "beta": 8.0})))
+    assert found["section"]
+    assert any("pits" in one for one in found["notes"])
+    assert any("helical teeth are taken as spur" in one for one in found["notes"])
+    assert found["picture"]["gears"][0]["damage"], "drawn all the same"
+    assert compared(scene_from(checked_state({})), "ritz", 8, error=False)[1] == ()
+
+
+def test_impossible_gears_are_refused_in_gearfes_words():
+    told = json.loads(answer("quick", checked_state({"held_1": 40.0})))["refused"]
+    assert told.startswith("[gear.pinion]: r_bore = 40.0 mm, but the bore must lie inside")
