@@ -22,6 +22,9 @@ CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of 
      "total_inactive_file"),
 )  # fmt: skip
 A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the permutation
+# of right-hand sides given to cvxopt at once [bytes]: it counts the bytes to a column in 32 bits, so that from 2**31 on it reads
+# and writes memory that is not theirs, mostly a segmentation fault (cvxopt 1.3.3, src/C/cholmod.c, `solve`)
+BLOCK = 2**27
 NODE = 3  # unknowns of a node, one after the other
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
 SECONDS = {True: (1e-5, 1.9e-10), False: (1e-5, 3.2e-10)}  # of n and n**2
@@ -108,7 +111,7 @@ def plan(unknowns, *, columns=0, free=None):
     ----------
     unknowns : int
     columns : int
-        Right-hand sides solved for at once; three copies of them are held.
+        Right-hand sides; three copies of them are held.
     free : float, optional
         Memory [bytes] that may be used; default `free_memory`.
 
@@ -177,10 +180,15 @@ def factor(matrix, plan_=None):
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
     def solve(rhs, parts=(A,)):
-        out = dense(np.asfortranarray(rhs, dtype=float))
-        for part in parts:
-            cholmod.solve(factored, out, sys=part)
-        return np.array(out).reshape(np.shape(rhs))
+        given = np.reshape(rhs, (matrix.shape[0], -1))
+        out, width = np.empty(given.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
+        for start in range(0, given.shape[1], width):
+            own = slice(start, start + width)
+            block = dense(np.asfortranarray(given[:, own], dtype=float))
+            for part in parts:
+                cholmod.solve(factored, block, sys=part)
+            out[:, own] = np.asarray(block)
+        return out.reshape(np.shape(rhs))
 
     def gram(rhs):
         moved = solve(rhs, (P, L))

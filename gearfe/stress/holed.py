@@ -279,7 +279,8 @@ def _pressure(sector, nodes, number, lines, spread):
     """Nodal forces ``(3 n,)`` [N] of contact lines on the flanks of a sector, x, y, z of every node together.
 
     On each line the pressure is its line load times a hat of `spread` [mm] along the profile, at small triangles of the flank; it
-    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit.
+    is scaled to the load of the line, so that nothing is lost where a hat leaves the flank or meets a pit. A line that meets the
+    middle of none of these triangles, as a short one at a corner of the flank, is a force at the nearest of them.
     """
     gear, rate = sector.gear, sector.gear.twist_rate
     force = np.zeros((nodes.shape[1], 3))
@@ -303,7 +304,7 @@ def _pressure(sector, nodes, number, lines, spread):
             away = np.abs(arc_at(gear, roll) - arc_at(gear, np.interp(z, heights, rolls)))
             press = np.where(inside, load[cell] / width[cell] * np.maximum(1 - away / spread, 0.0), 0.0) * area[:, None]
             if press.sum() <= 0:
-                raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
+                press.flat[np.hypot(z - heights[cell], away).argmin()] = 1.0
             press *= load.sum() / press.sum()
             np.add.at(force, six.T, -np.einsum("kq,dfq,fq->fkd", shape, normal, press))
     return force.ravel()

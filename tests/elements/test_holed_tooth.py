@@ -93,6 +93,23 @@ def test_the_load_is_that_of_the_contact(pressed):
     assert made.load[0] == pytest.approx(sum(part[3].sum() for part in lines[0]))
 
 
+@pytest.mark.parametrize("end", [0.0, HELICAL.b])
+def test_a_line_shorter_than_the_triangles_presses_at_the_nearest(end):
+    """At a corner of the flank of any tooth: a force of its size, at right angles to the flank, less than a triangle away."""
+    sector = holed_sector(HELICAL, [pit(HELICAL)], teeth=3, sizes=COARSE)
+    nodes, _, number = second_order(sector.points, sector.cells)
+    short, roll = np.array([abs(end - 1e-4)]), np.array([HELICAL.roll_a - 1e-3])
+    line = [(short, np.array([2e-4]), roll, np.array([20.0]))]
+    force = holed._pressure(sector, nodes, number, {1: line}, 1e-6).reshape(-1, 3).T
+    assert_allclose(np.linalg.norm(force.sum(axis=1)), 20.0, rtol=1e-9)
+    assert_allclose(force[2].sum(), 20.0 * math.sin(HELICAL.beta_b), rtol=1e-9)
+    radius, angle = flank(HELICAL, roll)
+    place = np.array([*cartesian(radius, angle + 2 * math.pi / HELICAL.z + HELICAL.twist_rate * short), short])
+    size = np.linalg.norm(nodes[:, np.abs(force).max(axis=0) > 0] - place, axis=0).max()
+    centre = nodes @ (force[2] / force[2].sum())  # all of it has one direction
+    assert np.linalg.norm(centre - place[:, 0]) < size / holed.PARTS
+
+
 def test_holes_and_cracks_weaken(pressed):
     _, made = pressed
     assert (made.extra > 0).all()
