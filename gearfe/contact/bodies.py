@@ -34,7 +34,7 @@ def seen_cracks(gear, cracks, seen, band):
     return tuple(crack for crack in found if crack is not None)
 
 
-def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None)):
+def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None), *, ahead=None):
     """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
     Parameters
@@ -51,6 +51,8 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(No
         ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
     shafts : (Shaft or None, Shaft or None)
         Of gears that are one piece with them: ``flexible`` gets them as ``shaft``, seen from the end that touches first.
+    ahead : callable, optional
+        Gets what `flexible` will be called with, ``[(arguments, options), ...]``, before the first call.
 
     Raises
     ------
@@ -64,13 +66,16 @@ def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(No
                 raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
         for band in bands:
             check_single(body, seen_cracks(gear, own, body, band))
-    return [
+    wanted = [
         [
-            (flexible(body, material, seen_cracks(gear, own, body, band), **_as_seen(shaft, band)), offset)
-            for gear, (body, offset), material, own, shaft in steps(gears)
+            ((body, material, seen_cracks(gear, own, body, band)), _as_seen(shaft, band), offset)
+            for gear, (body, offset), material, own, shaft in gears
         ]
-        for band in steps(bands)
+        for band in bands
     ]
+    if ahead:
+        ahead([(given, held) for own in wanted for given, held, _ in own])
+    return [[(flexible(*given, **held), offset) for given, held, offset in steps(own)] for own in steps(wanted)]
 
 
 def _as_seen(shaft, band):

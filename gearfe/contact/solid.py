@@ -74,6 +74,7 @@ def pair_stiffness3d(
     extended=True,
     error=False,
     model=None,
+    ahead=None,
     cache=True,
     supports=None,
 ):
@@ -117,6 +118,8 @@ def pair_stiffness3d(
         (By 2 at any degree would cover ever less of the error of wide gears.)
     model : callable, optional
         ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
+    ahead : callable, optional
+        ``ahead(bodies, neighbours=n)``, before the first body: gets what `model` will be called with, ``[(arguments, options)]``.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     supports : (Support or Shaft or None, Support or Shaft or None), optional
@@ -169,8 +172,8 @@ def pair_stiffness3d(
     def bodies_by(model):
         @lru_cache(maxsize=8)
         def bodies(neighbours):
-            flexible = partial(model, neighbours=neighbours)
-            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts)
+            flexible, foretold = (one and partial(one, neighbours=neighbours) for one in (model, ahead))
+            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts, ahead=foretold)
 
         def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
             return bodies(max(orders, least))

@@ -172,6 +172,12 @@ def _points(ends, cuts, count):
     return interval, local, place, (half * weight).ravel()
 
 
+def planned(mesh, patches, more=0):
+    """`gearfe.elements.solver.Plan` of the influence between patches, with so many `more` right-hand sides."""
+    free = mesh.points.shape[1] - np.unique(mesh.held).size
+    return plan(3 * free, columns=len(patches.teeth) * patches.knots.shape[1] * patches.modes + more)
+
+
 def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
     """Influence matrix between all patches.
 
@@ -196,7 +202,7 @@ def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
     free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
     own = len(patches.teeth) * patches.knots.shape[1] * patches.modes
     zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
-    made = plan(3 * free.size, columns=own + zones.shape[1])
+    made = planned(mesh, patches, zones.shape[1])
     if tell:
         tell(made)
     load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])

@@ -10,8 +10,8 @@ from scipy.linalg import eigh
 from ..flexibility.halfspace import half_space
 from ..flexibility.solid import Faces, hats, own_distance, parted, solved_teeth
 from .crack_zones import zone_forces
-from .fe3d import Patches, influence, mesh_patches
-from .integral import integral_influence
+from .fe3d import Patches, influence, mesh_patches, planned
+from .integral import integral_influence, on_stubs
 
 LOST = 2  # of the highest axial degrees may be dropped if the layers do not carry them
 RESOLVED = 0.05  # of the half-space's displacement: below, the mesh is stiffer than the contact's own part by so much
@@ -82,14 +82,8 @@ def solid_flexibility(
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
-    degree = axial_modes(gear.b, gear.m_n) if degree is None else degree
-    degree -= less
-    teeth = tuple(solved_teeth(gear, cracks, neighbours))
-    patches = Patches(teeth, hats(gear), degree + 1)
-    section = refine if section is None else section
-    layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
-    fine = [(z, z, END * layer) for z in (0.0, gear.b)]
-    mesh = mesh_patches(gear, patches, cracks=cracks, refine=section, per_hat=PER_HAT, layer=layer, sizes=SIZES, fine=fine)
+    mesh, patches = _meshed(gear, cracks, neighbours, degree, less, refine, section)
+    teeth, degree = patches.teeth, patches.modes - 1
     options = {"tell": tell, "zones": zone_forces(mesh)}
     whole_gear = influence if shaft is None else partial(integral_influence, shaft=shaft)
     found = whole_gear(mesh, material, patches, **options)
@@ -104,6 +98,27 @@ def solid_flexibility(
         return made
     opening = {tooth: (found.opening[:, k].reshape(-1, size) * unit)[:, own] for k, tooth in enumerate(teeth)}
     return replace(made, seam=Faces(opening, found.mutual))
+
+
+def solid_plan(gear, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, section=None, shaft=None):
+    """`gearfe.elements.solver.Plan` of `solid_flexibility` of the same, refused if it does not fit; costs its mesh alone."""
+    mesh, patches = _meshed(gear, cracks, neighbours, degree, less, refine, section)
+    more = zone_forces(mesh).shape[1]
+    if shaft is not None:
+        mesh, discs = on_stubs(mesh, shaft)
+        more += discs.shape[1]
+    return planned(mesh, patches, more)
+
+
+def _meshed(gear, cracks, neighbours, degree, less, refine, section):
+    """Mesh and patches of `solid_flexibility`."""
+    degree = (axial_modes(gear.b, gear.m_n) if degree is None else degree) - less
+    patches = Patches(tuple(solved_teeth(gear, cracks, neighbours)), hats(gear), degree + 1)
+    section = refine if section is None else section
+    layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
+    fine = [(z, z, END * layer) for z in (0.0, gear.b)]
+    options = {"refine": section, "per_hat": PER_HAT, "layer": layer, "sizes": SIZES, "fine": fine}
+    return mesh_patches(gear, patches, cracks=cracks, **options), patches
 
 
 def _resolved(gear, material, own, degree, refine, cache):

@@ -15,9 +15,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..supports.stubs import MOTIONS, face_radii, stub_stiffness
-from .fe3d import Influence, patch_loads
+from .fe3d import Influence, patch_loads, planned
 from .hexahedron import assemble
-from .solver import factor, plan
+from .solver import factor
 
 
 def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
@@ -37,13 +37,13 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
     ValueError
         If the gear reaches beyond its shaft, or nothing of an end face is left inside of a stub.
     """
-    mesh, discs = _on_stubs(mesh, shaft)
+    mesh, discs = on_stubs(mesh, shaft)
     every = np.arange(mesh.points.shape[1])
     free = np.setdiff1d(every, mesh.held)
     size = len(patches.teeth) * patches.knots.shape[1] * patches.modes
     zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
     columns = size + zones.shape[1]
-    made = plan(3 * free.size, columns=columns + discs.shape[1])
+    made = planned(mesh, patches, zones.shape[1] + discs.shape[1])
     if tell:
         tell(made)
     load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])
@@ -64,7 +64,7 @@ def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None)
     return Influence(own, patches, rows.size, made, opening=opening, mutual=mutual)
 
 
-def _on_stubs(mesh, shaft):
+def on_stubs(mesh, shaft):
     """The mesh held at the discs of its end faces, and the discs' motions at all nodes ``(3 nodes, 12)``."""
     gear, points = mesh.gear, mesh.points
     first, last = shaft.gear - gear.b / 2, shaft.gear + gear.b / 2

@@ -27,7 +27,7 @@ A, L, P = 0, 4, 7  # what CHOLMOD solves with: all of it, the lower factor, the 
 BLOCK = 2**27
 NODE = 3  # unknowns of a node, one after the other
 MEMORY = {True: (1600.0, 180.0), False: (2000.0, 220.0)}  # [bytes] of n and n**(4/3), with and without METIS, see `plan`
-SECONDS = {True: (1e-5, 1.9e-10), False: (1e-5, 3.2e-10)}  # of n and n**2
+SECONDS = {True: (5e-5, 1.9e-10, 9e-9), False: (5e-5, 3.2e-10, 1.1e-8)}  # of n, n**2 and n**(4/3) for each right-hand side
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,9 +103,10 @@ def _machine_free():
 def plan(unknowns, *, columns=0, free=None):
     """What the factor of a three-dimensional body takes, refused if it does not fit.
 
-    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers and takes about ``c n**2``
-    operations. The constants are measured on gears of 20-node hexahedra with 41 000 to 422 000 unknowns, on one thread of a
-    processor of 2.5 GHz; teeth of tetrahedra, being slender, take less.
+    The factor of a nested dissection of n unknowns of a body has about ``c n**(4/3)`` numbers, all of which are read for each
+    right-hand side, and takes about ``c n**2`` operations; loads, matrix and order take ``c n``. The constants are measured on
+    gears of 20-node hexahedra with 41 000 to 464 000 unknowns, on one thread of a processor of 2.5 GHz, for half solutions
+    (``gram`` of `factor`); teeth of tetrahedra, being slender, take less.
 
     Parameters
     ----------
@@ -130,8 +131,10 @@ def plan(unknowns, *, columns=0, free=None):
     """
     n, ordered, free = int(unknowns), dissects(), free_memory() if free is None else float(free)
     matrix, factored = MEMORY[ordered]
-    first, second = SECONDS[ordered]
-    made = Plan(n, matrix * n + factored * n ** (4 / 3) + 24.0 * columns * n, first * n + second * n**2, free)
+    first, second, each = SECONDS[ordered]
+    numbers = n ** (4 / 3)
+    seconds = first * n + second * n**2 + each * columns * numbers
+    made = Plan(n, matrix * n + factored * numbers + 24.0 * columns * n, seconds, free)
     if made.memory > free:
         raise RuntimeError(
             f"{n} unknowns need about {made.memory / 1e9:.3g} GB and {float(f'{made.seconds:.2g}'):g} s, but {free / 1e9:.3g} GB "

@@ -85,6 +85,11 @@ class SolvedGears:
             while self.size > self.most and len(self._kept) > 1:
                 self.size -= self._kept.popitem(last=False)[1][1]
 
+    def __contains__(self, key: Hashable) -> bool:
+        """Whether a result is kept."""
+        with self._lock:
+            return key in self._kept
+
     def __len__(self):
         """Number of results kept."""
         return len(self._kept)

@@ -17,7 +17,7 @@ import geometry
 from geometry.damage.crack import meshed_path
 
 from ..elements import fe
-from ..elements.fe_gear3d import solid_flexibility
+from ..elements.fe_gear3d import solid_flexibility, solid_plan
 from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
 from ..flexibility.solved import PROCESS, solved_gears
 from .flexibility_file import read_flexibility, write_flexibility
@@ -97,7 +97,36 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
         own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
         return solid_flexibility(gear, material, cracks, **own, **options)
 
-    return _kept("solid", gear, (material, cracks, tuple(sorted(options.items()))), solve, kept)
+    return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
+
+
+def _solid_case(material, cracks, options):
+    return material, cracks, tuple(sorted(options.items()))
+
+
+def unsolved(gear, material, cracks=(), *, cache=True, **options):
+    """What `solved_solid` of the same would solve: `gearfe.elements.solver.Plan` by key, nothing that is kept or on the disk.
+
+    Raises
+    ------
+    RuntimeError
+        If one of them does not fit into memory, with the numbers.
+    """
+    key = ("solid", gear, *_solid_case(material, cracks, options))
+    kept = solved_gears(cache)
+    if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
+        return {}
+    before = unsolved(gear, material, cache=kept, **options) if cracks else {}
+    return before | {key: solid_plan(gear, cracks, **options)}
+
+
+def _file(key):
+    """Where a result is on the disk, None if that is switched off, and its key spelled out."""
+    place = folder()
+    if place is None:
+        return None, ""
+    text = repr((*key, made_by()))
+    return place / f"{hashlib.sha256(text.encode()).hexdigest()}.npz", text
 
 
 def _kept(kind, gear, case, solve, kept):
@@ -106,18 +135,16 @@ def _kept(kind, gear, case, solve, kept):
 
 
 def _stored(kind, gear, case, solve):
-    place = folder()
-    if place is None:
+    file, key = _file((kind, gear, *case))
+    if file is None:
         return solve()
-    key = repr((kind, gear, *case, made_by()))
-    file = place / f"{hashlib.sha256(key.encode()).hexdigest()}.npz"
     arrays_of, made_from = FORMATS[kind]
     stored = read_flexibility(file, key, partial(made_from, gear))
     if stored is not None:
         return stored
     solved = solve()
     with contextlib.suppress(OSError, ValueError):  # a full or read-only disk costs only the reuse
-        place.mkdir(parents=True, exist_ok=True)
+        file.parent.mkdir(parents=True, exist_ok=True)
         write_flexibility(file, key, arrays_of(solved))
     return solved
 

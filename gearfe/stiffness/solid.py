@@ -10,7 +10,7 @@ from ..elements.fe_gear3d import PER_HAT, SIZES
 from ..elements.section_error import FINER, finer_section
 from ..flexibility.solved import solved_gears
 from ..steps import part, steps
-from .cache import solved_solid
+from .cache import solved_solid, unsolved
 from .curve import StiffnessCurve
 from .estimate import MEAN, fixed_phases
 
@@ -87,12 +87,13 @@ def wide_curves(
     pair, materials, phase, cracks, pits = case
     options = {"pits": pits, "cracks": cracks, "cache": cache, "face": face, "groove": groove, "extended": extended}
     options |= {"flanks": flanks, "supports": supports}
+    ahead = partial(_foretold, refine, cache, tell, error) if brute else None
     if brute:
         options["model"] = partial(solved_solid, refine=refine, cache=cache, tell=tell)
     else:
         options |= {"refine": refine, "order": order}
     with part("contact", 0.0, 0.6 if error else 1.0):
-        found = pair_stiffness3d(pair, list(forces), materials, phase, error=error, **options)
+        found = pair_stiffness3d(pair, list(forces), materials, phase, error=error, ahead=ahead, **options)
     seconds = time.perf_counter() - started
     metas = [
         meta | {"force_N": force, "dofs": list(one.dofs), "seconds_contact": seconds}
@@ -160,6 +161,21 @@ def _doubt(case, phase, found, options, brute):
     apart = np.abs(phase[:, None] - fixed)
     within = (np.abs((apart + 0.5) % 1 - 0.5) if healthy else apart) <= MEAN + 1e-9
     return np.maximum(away[: phase.size], (within * at_fixed).sum(axis=1) / within.sum(axis=1)), ratio
+
+
+def _foretold(refine, cache, tell, error, bodies, *, neighbours):
+    """Refuse what does not fit before the first body is solved, and `tell` what all of them take.
+
+    `bodies` as `gearfe.contact.solid.pair_stiffness3d` gives them; with `error` the coarser ones of the estimate, too.
+    """
+    levels = [{"refine": refine}, {"refine": COARSER[0] * refine, "section": refine, "less": LESS}][: 1 + error]
+    plans = {}
+    for level in levels:
+        for given, held in bodies:
+            plans |= unsolved(*given, cache=cache, neighbours=neighbours, **level, **held)
+    if tell and len(plans) > 1:
+        seconds = float(f"{sum(one.seconds for one in plans.values()):.2g}")
+        tell(f"{len(plans)} solves, about {seconds:g} s in all")
 
 
 def _coarser(case, options, refine, cache, tell):

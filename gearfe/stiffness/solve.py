@@ -204,7 +204,9 @@ def mesh_stiffness(
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
     tell : callable, optional
-        For ``fe3d``: gets a line of text before each gear is solved, with its unknowns and the expected seconds and memory.
+        For ``fe3d``: gets a line of text before the first of several gears, with the expected seconds of all (with `error` those
+        of its coarser gears, too), and one before each, with its unknowns, seconds and memory. What does not fit into memory is
+        refused before the first.
     pose : {"mean", "pinion", "wheel"}
         Which gear the approach turns from where the phase has both: each by half of it (as a length on the line of action), or
         one against the held other. Near the ends of double contact k differs by 1 to 2 % (`geometry.pair.contacts`); the last two

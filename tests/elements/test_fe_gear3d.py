@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.elements import fe3d, section_error, solver
 from gearfe.elements.crack_zones import zone_forces
-from gearfe.elements.fe_gear3d import solid_flexibility
+from gearfe.elements.fe_gear3d import solid_flexibility, solid_plan
 from gearfe.flexibility.halfspace import half_space
 from gearfe.flexibility.solid import PLACES, hats, solved_teeth
 from gearfe.stiffness import cache
@@ -66,6 +66,37 @@ def test_a_solved_gear_is_found_on_the_disk(steel, tmp_path, monkeypatch):
     cache.clear()
 
 
+def test_both_gears_are_looked_at_before_the_first_is_solved(steel, monkeypatch):
+    """The mate does not fit: that is said at once, not after the minutes of the first."""
+    pair = pair_of()
+    pair = gf.GearPair(pair.gear_1, replace(pair.gear_2, z=30, x=0.0, r_bore=20.0))
+    small, large = (solid_plan(gear, refine=0.4).memory for gear in (pair.gear_1, pair.gear_2))
+    assert small < large
+    monkeypatch.setattr(solver, "free_memory", lambda: (small + large) / 2)
+    monkeypatch.setattr(fe3d, "factor", lambda *given: pytest.fail("solved"))
+    told = []
+    with pytest.raises(RuntimeError, match=r"unknowns need about .* are free: coarsen the mesh"):
+        curve_of(steel, pair=pair, tell=told.append, cache=False)
+    assert not told
+
+
+def test_what_is_solved_is_no_work_ahead(steel, tmp_path, monkeypatch):
+    """A cracked gear needs the sound one first; what is kept, in the process or on the disk, needs nothing."""
+    monkeypatch.setenv("GEARFE_CACHE", str(tmp_path))
+    cache.clear()
+    run = {"neighbours": 1, **COARSE}
+    sound, cracked = cache.unsolved(SMALL, steel, (gf.Crack(level=0.3),), **run).values()
+    assert sound.unknowns < cracked.unknowns
+    assert sound.seconds < cracked.seconds
+    found = cache.solved_solid(SMALL, steel, **run)
+    assert found.unknowns == sound.unknowns
+    for _ in ("kept", "on the disk"):
+        assert not cache.unsolved(SMALL, steel, **run)
+        assert len(cache.unsolved(SMALL, steel, (gf.Crack(level=0.3),), **run)) == 1
+        cache.clear()
+    assert len(cache.unsolved(SMALL, steel, cache=False, **run)) == 1
+
+
 @pytest.mark.slow
 def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     """Identities, what it tells, and that a second process finds the gears on the disk."""
@@ -73,8 +104,8 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     cache.clear()
     told = []
     curve = curve_of(steel, tell=told.append)
-    assert [line.split(",")[0] for line in told] == ["z = 12", "z = 13"]
-    assert all("unknowns, about" in line and "GB free" in line for line in told)
+    assert [line.split(",")[0] for line in told] == ["2 solves", "z = 12", "z = 13"]
+    assert all("unknowns, about" in line and "GB free" in line for line in told[1:])
     assert_allclose(curve.k * curve.lte, 400.0, rtol=1e-12)
     assert_allclose(curve.force.sum(axis=1), 400.0, rtol=1e-9)
     assert curve.meta["method"] == "fe3d"
@@ -83,7 +114,7 @@ def test_the_curve_says_what_was_done(steel, tmp_path, monkeypatch):
     assert min(curve.meta["dofs"]) > 5000
     cache.clear()
     again = curve_of(steel, tell=told.append, force=[400.0, 800.0])
-    assert len(told) == 2, "read from the disk, one solve for all loads"
+    assert len(told) == 3, "read from the disk, one solve for all loads"
     assert_allclose(again[0].k, curve.k, rtol=1e-12)
     assert (again[1].k > again[0].k).all()
     cache.clear()

@@ -109,7 +109,9 @@ def test_the_plan_says_what_it_takes(ordered):
     twice = solver.plan(400_000, free=1e12)
     assert twice.memory > 2 * solver.plan(200_000, free=1e12).memory
     assert twice.seconds > 2 * solver.plan(200_000, free=1e12).seconds
-    assert solver.plan(400_000, columns=100, free=1e12).memory == twice.memory + 24 * 100 * 400_000
+    more = solver.plan(400_000, columns=100, free=1e12)
+    assert more.memory == twice.memory + 24 * 100 * 400_000
+    assert 1.1 * twice.seconds < more.seconds < 3 * twice.seconds, "each reads the whole factor"
 
 
 def test_what_does_not_fit_is_refused_with_memory_time_and_remedy(ordered):
