@@ -109,3 +109,24 @@ def test_gaps_are_those_of_exchanged_gears(edge):
     first, again = (found.gap[:, found.order.tolist().index(order)] for found, order in ((one, 1), (two, -1)))
     assert 0.02 < first[-1] < 0.5
     assert_allclose(again, first, atol=1e-9)
+
+
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+def test_the_ridge_of_a_chamfer_is_the_corner_of_a_shorter_tooth(side):
+    """Off the path nothing of a chamfer touches but its ridge, where the tip corner of a tooth would be that ends there."""
+    rack, chamfer = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 40.0}, 0.3
+
+    def pair(shorter):
+        teeth = (("pinion", 25), ("wheel", 40))
+        return gf.GearPair(
+            *(gf.Gear(z=z, x=0.1, r_bore=10.0, addendum=1 - shorter * (name == side), **rack) for name, z in teeth)
+        )
+
+    whole, cut = pair(0.0), pair(chamfer / rack["m_n"])
+    forms = flank_forms(whole, {side: gf.Flank(tip_chamfer=chamfer)})
+    place = np.linspace(cut.path[0] - 1.5, cut.path[1] + 1.5, 61)
+    found = whole.contacts((place - whole.path[0]) / whole.p_bt, flanks=forms)
+    corner = cut.contacts((place - cut.path[0]) / cut.p_bt)
+    ridge, tip = (own.gap[:, own.order.tolist().index(0)] for own in (found, corner))
+    assert (tip > 1e-6).sum() >= 10
+    assert_allclose(ridge, tip, atol=1e-6)
