@@ -199,3 +199,14 @@ def test_what_a_section_cannot_show_is_said():
 def test_impossible_gears_are_refused_in_gearfes_words():
     told = json.loads(answer("quick", checked_state({"held_1": 40.0})))["refused"]
     assert told.startswith("[gear.pinion]: r_bore = 40.0 mm, but the bore must lie inside")
+
+
+def test_a_crack_of_part_of_the_width_waits_for_three_dimensions():
+    """The section would have it through the whole width: it is shown healthy, and says so; so is a support that tilts."""
+    part = {"part": "a part", "part_first": 0.0, "part_last": 8.0}
+    plain = json.loads(answer("quick", {"crack": "none"}))
+    for state in (part, part | {"tilt_1": 50.0}, {"crack": "none", "tilt_2": 50.0}):
+        shown = json.loads(answer("quick", state))
+        assert shown["section"]
+        assert "solve in three dimensions" in shown["notes"][0]
+        assert [one["k"] for one in shown["curves"]] == [one["k"] for one in plain["curves"]]
