@@ -62,8 +62,9 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     out["pair"][PAIR] |= {"face": face} if face else {}
     flanks = {side: _flank(state, i, side) for i, side in SPELLED.items()}
     out |= {"flank": found} if (found := {side: table for side, table in flanks.items() if table}) else {}
-    held = {side: {key: value for name, key in SUPPORT.items() if (value := state[f"{name}_{i}"])} for i, side in SPELLED.items()}
-    out |= {"support": found} if (found := {side: {"gear": side} | own for side, own in held.items() if own}) else {}
+    soft = {side: {key: value for name, key in SUPPORT.items() if (value := state[f"{name}_{i}"])} for i, side in SPELLED.items()}
+    soft = {side: {"gear": side} | own for side, own in soft.items() if own}
+    out |= {"support": soft} if soft else {}
     if state["crack"] != "none":
         size = {"length_mm": state["crack_length"]} if state["crack"] == "length" else {"level": state["crack_level"]}
         turning = {"turning": True} if state["turning"] == "yes" and state["crack"] == "level" else {}

@@ -204,9 +204,9 @@ def test_impossible_gears_are_refused_in_gearfes_words():
 def test_a_crack_of_part_of_the_width_waits_for_three_dimensions():
     """The section would have it through the whole width: it is shown healthy, and says so; so is a support that tilts."""
     part = {"part": "a part", "part_first": 0.0, "part_last": 8.0}
-    plain = json.loads(answer("quick", {"crack": "none"}))
+    plain = json.loads(answer("quick", START | {"crack": "none"}))
     for state in (part, part | {"tilt_1": 50.0}, {"crack": "none", "tilt_2": 50.0}):
-        shown = json.loads(answer("quick", state))
+        shown = json.loads(answer("quick", START | state))
         assert shown["section"]
         assert "solve in three dimensions" in shown["notes"][0]
         assert [one["k"] for one in shown["curves"]] == [one["k"] for one in plain["curves"]]
