@@ -68,7 +68,7 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     if state["crack"] != "none":
         size = {"length_mm": state["crack_length"]} if state["crack"] == "length" else {"level": state["crack_level"]}
         turning = {"turning": True} if state["turning"] == "yes" and state["crack"] == "level" else {}
-        part = {"width_mm": [state["part_first"], state["part_last"]]} if state["part"] == "a part" else {}
+        part: dict[str, Any] = {"width_mm": [state["part_first"], state["part_last"]]} if state["part"] == "a part" else {}
         part |= {"rounded": True} if part and state["part_rounded"] == "rounded" else {}
         out["crack"] = [{"case": CASE} | {key: state[name] for name, key in CRACK.items()} | size | turning | part]
     if state["pits"] == "yes":
