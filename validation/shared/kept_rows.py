@@ -7,7 +7,13 @@ from .places import TABLES
 
 
 def stored(name):
-    """All rows on file, dicts by their keys."""
+    """All rows on file, dicts by their keys; what made them counts as called by this process from now on."""
+    rows = _on_file(name)
+    state.bring(name, rows)
+    return rows
+
+
+def _on_file(name):
     file = TABLES / f"{name}.jsonl"
     lines = file.read_text(encoding="utf-8").splitlines() if file.is_file() else []
     return {row["row"]: row for row in map(json.loads, lines)}
@@ -15,7 +21,7 @@ def stored(name):
 
 def check(parts, *names):
     """Raise ValueError if a beginning of `parts` is that of no row of the tables `names`; with what rows there are."""
-    known = [key for name in names for key in stored(name)]
+    known = [key for name in names for key in _on_file(name)]
     lost = [part for part in parts if part and not any(key.startswith(part) for key in known)]
     if known and lost:
         raise ValueError(f"no row begins with {', '.join(lost)}; there are: {'; '.join(known)}")
@@ -23,7 +29,7 @@ def check(parts, *names):
 
 def forget(name, parts):
     """Take rows whose keys begin with one of `parts` out of a table, so that they are missing."""
-    left = [row for key, row in stored(name).items() if not key.startswith(tuple(parts))]
+    left = [row for key, row in _on_file(name).items() if not key.startswith(tuple(parts))]
     state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in left))
 
 
@@ -32,9 +38,10 @@ def kept(name, key, make, again=()):
 
     `again`: beginnings of the keys of rows that are made anew.
     """
-    known, started = stored(name), state.cpu()
+    known, started = _on_file(name), state.cpu()
     state.run.tables.add(name)
     if key in known and not any(key.startswith(part) for part in again):
+        state.bring(name, [key])
         return known[key]
     known[key] = {"row": key} | make()
     TABLES.mkdir(exist_ok=True)
