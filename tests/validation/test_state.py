@@ -233,17 +233,26 @@ def test_modules_whose_functions_are_compiled_elsewhere_count_whole(project):
     assert old(project) == 2
 
 
+FIRST = "    first = kept('dynamics_rows', 'one', lambda: {'value': one()}, parts)\n"
+SECOND = "    kept('dynamics_rows', 'two', lambda: {'value': LOOK}, parts)\n"
+
+
 @pytest.mark.parametrize(
-    ("caller", "again", "rows"),
-    [pytest.param("one", "two", 2, id="read before"), pytest.param("two", "one", 1, id="read after")],
+    ("look", "rows"),
+    [
+        ("first['value']", 2),
+        ("{**first}['value']", 2),
+        ("({} | first)['value']", 2),
+        ("stored('dynamics_rows')['one']['value']", 2),
+        ("1", 1),
+    ],
 )
-def test_what_made_a_row_on_file_counts_for_rows_computed_after_it_was_read(project, caller, again, rows):
-    """Rows are asked for in the order one, two; only `caller` calls the function that changes."""
-    text = KEPT.replace("lambda: {'value': 1}, parts", f"lambda: {{'value': one() if name == '{caller}' else 1}}, parts")
+def test_what_made_a_row_on_file_counts_for_a_row_that_is_made_of_it(project, look, rows):
+    text = KEPT.partition("    for name")[0].replace("import kept", "import kept, stored") + FIRST + SECOND.replace("LOOK", look)
+    text += KEPT[KEPT.index("\n\ndef reference") :]
     (project / "validation/make/dynamics.py").write_text(f"from gearfe.used import one\n{text}")
-    told(project, "dynamics")
-    told(project, "dynamics", "--reference")
-    told(project, "dynamics", again)
+    for words in ((), ("--reference",), ("two",)):
+        told(project, "dynamics", *words)
     assert "dynamics " not in told(project, "--stale")
     (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
     assert f"{rows} of     4 rows old" in told(project, "--stale")

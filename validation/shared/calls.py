@@ -91,6 +91,15 @@ def both(words):
     return WHOLE if WHOLE in names else " ".join(sorted(names))
 
 
+def folded(names):
+    """Names by path as names by folder and stem."""
+    out = {}
+    for name, words in names.items():
+        folder, _, stem = name.rpartition("/")
+        out.setdefault(folder, {})[stem.removesuffix(".py")] = words
+    return out
+
+
 @cache
 def meaning(path, names=WHOLE):
     """Digest of a file: of a module without docstrings, with these functions; of the values of a TOML file, else of its bytes."""

@@ -1,16 +1,41 @@
 """Rows of a page that are computed once: one JSON object a line in `pages/tables`, so that a stop loses one row at most."""
 
 import json
+from collections.abc import Mapping
 
 from . import state
 from .places import TABLES
 
 
+class Row(Mapping):
+    """A row on file: once it is looked into, what made it counts as called by this process. Not a dict, which C reads unseen."""
+
+    def __init__(self, table, row):
+        self._table, self._row = table, row
+
+    def _read(self):
+        state.bring(self._table, self._row["row"])
+        return self._row
+
+    def __getitem__(self, name):
+        return self._read()[name]
+
+    def __iter__(self):
+        return iter(self._read())
+
+    def __len__(self):
+        return len(self._read())
+
+    def __or__(self, other):
+        return self._read() | dict(other)
+
+    def __ror__(self, other):
+        return other | self._read()
+
+
 def stored(name):
-    """All rows on file, dicts by their keys; what made them counts as called by this process from now on."""
-    rows = _on_file(name)
-    state.bring(name, rows)
-    return rows
+    """All rows on file, each a `Row`, by their keys."""
+    return {key: Row(name, row) for key, row in _on_file(name).items()}
 
 
 def _on_file(name):
@@ -41,8 +66,7 @@ def kept(name, key, make, again=()):
     known, started = _on_file(name), state.cpu()
     state.run.tables.add(name)
     if key in known and not any(key.startswith(part) for part in again):
-        state.bring(name, [key])
-        return known[key]
+        return Row(name, known[key])
     known[key] = {"row": key} | make()
     TABLES.mkdir(exist_ok=True)
     state.replace(TABLES / f"{name}.jsonl", "".join(f"{json.dumps(row)}\n" for row in known.values()))

@@ -4,9 +4,9 @@ A job is what is computed together: a page, a part of one, a row that is kept by
 the commit, the day, the CPU seconds, the number of rows and, by their keys, the machine with its libraries and the files: all
 modules below `CODE` that the process had imported when the job ended, with the functions that it had called (`calls`), and the
 data files there that it had opened. `code` is their digest, without comments and docstrings, so that rewording makes no row old.
-What made a row that was read from a table counts as called. Modules count whole (`*`) where calls cannot be seen: in a job that
-read another table than one of such rows, or times itself (`__main__.ALONE`); and one that started a program that may be Python is
-held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+What made a row on file counts as called once the row is looked into. Modules count whole (`*`) where calls cannot be seen: in a
+job that read another table than one of such rows, or times itself (`__main__.ALONE`); and one that started a program that may be
+Python is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
 
 A run of another program depends on its input alone: its line also says the digest of that `deck`, and it is of the present code
 as long as the job `DECKS`, of the present code itself, finds the same one.
@@ -49,7 +49,8 @@ run = SimpleNamespace(  # what this process computes
     opened=set(),  # files opened, and "program" if one was started that may be Python
     wrote=set(),  # files written
     tables=set(),  # tables of rows that are kept one by one
-    brought={},  # what made rows on file that were read: by path, as in `used`
+    looked=set(),  # rows on file that were looked into: table and key
+    brought={},  # what made them: by path, as in `used`
     whole=False,  # whether all modules count whole
     seconds=0.0,  # of the processor for such rows
 )
@@ -99,16 +100,19 @@ def used():
     return out
 
 
-def bring(table, keys):
-    """Count what made rows of a table on file as called here: what this process computes from now on may depend on them."""
-    if run.job:
-        jobs, told = read()
-        lines = {job.partition(" ")[2].removeprefix("--reference "): job for job, name in jobs if name == f"{table}.jsonl"}
-        for key in keys:
-            found = files_of(jobs[lines[key], f"{table}.jsonl"], told) if key in lines else {}
-            run.whole |= not found  # nobody knows what made it
-            for name, words in found.items():
-                run.brought[name] = calls.both([words, run.brought.get(name, "")])
+def bring(table, key):
+    """Count what made a row on file as called here: what this process computes from now on may depend on it."""
+    if not run.job or (table, key) in run.looked:
+        return
+    run.looked.add((table, key))
+    jobs, told = read()
+    rows = {
+        job.partition(" ")[2].removeprefix("--reference "): line for (job, name), line in jobs.items() if name == f"{table}.jsonl"
+    }
+    found = files_of(rows.get(key, {}), told)
+    run.whole |= not found  # nobody knows what made it
+    for name, words in found.items():
+        run.brought[name] = calls.both([words, run.brought.get(name, "")])
 
 
 def digest(names):
@@ -201,7 +205,7 @@ def record(job, seconds, rows, page, table="", **more):
     late = [name for name in names if (places.ROOT / name).is_file() and (places.ROOT / name).stat().st_mtime > run.started]
     if late:
         raise RuntimeError(f"{', '.join(late)} changed while {job} was computed: compute it again")
-    facts = {"files": folded(names), "on": {"machine": machine.describe(), "libraries": known}}
+    facts = {"files": calls.folded(names), "on": {"machine": machine.describe(), "libraries": known}}
     by_folder = {_key(one): {"calls": one} for one in facts["files"].values()}
     facts["files"] = {"called": {folder: _key(one) for folder, one in facts["files"].items()}}
     keys = {name: _key(fact) for name, fact in facts.items()}
@@ -210,15 +214,6 @@ def record(job, seconds, rows, page, table="", **more):
     with changed() as (jobs, told):
         jobs[job, table] = line | {"commit": commit(), "code": digest(names)} | keys | more
         told.update(by_folder | {keys[name]: fact for name, fact in facts.items()})
-
-
-def folded(names):
-    """Names of `used` by folder and stem."""
-    out = {}
-    for name, words in names.items():
-        folder, _, stem = name.rpartition("/")
-        out.setdefault(folder, {})[stem.removesuffix(".py")] = words
-    return out
 
 
 def files_of(line, told):
