@@ -11,6 +11,8 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
+from geometry.tooth.profile import arc_at
+
 from ..energy.ritz.plane import flexibility
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
@@ -19,7 +21,12 @@ from .kinks import REACH, kink_rows
 from .plane import PairContact
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
-PLACES = 17  # of the table, over the zone of a kink
+PLACES = 9  # of the table on each side of a kink, within what a contact is wide
+ON = 9  # of the table from there to where contact leaves the kink
+BESIDE = 1e-6  # of these the first
+LEAST = 0.05  # of what contacts are wide at most: how far on the table reaches at least
+SAMPLES = 400  # of a base pitch, where it is looked for what stays on the kink
+SOFT = 80  # approach of a pair of teeth, as if it were local: of pi E* times the load per width; more than any has
 
 
 class KinkLaw:
@@ -43,50 +50,79 @@ class KinkLaw:
         step = modulus * pair.gear_1.m_n
         load = step * 2.0 ** round(math.log2(line_load / step))  # so that loads alike share a table
         kept, own = solved_gears(cache), tuple(form.flank for form in forms)
-        self.zones = []
         start, end = pair.path
-        places = [(roll, step) for roll, step in forms[0].kinks]
-        places += [(pair.outward * (pair.length - roll), step) for roll, step in forms[1].kinks]
-        for nominal, step in places:
-            if not start < nominal < end:
-                continue
-            radius = abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal))))
-            # from the arc, in which contacts are wide, to the abscissa; and where contact stays on the ridge
-            unit = REACH * float(half_width(1.0, radius, modulus)) * pair.gear_1.r_b / nominal
-            stuck = 2 * abs(step) * radius
-            case = (pair, materials, load, own, nominal, unit, stuck)
-            table = kept.get(("kink", *case), partial(_table, pair, materials, load, forms, nominal, unit, stuck, kept))
-            self.zones.append((nominal, unit, stuck, table))
+        self.zones = []
+        for gear, form in enumerate(forms):
+            for roll, _ in form.kinks:
+                nominal = pair.outward * (pair.length - roll) if gear else roll
+                if start < nominal < end:
+                    case = (pair, materials, load, own, gear, roll, nominal)
+                    self.zones.append((nominal, *kept.get(("kink", *case), partial(_table, *case[:3], forms, *case[4:], kept))))
 
     def __call__(self, inside, nominal, line_load):
         """Add to ``ln(2 / a) + 1/2`` ``(n,)`` at line loads ``(n,)`` [N/mm]; only where `inside`."""
         out = np.zeros(nominal.size)
-        for at, unit, stuck, (spline, least, most) in self.zones:
-            place = (nominal - at) / (unit * np.sqrt(np.clip(line_load, least, most)) + stuck)
-            own = np.flatnonzero((np.abs(place) < 1) & inside)
-            out[own] += spline.ev(np.log(np.clip(line_load[own], least, most)), place[own])
+        for at, unit, stays, (spline, least, most) in self.zones:
+            load = np.clip(line_load, least, most)
+            place = _place((nominal - at) / unit, np.sqrt(load), stays)
+            own = np.flatnonzero((np.abs(place) < 2) & inside)
+            out[own] += spline.ev(np.log(load[own]), place[own])
         return out
 
 
-def _table(pair, materials, line_load, flanks, nominal, unit, stuck, cache):
-    """Spline over the logarithm of the line load and the place in the zone, from -1 to 1, and the limits of the load."""
-    bodies = [flexibility(g, m, neighbours=1, cache=cache) for g, m in zip((pair.gear_1, pair.gear_2), materials, strict=True)]
-    places, loads = np.linspace(-1, 1, PLACES), line_load * LOADS
-    c, out = sum(half_plane(m) for m in materials), np.zeros((loads.size, PLACES))
+def _place(away, wide, stays):
+    """Places in the table: -1 to 1 within what contacts are `wide`, on to 2 over what the contact `stays` on the kink beyond."""
+    more = np.abs(away) - wide
+    return np.where(more < 0, away / wide, np.sign(away) * (1 + more / np.where(away < 0, *stays)))
+
+
+def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
+    """Unit of the abscissa [mm], how far contact stays on the kink (before it, after it), and the table of a kink.
+
+    The kink is at `roll` of `gear` (0 or 1). Over the unit, contacts of 1 N/mm lie within `REACH` of it; how far contact stays on
+    it beyond what the heaviest ones are wide is in these units. The table is a spline over the logarithm of the line load and
+    the place (`_place`), with the limits of the load.
+    """
+    gears, loads, modulus = (pair.gear_1, pair.gear_2), line_load * LOADS, contact_modulus(materials)
+    bodies = [flexibility(g, m, neighbours=1, cache=cache) for g, m in zip(gears, materials, strict=True)]
+    radius = abs(float(pair.relative_radius(nominal, pair.mate_roll(nominal))))
+    # from the arc, in which contacts are wide, to the abscissa
+    unit = REACH * float(half_width(1.0, radius, modulus)) * gears[gear].r_b / roll
+    wide = np.sqrt(loads)
+    found = (_stays(pair, flanks, gear, roll, nominal, sign, modulus, loads[-1]) / unit for sign in (-1, 1))
+    stays = [max(away - wide[-1], LEAST * wide[-1]) for away in found]
+    on, inside = 1 + np.linspace(0, 1, ON)[1:] ** 1.5, np.linspace(0, 1, PLACES)
+    inside[0] = BESIDE  # on both sides of the kink: the radius of curvature may jump there
+    places = np.concatenate([-on[::-1], -inside[::-1], inside, on])
+    c, out = sum(half_plane(m) for m in materials), np.zeros((loads.size, places.size))
     for j, load in enumerate(loads.tolist()):
-        phase = (nominal + places * (unit * math.sqrt(load) + stuck) - pair.path[0]) / pair.p_bt
-        mesh = PairContact(pair, materials, bodies, phase, extended=False, state="plane strain", flanks=flanks)
+        more = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
+        away = np.sign(places) * (np.minimum(np.abs(places), 1.0) * wide[j] + more)
+        phase = (nominal + unit * away - pair.path[0]) / pair.p_bt
+        mesh = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=flanks)
         column = int(np.flatnonzero(mesh.found.order == 0)[0])
-        there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]))
-        where = np.array([there, np.full(there.size, column)]).T
-        rows = kink_rows(mesh, where, load)
+        there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]) & (mesh.found.corner[:, column] == 0))
+        rows = kink_rows(mesh, np.array([there, np.full(there.size, column)]).T, load)
         if rows:
             closing = (
                 pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - mesh.found.gap[there, column]
             )
             width = half_width(load, mesh.radius[there, column], mesh.modulus)
             out[j, there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
-    return RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1]
+    return unit, stays, (RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1])
+
+
+def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
+    """How far from a kink [mm of abscissa], to one side, contact is on it or so near that it feels it, while gaps can close."""
+    reach = SOFT / (math.pi * modulus) * line_load
+    away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
+    found = pair.contacts((nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
+    column = int(np.flatnonzero(found.order == 0)[0])
+    rolls, host = (found.roll_1[:, column], found.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
+    beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)
+    on = np.abs(arc_at(host, rolls[gear]) - arc_at(host, roll)) < beside
+    gone = np.flatnonzero(~(on & (found.gap[:, column] < reach) & (found.corner[:, column] == 0)))
+    return float(away[gone[0] - 1] if gone.size and gone[0] else 0.0 if gone.size else away[-1])
 
 
 def _straight(mesh, phases, column):

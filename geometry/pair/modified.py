@@ -198,12 +198,13 @@ def _exact(pair, forms, nominal, order, near):
     """Rolls of both gears and gaps of touching points, from arcs, rolls and gaps `near` them.
 
     The search leaves 1e-6 mm of the place: nothing for the gap of smooth flanks but its last digits, which a parabola through
-    three places gives, and 1e-9 mm at a ridge, which is looked at itself.
+    three places gives, and 1e-9 mm at a ridge, which is looked at itself: close to a steep one the search may have met nothing.
     """
-    arc, roll, met, found = near
+    arc, roll, met, start = near
+    found = np.where(np.isfinite(met), start, np.inf)
     step = VERTEX * pair.gear_1.m_n
     sides = [roll_at_arc(pair.gear_1, arc + k * step) for k in (-1, 1)]
-    before, after = (approach(pair, at, nominal, start=found, flanks=forms, order=order)[0] for at in sides)
+    before, after = (approach(pair, at, nominal, start=start, flanks=forms, order=order)[0] for at in sides)
     bend = before - 2 * found + after
     off = np.where(bend > 0, (before - after) / np.where(bend > 0, 2 * bend, 1.0), 0.0)
     at = arc + step * np.clip(np.nan_to_num(off), -1, 1)
@@ -211,7 +212,7 @@ def _exact(pair, forms, nominal, order, near):
     for driver, form in ((True, forms[0]), (False, forms[1])):  # a kink, as the end of the flank inside of it
         tried += [(driver, np.nextafter(kink, (form.low + form.high) / 2)) for kink, _ in form.kinks]
     for driver, at in tried:
-        gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=found, flanks=forms, order=order)
+        gap, faced, *_ = approach(pair, at, nominal, driver=driver, start=start, flanks=forms, order=order)
         one, two = (at, faced) if driver else (faced, at)
         own, side = (one, pair.gear_1) if driver else (two, pair.gear_2)
         better = (gap < found) & (side.outward * (side.roll_a - own) >= 0)

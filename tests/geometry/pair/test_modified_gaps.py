@@ -93,3 +93,40 @@ def test_arms_are_those_of_flanks_that_lean(ring, driver):
     closed = (left(met.gap + 1e-4) - left(met.gap - 1e-4)) / 2e-4
     assert_allclose(closed, -(1 + met.arm / met.met_arm) / 2, rtol=5e-6)  # squares of slopes are left out
     assert np.abs(mate.slope(met.roll)).max() > 2e-3
+
+
+@pytest.mark.parametrize("edge", ["tip_chamfer", "tip_rounding"])
+def test_gaps_are_those_of_exchanged_gears(edge):
+    """Edges of the wheel touch before the start of the path as those of the pinion do after its end, steep or round."""
+    rack = {"m_n": 6.0, "alpha_n": math.radians(20), "b": 40.0, "beta": math.radians(15)}
+    gears, flank = (
+        (gf.Gear(z=18, x=0.16, r_bore=16.0, **rack), gf.Gear(z=28, x=-0.15, r_bore=25.0, **rack)),
+        gf.Flank(**{edge: 0.5}),
+    )
+    pair, other, phase = gf.GearPair(*gears), gf.GearPair(*gears[::-1]), np.linspace(0.4, 0.6, 41)
+    one = pair.contacts(phase, flanks=flank_forms(pair, {"pinion": flank}))
+    two = other.contacts(pair.eps_alpha - phase, flanks=flank_forms(other, {"wheel": flank}))
+    first, again = (found.gap[:, found.order.tolist().index(order)] for found, order in ((one, 1), (two, -1)))
+    assert 0.02 < first[-1] < 0.5
+    assert_allclose(again, first, atol=1e-9)
+
+
+@pytest.mark.parametrize("side", ["pinion", "wheel"])
+def test_the_ridge_of_a_chamfer_is_the_corner_of_a_shorter_tooth(side):
+    """Off the path nothing of a chamfer touches but its ridge, where the tip corner of a tooth would be that ends there."""
+    rack, chamfer = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 40.0}, 0.3
+
+    def pair(shorter):
+        teeth = (("pinion", 25), ("wheel", 40))
+        return gf.GearPair(
+            *(gf.Gear(z=z, x=0.1, r_bore=10.0, addendum=1 - shorter * (name == side), **rack) for name, z in teeth)
+        )
+
+    whole, cut = pair(0.0), pair(chamfer / rack["m_n"])
+    forms = flank_forms(whole, {side: gf.Flank(tip_chamfer=chamfer)})
+    place = np.linspace(cut.path[0] - 1.5, cut.path[1] + 1.5, 61)
+    found = whole.contacts((place - whole.path[0]) / whole.p_bt, flanks=forms)
+    corner = cut.contacts((place - cut.path[0]) / cut.p_bt)
+    ridge, tip = (own.gap[:, own.order.tolist().index(0)] for own in (found, corner))
+    assert (tip > 1e-6).sum() >= 10
+    assert_allclose(ridge, tip, atol=1e-6)
