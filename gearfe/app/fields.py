@@ -58,6 +58,16 @@ def _both(name, group, label, unit, starts, place, **more):
     ]
 
 
+def _relief(end):
+    return [
+        *_both(f"{end}_relief", "Flanks", f"{end} relief", "µm", (0.0, 0.0), None, high=500, step=1),
+        *_both(
+            f"{end}_length", "Flanks", f"its length of roll from the {end}", "mm", (1.5, 1.5), None, low=0.01, high=50, step=0.05
+        ),
+        *_both(f"{end}_exponent", "Flanks", "its power (1 linear, 2 parabolic)", "", (1.0, 1.0), None, low=1, high=4, step=0.5),
+    ]
+
+
 def _gears(key):
     return tuple(f"gear.{side}.{key}" for side in SIDES)
 
@@ -89,6 +99,10 @@ FIELDS = (
     Field("crack_angle", "Crack", "angle to the centre-line", "°", 60.0, (), 5, 90, 1, when=CRACKED),
     Field("crack_start", "Crack", "starts at", "", "30deg", choices=("30deg", "root", "middle"), when=CRACKED),
     Field("turning", "Crack", "turns at the centre-line", "", "no", choices=("no", "yes"), when="crack=level"),
+    Field("part", "Crack", "through the width", "", "all of it", choices=("all of it", "a part"), when=CRACKED),
+    Field("part_first", "Crack", "from the height", "mm", 0.0, (), 0, 400, 0.5, when="part=a part"),
+    Field("part_last", "Crack", "to the height", "mm", 10.0, (), 0, 400, 0.5, when="part=a part"),
+    Field("part_rounded", "Crack", "its front", "", "straight", choices=("straight", "rounded"), when="part=a part"),
     Field("pits", "Pits", "pits", "", "no", choices=("no", "yes")),
     Field("pit_gear", "Pits", "pitted gear", "", "pinion", choices=SIDES, when=PITTED),
     Field("pit_count", "Pits", "pits in a row", "", 5, (), 1, 40, 1, whole=True, when=PITTED),
@@ -98,12 +112,16 @@ FIELDS = (
     Field("pit_along", "Pits", "semi-axis along the profile", "mm", 0.5, (), 0.01, 20, 0.05, when=PITTED),
     Field("pit_across", "Pits", "semi-axis along the width", "mm", 1.0, (), 0.01, 200, 0.05, when=PITTED),
     Field("pit_depth", "Pits", "depth", "mm", 0.2, (), 0.001, 10, 0.01, when=PITTED),
-    *_both("tip_relief", "Flanks", "tip relief", "µm", (0.0, 0.0), None, high=500, step=1),
-    *_both("tip_length", "Flanks", "its length of roll below the tip", "mm", (1.5, 1.5), None, low=0.01, high=50, step=0.05),
-    *_both("tip_exponent", "Flanks", "its power (1 linear, 2 parabolic)", "", (1.0, 1.0), None, low=1, high=4, step=0.5),
+    *_relief("tip"),
+    *_relief("root"),
+    *_both("tip_rounding", "Flanks", "tip rounded by a radius", "mm", (0.0, 0.0), None, high=9, step=0.05),
+    *_both("tip_chamfer", "Flanks", "tip chamfered from below it", "mm", (0.0, 0.0), None, high=9, step=0.05),
     *_both("crowning", "Flanks", "profile crowning", "µm", (0.0, 0.0), None, low=-200, high=200, step=0.5),
     *_both("lead", "Flanks", "crowning along the width", "µm", (0.0, 0.0), None, low=-200, high=200, step=0.5),
     Field("F_beta", "Flanks", "misalignment over the width", "µm", 0.0, ("pair.stage.F_beta_um",), -300, 300, 1),
+    *_both("radial", "Supports", "radial stiffness (0: rigid)", "N/µm", (0.0, 0.0), None, high=1e5, step=10),
+    *_both("tilt", "Supports", "tilting stiffness (0: rigid)", "N m/mrad", (0.0, 0.0), None, high=1e6, step=10),
+    *_both("torsion", "Supports", "torsional stiffness (0: rigid)", "N m/mrad", (0.0, 0.0), None, high=1e6, step=10),
     *_both("E", "Material", "Young's modulus", "MPa", (206000.0, 206000.0), "material.{}.E_MPa", low=1000, high=1e6, step=500),
     *_both("nu", "Material", "Poisson's ratio", "", (0.3, 0.3), "material.{}.nu", low=0.05, high=0.48, step=0.01),
 )  # fmt: skip

@@ -90,7 +90,7 @@ function build() {
 function row(field) {
   const box = Object.assign(document.createElement("div"), { className: "field" });
   const label = Object.assign(document.createElement("label"), { htmlFor: field.name, textContent: field.label });
-  box.dataset.when = field.when;
+  Object.assign(box.dataset, { when: field.when, field: field.name });
   let input;
   if (field.choices.length) {
     input = document.createElement("select");
@@ -160,9 +160,11 @@ function fill(typed = "") {
       slider.value = value;
     }
   }
+  const hidden = new Set();
   for (const box of all(".field")) {
     const [name, values] = (box.dataset.when || "").split("=");
-    box.hidden = Boolean(name) && !values.split(",").includes(state[name]);
+    box.hidden = Boolean(name) && (hidden.has(name) || !values.split(",").includes(state[name]));
+    if (box.hidden) hidden.add(box.dataset.field);
   }
 }
 

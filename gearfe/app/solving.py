@@ -34,7 +34,7 @@ from .state import CASE, SeveralError, read, tables_of, toml
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {"pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0}  # what changes along the width, as a section has it
+ALONG = {"pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it"}  # sections
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # of vibration
 SHOWN = 1500  # points of a spectrum that is drawn
@@ -84,10 +84,12 @@ def solid(state: dict[str, Any]) -> dict[str, Any]:
 def _answer(state, method, phases, *, error):
     with own_warnings() as told:
         scene, left_out = scene_from(state), ()
-        wide = {name for name, plain in ALONG.items() if state[name] != plain}
-        if method == "ritz" and wide:
-            scene = scene_from(state | ALONG)
-            left_out = ("pits, crowning along the width and misalignment are not in this section: solve in three dimensions",)
+        if method == "ritz" and _wide(state):
+            scene = scene_from(state | ALONG | ({"crack": "none"} if state["part"] != ALONG["part"] else {}))
+            left_out = (
+                "pits, cracks of part of the width, crowning along it, misalignment and tilting supports "
+                "are not in this section: solve in three dimensions",
+            )
         found, more = compared(scene, method, phases, error=error)
     curve = found.reference
     return {
@@ -104,6 +106,12 @@ def _answer(state, method, phases, *, error):
         "notes": [*left_out, *more, *dict.fromkeys(str(one.message) for one in told), *scene.pair().pair.notes],
         "assumed": [one["what"] for one in of_stiffness(scene.assumptions)] + [f"changed: {one}" for one in scene.changed],
     }  # fmt: skip
+
+
+def _wide(state):
+    """Whether something changes along the width, so that no section has it."""
+    cracked = state["crack"] != "none"
+    return any(state[name] != plain for name, plain in ALONG.items() if name != "part" or cracked)
 
 
 def _numbers(values):
@@ -220,7 +228,7 @@ def as_python(state: dict[str, Any]) -> dict[str, Any]:
 def as_csv(state: dict[str, Any]) -> dict[str, Any]:
     """The curve, healthy or damaged, as `StiffnessCurve.to_csv` writes it."""
     scene = scene_from(state)
-    method = "ritz3d" if any(state[name] != plain for name, plain in ALONG.items()) or state["beta"] else "ritz"
+    method = "ritz3d" if _wide(state) or state["beta"] else "ritz"
     with own_warnings(), tempfile.TemporaryDirectory() as folder:
         found, _ = compared(scene, method, SOLID if method == "ritz3d" else FINE, error=method == "ritz")
         file = Path(folder) / "curve.csv"

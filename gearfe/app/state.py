@@ -12,7 +12,15 @@ from ..scene.strict import checked, shown
 from .fields import FIELDS, SIDES, SPELLED, START, checked_state
 
 CASE, PAIR = "damaged", "stage"
-FLANK = {"tip_relief": "tip_relief_um", "crowning": "crowning_um", "lead": "lead_crowning_um"}  # a gear without any has no table
+ENDS = ("tip", "root")  # of a flank that may be relieved
+FLANK = {f"{end}_relief": f"{end}_relief_um" for end in ENDS} | {  # a gear without any has no table
+    "crowning": "crowning_um", "lead": "lead_crowning_um", "tip_rounding": "tip_rounding_mm", "tip_chamfer": "tip_chamfer_mm",
+}  # fmt: skip
+SUPPORT = {
+    "radial": "radial_N_per_um",
+    "tilt": "tilt_Nm_per_mrad",
+    "torsion": "torsion_Nm_per_mrad",
+}  # one that is rigid has no key
 CRACK = {"crack_angle": "angle_deg", "crack_start": "start", "crack_gear": "gear"}
 PITS = {
     "pit_gear": "gear", "pit_radius": "radius_mm", "pit_count": "count", "pit_first": "first_mm", "pit_last": "last_mm",
@@ -54,10 +62,15 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
     out["pair"][PAIR] |= {"face": face} if face else {}
     flanks = {side: _flank(state, i, side) for i, side in SPELLED.items()}
     out |= {"flank": found} if (found := {side: table for side, table in flanks.items() if table}) else {}
+    soft = {side: {key: value for name, key in SUPPORT.items() if (value := state[f"{name}_{i}"])} for i, side in SPELLED.items()}
+    soft = {side: {"gear": side} | own for side, own in soft.items() if own}
+    out |= {"support": soft} if soft else {}
     if state["crack"] != "none":
         size = {"length_mm": state["crack_length"]} if state["crack"] == "length" else {"level": state["crack_level"]}
         turning = {"turning": True} if state["turning"] == "yes" and state["crack"] == "level" else {}
-        out["crack"] = [{"case": CASE} | {key: state[name] for name, key in CRACK.items()} | size | turning]
+        part: dict[str, Any] = {"width_mm": [state["part_first"], state["part_last"]]} if state["part"] == "a part" else {}
+        part |= {"rounded": True} if part and state["part_rounded"] == "rounded" else {}
+        out["crack"] = [{"case": CASE} | {key: state[name] for name, key in CRACK.items()} | size | turning | part]
     if state["pits"] == "yes":
         axes = {"axes_mm": [state["pit_along"], state["pit_across"]]}
         out["pits"] = [{"case": CASE} | {key: state[name] for name, key in PITS.items()} | axes]
@@ -69,8 +82,9 @@ def tables_of(state: dict[str, Any]) -> dict[str, Any]:
 
 def _flank(state, i, side):
     out = {key: state[f"{name}_{i}"] for name, key in FLANK.items() if state[f"{name}_{i}"]}
-    if "tip_relief_um" in out:
-        out |= {"tip_start_length_mm": state[f"tip_length_{i}"], "tip_exponent": state[f"tip_exponent_{i}"]}
+    for end in ENDS:
+        if f"{end}_relief_um" in out:
+            out |= {f"{end}_start_length_mm": state[f"{end}_length_{i}"], f"{end}_exponent": state[f"{end}_exponent_{i}"]}
     return {"gear": side} | out if out else {}
 
 
@@ -197,8 +211,10 @@ def _renamed(name, tables, pair, case):
     for kind in ("flank", "support", "shaft"):
         for key, one in tables.get(kind, {}).items():
             if one["gear"] in sides and one.get("pair") in (None, pair):
-                if kind != "flank":
-                    raise ValueError(f"{name}: [{kind}.{key}] holds a gear of this pair; the page has rigid bores only")
+                if kind == "shaft":
+                    raise ValueError(
+                        f"{name}: [shaft.{key}] holds a gear of this pair; the page has supports by their stiffness only"
+                    )
                 table = {k: v for k, v in one.items() if k != "pair"}
                 own.setdefault(kind, {})[sides[one["gear"]]] = table | {"gear": sides[one["gear"]]}
     for kind in DAMAGE:
@@ -223,7 +239,7 @@ def _filled(name, tables):
     """Tables with the defaults of their keys; those that may be left out stand in with their defaults."""
     out = {"title": tables["title"], "source": tables["source"]}
     wanted = [("material", side) for side in SIDES] + [("gear", side) for side in SIDES] + [("pair", PAIR)]
-    for kind, key in wanted + [("flank", side) for side in SIDES]:
+    for kind, key in wanted + [(kind, side) for kind in ("flank", "support") for side in SIDES]:
         row = tables.get(kind, {}).get(key, {"gear": key})
         out[f"{kind}.{key}"] = checked(name, f"{kind}.{key}", row, TABLES[kind])
     if not out[f"pair.{PAIR}"]["face"] and out["gear.pinion"]["beta_deg"]:
@@ -265,9 +281,11 @@ def _fields(name, tables, torque):
         gear, flank = own[f"gear.{side}"], own[f"flank.{side}"]
         out[f"held_{i}"] = gear["r_rim_mm"] if gear["r_bore_mm"] is None else gear["r_bore_mm"]
         out |= {f"{field}_{i}": flank[key] for field, key in FLANK.items()}
-        out[f"tip_exponent_{i}"] = flank["tip_exponent"]
-        if flank["tip_start_length_mm"] is not None:
-            out[f"tip_length_{i}"] = flank["tip_start_length_mm"]
+        out |= {f"{field}_{i}": own[f"support.{side}"][key] or 0.0 for field, key in SUPPORT.items()}
+        for end in ENDS:
+            out[f"{end}_exponent_{i}"] = flank[f"{end}_exponent"]
+            if flank[f"{end}_start_length_mm"] is not None:
+                out[f"{end}_length_{i}"] = flank[f"{end}_start_length_mm"]
     pair = own[f"pair.{PAIR}"]
     out |= {"wheel": "ring" if own["gear.wheel"]["r_rim_mm"] is not None else "external", "a": pair["a_mm"] or 0.0}
     out["face"] = FACE if pair["face"] == ("helical" if own["gear.pinion"]["beta_deg"] else None) else pair["face"]
@@ -276,6 +294,9 @@ def _fields(name, tables, torque):
         out |= {field: row[key] for field, key in CRACK.items()}
         out |= {"crack": "length", "crack_length": row["length_mm"]} if row["level"] is None else {
             "crack": "level", "crack_level": row["level"], "turning": "yes" if row["turning"] else "no"}  # fmt: skip
+        if row["width_mm"] is not None:
+            rounded = "rounded" if row["rounded"] else "straight"
+            out |= {"part": "a part", "part_first": row["width_mm"][0], "part_last": row["width_mm"][1], "part_rounded": rounded}
     if "pits" in own:
         row = own["pits"]
         out |= {field: row[key] for field, key in PITS.items()} | {"pits": "yes"}

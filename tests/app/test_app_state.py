@@ -45,6 +45,9 @@ STATES = {
     "pits": {"pits": "yes", "crack": "none", "pit_count": 3},
     "one pit": {"pits": "yes", "pit_count": 1, "pit_first": 10.0, "pit_last": 10.0},
     "flanks": {"tip_relief_1": 20.0, "tip_length_1": 1.2, "tip_exponent_1": 2.0, "crowning_2": 3.0, "a": 52.1},
+    "edges": {"root_relief_2": 8.0, "root_length_2": 1.0, "root_exponent_2": 2.0, "tip_rounding_1": 0.1, "tip_chamfer_2": 0.1},
+    "soft": {"radial_1": 200.0, "tilt_2": 50.0, "torsion_1": 30.0, "crack": "none"},
+    "part": {"part": "a part", "part_first": 0.0, "part_last": 8.0, "part_rounded": "rounded"},
     "materials": {"E_1": 210000.0, "nu_2": 0.25, "x_1": 0.2, "x_2": -0.1, "force": 1234.5},
     "assumed": {"assumption": [{"what": "bore", "why": "a start", "holds": {"gear.pinion.r_bore_mm": 9.2}}]},
 }
@@ -93,7 +96,7 @@ def test_a_built_in_scene_is_refused_until_a_pair_and_a_case_are_chosen(scene):
 
 REFUSED = {
     'z_cutter = 25\nz = 21': "gear.pinion.z_cutter = 25",
-    'z = 21\n[support.soft]\ngear = "pinion"\nradial_N_per_um = 200.0': "rigid bores only",
+    'z = 21\n[support.soft]\ngear = "pinion"\naxial_N_per_um = 200.0': "support.pinion.axial_N_per_um",
     'z = 21\n[flank.p]\ngear = "pinion"\nslope_um = 3.0': "flank.pinion.slope_um = 3.0",
     'z = 21\n[[crack]]\ncase = "damaged"\ngear = "pinion"\nlevel = 0.2\ntooth = 5': "2 tables [[crack]]",
     'z = 21\n[machine]\nmodel = "helical_pair"\nspeed_rpm = 100.0\ntorque_Nm = 7.0\nrunout_um = 3.0': "machine helical_pair",
@@ -196,3 +199,14 @@ def test_what_a_section_cannot_show_is_said():
 def test_impossible_gears_are_refused_in_gearfes_words():
     told = json.loads(answer("quick", checked_state({"held_1": 40.0})))["refused"]
     assert told.startswith("[gear.pinion]: r_bore = 40.0 mm, but the bore must lie inside")
+
+
+def test_a_crack_of_part_of_the_width_waits_for_three_dimensions():
+    """The section would have it through the whole width: it is shown healthy, and says so; so is a support that tilts."""
+    part = {"part": "a part", "part_first": 0.0, "part_last": 8.0}
+    plain = json.loads(answer("quick", START | {"crack": "none"}))
+    for state in (part, part | {"tilt_1": 50.0}, {"crack": "none", "tilt_2": 50.0}):
+        shown = json.loads(answer("quick", START | state))
+        assert shown["section"]
+        assert "solve in three dimensions" in shown["notes"][0]
+        assert [one["k"] for one in shown["curves"]] == [one["k"] for one in plain["curves"]]
