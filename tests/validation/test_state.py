@@ -258,6 +258,19 @@ def test_what_made_a_row_on_file_counts_for_a_row_that_is_made_of_it(project, lo
     assert f"{rows} of     4 rows old" in told(project, "--stale")
 
 
+def test_a_method_that_an_earlier_row_of_the_process_called_for_a_cache_counts_for_later_rows(project):
+    """Row two finds the value in memory and calls nothing: yet it is old when the method that made it says something else."""
+    cached = "import functools\n\nclass Made:\n    @functools.cache\n    def one(self):\n        return 1\n\nMADE = Made()\n"
+    (project / "gearfe/used.py").write_text(cached)
+    text = KEPT.replace("lambda: {'value': 1}, parts", "lambda: {'value': MADE.one()}, parts")
+    (project / "validation/make/dynamics.py").write_text(f"from gearfe.used import MADE\n{text}")
+    told(project, "dynamics")
+    told(project, "dynamics", "--reference")
+    assert "dynamics " not in told(project, "--stale")
+    (project / "gearfe/used.py").write_text(cached.replace("return 1", "return 2"))
+    assert "2 of     4 rows old" in told(project, "--stale")
+
+
 def test_lines_of_before_calls_were_noted_count_files_whole(project):
     told(project, "cracks")
     path = project / "validation/pages/tables/state.jsonl"
