@@ -11,8 +11,8 @@ line of a page counts those of the present code. After a change of code::
     python -m validation renew three slow      # the same of some pages
     python -m validation slow tests/FILE       # the slow tests of a file
 
-Old is what used a module or a data file that says something else now: see `shared/state.py`. CI fails when something is old for
-more than 30 days.
+Old is what called a function, imported a module or read a data file that says something else now; a function that was not called
+counts with its signature only (`shared/state.py`, `shared/calls.py`). CI fails when something is old for more than 30 days.
 """
 
 import os

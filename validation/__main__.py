@@ -109,7 +109,7 @@ def stale(age):
 def compute(page, parts, reference):
     """Compute a page, parts of one or its independent values in this process, and record what with."""
     os.environ["GEARFE_CACHE"] = ""  # what is read from the disk was not computed by what is imported
-    state.watch()
+    state.watch(finely=page not in ALONE)  # noting calls takes time
     if page == "slow":
         slow.run(parts[0])
     else:

@@ -2,15 +2,16 @@
 
 A job is what is computed together: a page, a part of one, a row that is kept by itself, the slow tests of a file. Its line says
 the commit, the day, the CPU seconds, the number of rows and, by their keys, the machine with its libraries and the files: all
-modules below `CODE` that the process had imported when the job ended, and the data files there that it had opened. `code` is
-their digest, without comments and docstrings, so that rewording makes no row old. A job that started Python processes of its own
-is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
+modules below `CODE` that the process had imported when the job ended, with the functions that it had called (`calls`), and the
+data files there that it had opened. `code` is their digest, without comments and docstrings, so that rewording makes no row old.
+What made a row on file counts as called once the row is looked into. Modules count whole (`*`) where calls cannot be seen: in a
+job that read another table than one of such rows, or times itself (`__main__.ALONE`); and one that started a program that may be
+Python is held to have used all modules of both packages. Versions of the libraries are told; a newer one makes no row old.
 
 A run of another program depends on its input alone: its line also says the digest of that `deck`, and it is of the present code
 as long as the job `DECKS`, of the present code itself, finds the same one.
 """
 
-import ast
 import csv
 import fcntl
 import hashlib
@@ -21,49 +22,58 @@ import resource
 import subprocess
 import sys
 import time
-import tomllib
 from contextlib import contextmanager
-from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from types import SimpleNamespace
 
-from . import machine, places
+from . import calls, machine, places
+from .calls import WHOLE
 
 CODE = ("geometry", "gearfe", "validation", "tests")
 LIBRARIES = ("numpy", "scipy", "gmsh", "scikit-fem", "vtk")
 DATA = (".toml", ".csv", ".npz")
-KEEPERS = ("__init__", "kept_rows", "machine", "page", "places", "renew", "slow", "state", "table_rows")
+MADE = (".csv", ".json", ".npz")  # tables of pages; those of rows kept one by one say what made each row
+STARTS = ("subprocess.Popen", "os.fork", "os.posix_spawn", "os.system")
+OTHERS = ("git", "ccx", "uname", "chromium", "chromium-browser", "google-chrome")  # programs that start no Python
+KEEPERS = ("__init__", "calls", "kept_rows", "machine", "page", "places", "renew", "slow", "state", "table_rows")
 ASIDE = {  # they name, find, keep and write: no number depends on them
     *("geometry/__init__.py", "gearfe/__init__.py", "validation/__init__.py", "validation/__main__.py"),
     *(f"validation/shared/{name}.py" for name in KEEPERS),
 }
 SITE = "gearfe/docs/"  # its scripts are no part of the package: no row depends on them, and a test looks at what they print
 DECKS = "three decks"  # writes `decks.csv`
-SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
 run = SimpleNamespace(  # what this process computes
     job="",  # page and part; empty in tests, where nothing is recorded
     started=math.inf,  # when `watch` was called; since then:
-    opened=set(),  # files opened, and "python" if one was started
+    opened=set(),  # files opened, and "program" if one was started that may be Python
     wrote=set(),  # files written
     tables=set(),  # tables of rows that are kept one by one
+    looked=set(),  # rows on file that were looked into: table and key
+    brought={},  # what made them: by path, as in `used`
+    whole=False,  # whether all modules count whole
     seconds=0.0,  # of the processor for such rows
 )
 
 
-def watch():
-    """Note from now on what this process opens and whether it starts Python."""
+def watch(*, finely=True):
+    """Note from now on what this process opens, starts and, if `finely`, calls: loads modules so that they tell."""
 
     def note(event, words):
         if event == "open":
-            (run.wrote if set(words[1] or "") & set("wax+") else run.opened).add(str(words[0]))
+            path, writes = str(words[0]), bool(set(words[1] or "") & set("wax+"))
+            (run.wrote if writes else run.opened).add(path)
+            if not writes and path not in run.wrote and path.startswith(str(places.PAGES)) and path.endswith(MADE):
+                run.whole |= not path.endswith("decks.csv") and os.path.exists(path)
         elif event == "os.rename":
             run.wrote.add(str(words[1]))
-        elif event == "subprocess.Popen" and "python" in Path(str(words[0])).name:
-            run.opened.add("python")
+        elif event in STARTS and Path(str(words[0] if words else "")).name not in OTHERS:
+            run.opened.add("program")
 
     run.started = time.time()
     sys.addaudithook(note)
+    if finely:
+        calls.begin(CODE)
 
 
 def cpu():
@@ -72,58 +82,44 @@ def cpu():
 
 
 def used():
-    """Files that decide what this process has computed, as paths below the root."""
-    paths = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
-    paths |= {path for path in run.opened if path.endswith(DATA)}
-    if "python" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules):
-        paths |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
-    below = {Path(path).resolve() for path in paths - run.wrote if Path(path).is_file()}
-    names = {path.relative_to(places.ROOT).as_posix() for path in below if path.is_relative_to(places.ROOT)}
+    """What decides what this process has computed, by path below the root: names of the functions called, or that all counts."""
+    loaded = {getattr(module, "__file__", None) or "" for module in list(sys.modules.values())}
+    loaded |= {path for path in run.opened if path.endswith(DATA)}
+    started = "program" in run.opened or any(name.startswith("multiprocessing.popen_") for name in sys.modules)
+    if started:
+        loaded |= {path for top in CODE[:2] for path in (places.ROOT / top).rglob("*.py")}
+    loaded = {calls.below(path) for path in loaded - run.wrote if Path(path).is_file()}
+    here = {} if started or run.whole else calls.here()
     own, made = tuple(f"{top}/" for top in CODE), ("validation/pages/", "validation/.pages.", SITE)
-    return sorted(name for name in names - ASIDE if name.startswith(own) and not name.startswith(made))
+    out = {}
+    for name in sorted((loaded | here.keys() | run.brought.keys()) - ASIDE):
+        if name.startswith(own) and not name.startswith(made):
+            words = [run.brought[name]] if name in run.brought else []
+            words += [here.get(name, WHOLE)] if name in here or name in loaded else []
+            out[name] = WHOLE if run.whole else calls.both(words)
+    return out
+
+
+def bring(table, key):
+    """Count what made a row on file as called here: what this process computes from now on may depend on it."""
+    if not run.job or (table, key) in run.looked:
+        return
+    run.looked.add((table, key))
+    jobs, told = read()
+    rows = {
+        job.partition(" ")[2].removeprefix("--reference "): line for (job, name), line in jobs.items() if name == f"{table}.jsonl"
+    }
+    found = files_of(rows.get(key, {}), told)
+    run.whole |= not found  # nobody knows what made it
+    for name, words in found.items():
+        run.brought[name] = calls.both([words, run.brought.get(name, "")])
 
 
 def digest(names):
-    """Ten hexadecimal digits of what the files mean."""
-    return hashlib.sha256("\n".join(f"{name} {meaning(places.ROOT / name)}" for name in sorted(names)).encode()).hexdigest()[:10]
-
-
-@cache
-def meaning(path):
-    """Digest of a file: of the syntax tree of a module without docstrings, of the values of a TOML file, else of its bytes."""
-    if not path.is_file():
-        return "missing"
-    text = path.read_bytes()
-    if path.suffix == ".py":
-        words = []
-        _spell(ast.parse(text), words)
-        text = " ".join(words).encode()
-    elif path.suffix == ".toml":
-        text = repr(tomllib.loads(text.decode())).encode()
-    return hashlib.sha256(text).hexdigest()
-
-
-def _spell(node, words):
-    """Append a syntax tree without docstrings, unlike `ast.dump` the same in all versions of Python."""
-    words.append(type(node).__name__)
-    for name in node._fields:
-        value = getattr(node, name, None)
-        if value is None or value == [] or name in SILENT:
-            continue
-        words.append(name)
-        for one in value if isinstance(value, list) else [value]:
-            if not isinstance(one, ast.AST):
-                words.append(repr(one))
-            elif not _says_nothing(node, one):
-                _spell(one, words)
-    words.append(")")
-
-
-def _says_nothing(node, part):
-    """Whether a part is a constant that stands alone, as docstrings do, or nothing in an f-string, which Python 3.12.1 adds."""
-    if isinstance(part, ast.Expr):
-        return isinstance(part.value, ast.Constant)
-    return isinstance(node, ast.JoinedStr) and isinstance(part, ast.Constant) and part.value == ""
+    """Ten hexadecimal digits of what files mean: names of functions by path, as `used` gives them; paths alone count whole."""
+    names = names if isinstance(names, dict) else dict.fromkeys(names, WHOLE)
+    text = "\n".join(f"{name} {calls.meaning(places.ROOT / name, names[name])}" for name in sorted(names))
+    return hashlib.sha256(text.encode()).hexdigest()[:10]
 
 
 def git(*words):
@@ -179,6 +175,7 @@ def changed():
         jobs, told = read()
         yield jobs, told
         asked = {one[name] for one in jobs.values() for name in ("files", "on") if name in one}
+        asked |= {key for name in asked for key in told[name].get("called", {}).values()}
         lines = [json.dumps(jobs[job]) for job in sorted(jobs)]
         lines += [json.dumps({"key": key} | told[key]) for key in sorted(asked)]
         replace(places.TABLES / "state.jsonl", "\n".join([*lines, ""]))
@@ -205,26 +202,34 @@ def record(job, seconds, rows, page, table="", **more):
         Anything else to be told.
     """
     names, known = used(), {name: version(name) for name in LIBRARIES}
-    late = [name for name in names if (places.ROOT / name).stat().st_mtime > run.started]
+    late = [name for name in names if (places.ROOT / name).is_file() and (places.ROOT / name).stat().st_mtime > run.started]
     if late:
         raise RuntimeError(f"{', '.join(late)} changed while {job} was computed: compute it again")
-    folded = {}
-    for name in names:
-        folder, _, stem = name.rpartition("/")
-        folded[folder] = f"{folded.get(folder, '')} {stem.removesuffix('.py')}".strip()
-    facts = {"files": {"files": folded}, "on": {"machine": machine.describe(), "libraries": known}}
-    keys = {name: hashlib.sha256(json.dumps(fact).encode()).hexdigest()[:8] for name, fact in facts.items()}
+    facts = {"files": calls.folded(names), "on": {"machine": machine.describe(), "libraries": known}}
+    by_folder = {_key(one): {"calls": one} for one in facts["files"].values()}
+    facts["files"] = {"called": {folder: _key(one) for folder, one in facts["files"].items()}}
+    keys = {name: _key(fact) for name, fact in facts.items()}
     line = {"job": job, "table": table, "page": page, "rows": rows, "cpu": round(seconds, 1)}
     line["date"] = time.strftime("%Y-%m-%d %H:%M", time.gmtime())
     with changed() as (jobs, told):
         jobs[job, table] = line | {"commit": commit(), "code": digest(names)} | keys | more
-        told.update({keys[name]: fact for name, fact in facts.items()})
+        told.update(by_folder | {keys[name]: fact for name, fact in facts.items()})
 
 
 def files_of(line, told):
-    """Paths below the root of the files behind a line, none if unknown."""
-    folded = told[line["files"]]["files"] if "files" in line else {}
-    return [f"{folder}/{stem}{'' if '.' in stem else '.py'}" for folder, stems in folded.items() for stem in stems.split()]
+    """What was behind a line, as `used` gave it; nothing if unknown. A line of before functions were noted counts files whole."""
+    fact = told[line["files"]] if "files" in line else {}
+    folders = {folder: dict.fromkeys(stems.split(), WHOLE) for folder, stems in fact.get("files", {}).items()}
+    folders |= {folder: told[key]["calls"] for folder, key in fact.get("called", {}).items()}
+    return {
+        f"{folder}/{stem}{'' if '.' in stem else '.py'}": words
+        for folder, stems in folders.items()
+        for stem, words in stems.items()
+    }
+
+
+def _key(fact):
+    return hashlib.sha256(json.dumps(fact).encode()).hexdigest()[:10]
 
 
 def present(line, told):

@@ -1,0 +1,157 @@
+"""Which functions of the project a process called, and what its modules mean with these functions alone.
+
+`begin` loads modules so that each function that stands in no other one notes, as its first act, that it was called: in any thread
+and however it was reached. What was called counts with all that stands in it; of a function that was not called only decorators,
+name and signature count, and everything outside functions always does. Notes are never taken back, so that what a memory cache
+gives brings the functions that filled it. A module counts whole if it was loaded otherwise, as tests are by pytest, or speaks of
+numba, since compiled calls are not seen.
+"""
+
+import ast
+import builtins
+import gc
+import hashlib
+import sys
+import tomllib
+from functools import cache
+from importlib.machinery import PathFinder, SourceFileLoader
+from pathlib import Path
+
+from . import places
+
+WHOLE = "*"
+SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
+NOTE = "__called__"  # a builtin while functions are noted
+called: set[str] = set()  # path below the root, colon, name
+noted: set[str] = set()  # modules whose functions are noted, as paths below the root
+
+
+def below(path):
+    """Path below the root; as it is given where it is not there."""
+    path = Path(path).resolve()
+    return path.relative_to(places.ROOT).as_posix() if path.is_relative_to(places.ROOT) else path.as_posix()
+
+
+def begin(packages):
+    """Note from now on which functions of the modules of these packages are called; of those loaded before, none are."""
+
+    class Loader(SourceFileLoader):
+        def get_code(self, fullname):
+            text = self.get_data(self.path)
+            if b"numba" in text:
+                return super().get_code(fullname)
+            tree, name = ast.parse(text), below(self.path)
+            for function, node in functions(tree):
+                said = ast.parse(f"{NOTE}({f'{name}:{function}'!r})").body[0]
+                for part in ast.walk(said):
+                    ast.copy_location(part, node.body[0])
+                node.body.insert(ast.get_docstring(node, clean=False) is not None, said)
+            noted.add(name)
+            return compile(tree, self.path, "exec", dont_inherit=True)
+
+    class Finder(PathFinder):
+        @classmethod
+        def find_spec(cls, fullname, path=None, target=None):
+            spec = super().find_spec(fullname, path, target) if fullname.partition(".")[0] in packages else None
+            if spec and type(spec.loader) is SourceFileLoader:
+                spec.loader = Loader(spec.loader.name, spec.loader.path)
+            return spec
+
+    setattr(builtins, NOTE, called.add)
+    sys.meta_path.insert(0, Finder)
+
+
+def functions(tree):
+    """(name, node) of each function that stands in no other one, but for generators, which do not run when they are called."""
+    todo = [("", tree)]
+    while todo:
+        inside, node = todo.pop()
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            inside += f"{node.name}." if isinstance(node, ast.ClassDef) else ""
+            todo += [(inside, part) for part in ast.iter_child_nodes(node)]
+        elif not any(isinstance(part, (ast.Yield, ast.YieldFrom)) for part in ast.walk(node)):
+            yield inside + node.name, node
+
+
+def here():
+    """Names of the functions called, by modules whose functions are noted; a module of which numba compiled one counts whole."""
+    out = {name: [] for name in noted}
+    for one in list(called):
+        name, _, function = one.partition(":")
+        out[name].append(function)
+    if compiler := sys.modules.get("numba.core.dispatcher"):
+        compiled = [one for one in gc.get_objects() if isinstance(one, compiler.Dispatcher)]
+        out |= {below(one.py_func.__code__.co_filename): [WHOLE] for one in compiled}
+    return {name: both(words) for name, words in out.items()}
+
+
+def both(words):
+    """Texts of names of functions as one, sorted, each name once."""
+    names = {name for text in words for name in text.split()}
+    return WHOLE if WHOLE in names else " ".join(sorted(names))
+
+
+def folded(names):
+    """Names by path as names by folder and stem."""
+    out = {}
+    for name, words in names.items():
+        folder, _, stem = name.rpartition("/")
+        out.setdefault(folder, {})[stem.removesuffix(".py")] = words
+    return out
+
+
+@cache
+def meaning(path, names=WHOLE):
+    """Digest of a file: of a module without docstrings, with these functions; of the values of a TOML file, else of its bytes."""
+    if not path.is_file():
+        return "missing"
+    if names != WHOLE:
+        known = _parts(path)
+        return _hash("\n".join([known[""], *(f"{name} {known.get(name, 'missing')}" for name in names.split())]).encode())
+    text = path.read_bytes()
+    if path.suffix == ".py":
+        return _spelt(ast.parse(text))
+    return _hash(repr(tomllib.loads(text.decode())).encode() if path.suffix == ".toml" else text)
+
+
+@cache
+def _parts(path):
+    """Digests of the functions of a module by name, those of one name together; by the empty name of the rest."""
+    tree, out = ast.parse(path.read_bytes()), {}
+    for name, node in functions(tree):
+        out[name] = out.get(name, "") + _spelt(node)
+        node.body = []
+    return out | {"": _spelt(tree)}
+
+
+def _hash(text):
+    return hashlib.sha256(text).hexdigest()
+
+
+def _spelt(node):
+    words = []
+    _spell(node, words)
+    return _hash(" ".join(words).encode())
+
+
+def _spell(node, words):
+    """Append a syntax tree without docstrings, unlike `ast.dump` the same in all versions of Python."""
+    words.append(type(node).__name__)
+    for name in node._fields:
+        value = getattr(node, name, None)
+        if value is None or value == [] or name in SILENT:
+            continue
+        words.append(name)
+        for one in value if isinstance(value, list) else [value]:
+            if not isinstance(one, ast.AST):
+                words.append(repr(one))
+            elif not _says_nothing(node, one):
+                _spell(one, words)
+    words.append(")")
+
+
+def _says_nothing(node, part):
+    """Whether a part is a constant that stands alone, as docstrings do, or nothing in an f-string, which Python 3.12.1 adds."""
+    if isinstance(part, ast.Expr):
+        return isinstance(part.value, ast.Constant)
+    return isinstance(node, ast.JoinedStr) and isinstance(part, ast.Constant) and part.value == ""
