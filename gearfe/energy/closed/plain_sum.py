@@ -55,10 +55,12 @@ def plain_sum(
         left out: a slice is a spur gear.
     groove : float
         Width of a herringbone gear's relief groove [mm], part of b.
-    lost : {"hertz", "slices"}
-        What a pit takes from its pair: the lost part of the contact's stiffness (Liang et al. 2016, and article S4 as printed),
-        or the slices in it with all they carry (slices that know nothing of each other). The material it takes
-        weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
+    lost : {"hertz", "slices", "summed"}
+        What pits take from their pair: ``hertz``, the part of the contact's stiffness that stands for the part of its line in them
+        (Liang et al. 2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
+        ``summed``, the widths of all pits of the tooth, wherever along its flank the line is: article S4's ``k_h = E (L - sum dL)
+        / 2 (1 - mu**2)``, "For multiple pits, I sum the reductions", dL the largest 2 p_d, L the width of the half they lie in.
+        The material they take weakens the section of the whole tooth (the mean over all of b), not of single slices, in all.
     flanks : (FlankForm, FlankForm), optional
         Modifications: a slice whose gap is not closed carries nothing.
     **variants
