@@ -100,6 +100,8 @@ REFUSED = {
     "z = 300": "this page takes 6 to 160",
     'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nfirst_mm = 3.0\naxes_mm = [0.5, 0.5]\n'
     "depth_mm = 0.1\nangle_deg = 30.0": "pits.angle_deg = 30.0",
+    'z = 21\n[[pits]]\ncase = "damaged"\ngear = "pinion"\nradius_mm = 21.0\nmiddle_mm = 3.0\naxes_mm = [0.5, 0.5]\n'
+    "depth_mm = 0.1": "pits.middle_mm = 3.0",
 }  # fmt: skip
 
 
