@@ -251,7 +251,9 @@ def _cases(file, damage, gears, name, pairs, made):
                     raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
             for which, (side, key) in enumerate((("pinion", "gear_1"), ("wheel", "gear_2"))):
                 if pair[key] == row["gear"] and row["pair"] in (None, name):
-                    own = placed(file, where, lambda r=row, k=kind, n=which: _crack(r) if k == "crack" else pits_of(r, made, n, pair))
+                    own = placed(
+                        file, where, lambda r=row, k=kind, n=which: _crack(r) if k == "crack" else pits_of(r, made, n, pair)
+                    )
                     out.setdefault(row["case"], {}).setdefault(side, []).extend(own)
     return out
 

@@ -42,13 +42,17 @@ def pits_of(row, made, which, pair):
         raise ValueError("a row of pits begins at first_mm or has its middle at middle_mm: give one of them")
     if first is not None:
         if row["along"] != "axis" or pitch is not None or span is not None:
-            raise ValueError("first_mm and last_mm are of pits along the axis: for others give middle_mm with pitch_mm or span_mm")
+            raise ValueError(
+                "first_mm and last_mm are of pits along the axis: for others give middle_mm with pitch_mm or span_mm"
+            )
         found = pit_row(row["count"], first, first if last is None else last, **numbers)
         return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
     if last is not None:
         raise ValueError("last_mm goes with first_mm: about middle_mm give pitch_mm or span_mm")
     if row["count"] > 1 and (pitch is None) == (span is None):
-        raise ValueError(f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last")
+        raise ValueError(
+            f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last"
+        )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
     options = {"face": face, "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
     return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)

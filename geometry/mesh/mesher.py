@@ -86,10 +86,6 @@ def _begin_anew():
     _turn = threading.Lock()
 
 
-class UnmeshedError(RuntimeError):
-    """Gmsh made no tets of a solid with these edge lengths; with others it may."""
-
-
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_begin_anew)
 
@@ -280,7 +276,9 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         try:
             mesh.generate(3)
         except Exception as error:  # gmsh itself raises just Exception
-            raise UnmeshedError(f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart") from error
+            raise UnmeshedError(
+                f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart"
+            ) from error
         found, coords, _ = mesh.getNodes()
         place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
         place[found] = np.arange(found.size)

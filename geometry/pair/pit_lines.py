@@ -8,7 +8,7 @@ import numpy as np
 
 from ..damage.pit import MOST, Pit, centre_arc
 from ..tooth.profile import roll_at_arc
-from .lines import face_bands
+from .lines import Band, bands_of
 
 ALONG = ("axis", "contact_line", "profile")
 
@@ -18,9 +18,9 @@ def pit_line(
 ):
     """`count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
 
-    A contact line is straight, in the flank and in the plane of action: over a rise dz the roll length grows by ``tan(beta_b) dz``
-    with the sign of the hand that the teeth have there, and the line by ``dz / cos(beta_b)``. So pits of radius r at a pitch of
-    2 r touch each other, on a spur gear exactly.
+    A contact line is straight, in the flank and in the plane of action: over a height dz the pinion's roll length falls by
+    ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. So pits of radius r at a
+    pitch of 2 r touch each other, on a spur gear exactly. The outer ends of herringbone halves touch first, as in `bands_of`.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def pit_line(
     radius, middle : float
         Of the middle of the row: distance from the gear's axis and height [mm], as of a `Pit`.
     face, groove
-        How the teeth run, as in `geometry.pair.lines.face_bands`. A contact line is that of the half that `middle` is in.
+        How the teeth run, as in `geometry.pair.lines.bands_of`. A contact line is that of the half that `middle` is in.
     both : bool
         Whether its mirror image is in the other half of a herringbone gear too.
     mirrored : bool
@@ -59,7 +59,7 @@ def pit_line(
     >>> pair = GearPair(Gear(z=18, r_bore=8.1, **rack), Gear(z=27, r_bore=12.8, **rack))
     >>> row = dict(radius=18.73, middle=15.0, face="herringbone", axes=(0.5, 0.5), depth=0.2)
     >>> [(round(pit.radius, 3), round(pit.z, 3)) for pit in pit_line(pair, 0, "contact_line", 3, 1.0, both=True, **row)]
-    [(18.64, 14.034), (18.73, 15.0), (18.823, 15.966), (18.64, 45.966), (18.73, 45.0), (18.823, 44.034)]
+    [(18.823, 14.034), (18.73, 15.0), (18.64, 15.966), (18.823, 45.966), (18.73, 45.0), (18.64, 44.034)]
     """
     gear = (pair.gear_1, pair.gear_2)[which]
     if along not in ALONG:
@@ -78,15 +78,17 @@ def pit_line(
         radii, heights = np.sqrt(gear.r_b**2 + roll_at_arc(gear, arc) ** 2), np.full(count, float(middle))
     elif along == "contact_line":
         if not radius > gear.r_b:
-            raise ValueError(f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm")
+            raise ValueError(
+                f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm"
+            )
         band = _band(pair, gear, face, groove, middle)
         slope = band.slope * (1 if which == 0 else -pair.outward) * (-1 if mirrored else 1)
         heights = middle + steps * math.cos(gear.beta_b)
         rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - middle)
         if not (rolls > 0).all() or heights[0] < band.low or heights[-1] > band.high:
             raise ValueError(
-                f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of z = {gear.z}, or "
-                "its half of the width: make it shorter, or move its middle"
+                f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of z = {gear.z}, "
+                "or its half of the width: make it shorter, or move its middle"
             )
         radii = np.hypot(gear.r_b, rolls)
     row = [replace(start, radius=float(r), z=float(z)) for r, z in zip(radii, heights, strict=True)]
@@ -101,9 +103,10 @@ def in_both_halves(gear, pits, face):
 
 
 def _band(pair, gear, face, groove, middle):
-    """Band of the face at height `middle` of a gear, with the gear's own heights."""
+    """`Band` of the face at height `middle` of a gear, with the gear's own heights: from the end that touches first rolls fall."""
     below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
-    for band in face_bands(pair, face, groove):
-        if band.low + below <= middle <= band.high + below:
-            return band._replace(low=band.low + below, high=band.high + below)
+    for first, last in bands_of(pair, face, groove):
+        low, high = sorted((first + below, last + below))
+        if low <= middle <= high:
+            return Band(low, high, math.copysign(math.tan(pair.gear_1.beta_b), first - last), first + below)
     raise ValueError(f"pits about middle = {middle:.6g} mm, but there the teeth of z = {gear.z} touch nothing")

@@ -155,7 +155,7 @@ def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
         gf.load_scene(file)
 
 
-ROW = 'first_mm = 3.0\nlast_mm = 27.0\n'
+ROW = "first_mm = 3.0\nlast_mm = 27.0\n"
 LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
 
 
@@ -174,7 +174,7 @@ LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
     ],
 )
 def test_rows_of_pits_about_their_middle(tmp_path, row, message):
-    """The teeth of the herringbone scene are right-handed at z = 0: its contact lines rise to the tip there."""
+    """The outer ends of herringbone halves touch first: on the sun contact lines fall from there to the root."""
     file, text = tmp_path / "mine.toml", (resources.files("gearfe.scenes") / "herringbone.toml").read_text()
     assert text.count(ROW) > 3
     file.write_text(text.replace("count = 3\n" + ROW, "count = 3\n" + row, 1))
@@ -186,7 +186,7 @@ def test_rows_of_pits_about_their_middle(tmp_path, row, message):
     near = [pit for pit in pits if pit.z < 30]
     assert [round(pit.z - 15.0, 6) for pit in near] == [round(6 * math.cos(near_beta()) * k, 6) for k in (-1, 0, 1)]
     rising = near[2].radius - near[0].radius
-    assert (rising > 0.5) if "both" in row else (rising < -0.5)
+    assert (rising < -0.5) if "both" in row else (rising > 0.5)
     assert len(pits) == (6 if "both" in row else 3)
     assert {(pit.radius, round(60 - pit.z, 9)) for pit in pits[3:]} <= {(pit.radius, round(pit.z, 9)) for pit in near}
 

@@ -56,8 +56,8 @@ def plain_sum(
     groove : float
         Width of a herringbone gear's relief groove [mm], part of b.
     lost : {"hertz", "slices", "summed"}
-        What pits take from their pair: ``hertz``, the part of the contact's stiffness that stands for the part of its line in them
-        (Liang et al. 2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
+        What pits take from their pair: ``hertz``, of the contact's stiffness the part of its line that lies in them (Liang et al.
+        2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
         ``summed``, the widths of all pits of the tooth, wherever along its flank the line is: article S4's ``k_h = E (L - sum dL)
         / 2 (1 - mu**2)``, "For multiple pits, I sum the reductions", dL the largest 2 p_d, L the width of the half they lie in.
         The material they take weakens the section of the whole tooth (the mean over all of b), not of single slices, in all.

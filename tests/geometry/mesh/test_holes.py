@@ -146,7 +146,7 @@ def test_a_mesh_that_gmsh_cannot_make_is_made_finer(monkeypatch):
     assert len(asked) == 2
     monkeypatch.setattr(holes, "FINER", (1.0,))
     asked.clear()
-    with pytest.raises(RuntimeError, match="overlapping facets.; raise refine"):
+    with pytest.raises(RuntimeError, match=r"overlapping facets\); raise refine"):
         holed_sector(GEAR, [pit(GEAR)], teeth=1, sizes=COARSE)
 
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from geometry.damage.pit import centre_arc
-from geometry.pair.lines import contact_lines, lost_length, removed
+from geometry.pair.lines import bands_of, covered
 from geometry.pair.pit_lines import pit_line
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 40.0}
@@ -30,32 +30,24 @@ def test_a_row_along_a_contact_line_lies_on_one(beta, kind, which, face):
     """One phase has the centres of all pits on the line of the pair; a row mirrored meets it in its middle pit only."""
     pair = pairs(beta)[kind]
     gear = (pair.gear_1, pair.gear_2)[which]
-    both = face == "herringbone"
     radius = (pair.pitch_radius_1, pair.pitch_radius_1 * pair.gear_2.z / pair.gear_1.z)[which]
-    row = pit_line(
-        pair, which, "contact_line", 5, 1.5, radius=radius, middle=gear.b / 2 - 9.0, face=face, both=both, **SIZE
-    )
-    z = np.array([pit.z for pit in row]) - (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
-    turned = contact_lines(pair, 0.0, face=face)
-    # the phase at which the line runs through the middle pit
-    rolls = np.array([math.sqrt(pit.radius**2 - gear.r_b**2) for pit in row])
-    pinion = rolls if which == 0 else pair.outward * (pair.length - rolls)
-    band = [0 if pit.z < gear.b / 2 or not both else 1 for pit in row]
-    zero = turned.roll_0[0, :, band] + np.array([turned.bands[k].slope for k in band])[:, None] * z[:, None]
-    phase = (pinion - zero[:, np.flatnonzero(turned.order == 0)[0]]) / pair.p_bt
-    assert_allclose(phase, phase[0], atol=1e-12)
-    lines = contact_lines(pair, phase[:1], face=face)
-    pits = [(), ()]
-    pits[which] = row
-    assert len(removed(lines, pits).low) == len(row)
-    taken = lost_length(lines, pits).sum()
-    assert_allclose(taken, 0.8 * len(row), rtol=0.05)
-    along = np.hypot(np.diff(z[:5]), np.diff(rolls[:5]))
-    assert_allclose(along, 1.5, rtol=1e-12, err_msg="the pitch is counted along the line")
     run = {"radius": radius, "middle": gear.b / 2 - 9.0, "face": face, "axes": (0.1, 0.1), "depth": 0.2}
-    for mirrored, count in ((False, 5), (True, 1)):
-        pits[which] = pit_line(pair, which, "contact_line", 5, 1.5, mirrored=mirrored, **run)
-        assert len(removed(lines, pits).low) == count
+    shift = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
+    z = np.array(bands_of(pair, face, 0.0))
+    rolls, counts = pair.curvature_radii(pair.pitch_phase), []
+    # lines through the pitch point at the height of the middle pit; the pinion's roll falls from the end that touches first
+    slope = -np.sign(z[:, 1] - z[:, 0]) * math.tan(abs(gear.beta_b))
+    middle = np.array([run["middle"] - shift, gear.b - run["middle"] - shift][: len(z)])
+    line = rolls[0] + slope[:, None] * (z - middle[:, None])
+    for both, mirrored in ((False, False), (face == "herringbone", False), (False, True)):
+        pits = [(), ()]
+        pits[which] = pit_line(pair, which, "contact_line", 5, 1.5, both=both, mirrored=mirrored, **run)
+        piece, _, first, last = covered(pair, pits, np.zeros(len(z), dtype=int), (line, pair.mate_roll(line)), z)
+        counts.append(np.bincount(piece, minlength=2).tolist()[: len(z)])
+    assert counts == ([[5, 0], [5, 5], [1, 0]] if face == "herringbone" else [[5], [5], [1]])
+    row = pit_line(pair, which, "contact_line", 5, 1.5, **run)
+    own = np.array([(pit.z, math.sqrt(pit.radius**2 - gear.r_b**2)) for pit in row])
+    assert_allclose(np.hypot(*np.diff(own, axis=0).T), 1.5, rtol=1e-12, err_msg="the pitch is counted along the line")
 
 
 def test_rows_along_the_axis_and_up_the_profile():
