@@ -49,9 +49,9 @@ CRACK = """\
 #count = 5
 #first_mm = {first:.2f}  # height of the first centre over z = 0
 #last_mm = {last:.2f}  # and of the last
-# or instead of these two, about the point at radius_mm and height middle_mm = {half:.2f}: with pitch_mm = {apart:.2f} from one centre
-# to the next, or span_mm from the first to the last, and along = "axis", "profile" (from root to tip) or "contact_line" (where the
-# teeth touch at one moment; mirrored = true: inclined the other way)
+# or instead of these two, about the point at radius_mm and height middle_mm = {half:.2f}: with pitch_mm = {apart:.2f} from
+# centre to centre, or span_mm from first to last, and along = "axis", "profile" (from root to tip) or "contact_line" (where
+# the teeth touch at one moment; mirrored = true: inclined the other way)
 #both_halves = false  # true: the mirrored row in the other half of a herringbone gear too
 #axes_mm = [{axis:.2f}, {axis:.2f}]  # semi-axes along the profile and along the width
 #depth_mm = {depth:.2f}

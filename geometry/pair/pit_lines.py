@@ -87,8 +87,8 @@ def pit_line(
         rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - middle)
         if not (rolls > 0).all() or heights[0] < band.low or heights[-1] > band.high:
             raise ValueError(
-                f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of z = {gear.z}, "
-                "or its half of the width: make it shorter, or move its middle"
+                f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of "
+                f"z = {gear.z}, or its half of the width: make it shorter, or move its middle"
             )
         radii = np.hypot(gear.r_b, rolls)
     row = [replace(start, radius=float(r), z=float(z)) for r, z in zip(radii, heights, strict=True)]
@@ -103,7 +103,7 @@ def in_both_halves(gear, pits, face):
 
 
 def _band(pair, gear, face, groove, middle):
-    """`Band` of the face at height `middle` of a gear, with the gear's own heights: from the end that touches first rolls fall."""
+    """`Band` of the face at height `middle` of a gear, in the gear's own heights; rolls fall from the end that touches first."""
     below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
     for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))

@@ -42,7 +42,7 @@ def test_a_row_along_a_contact_line_lies_on_one(beta, kind, which, face):
     for both, mirrored in ((False, False), (face == "herringbone", False), (False, True)):
         pits = [(), ()]
         pits[which] = pit_line(pair, which, "contact_line", 5, 1.5, both=both, mirrored=mirrored, **run)
-        piece, _, first, last = covered(pair, pits, np.zeros(len(z), dtype=int), (line, pair.mate_roll(line)), z)
+        piece = covered(pair, pits, np.zeros(len(z), dtype=int), (line, pair.mate_roll(line)), z)[0]
         counts.append(np.bincount(piece, minlength=2).tolist()[: len(z)])
     assert counts == ([[5, 0], [5, 5], [1, 0]] if face == "herringbone" else [[5], [5], [1]])
     row = pit_line(pair, which, "contact_line", 5, 1.5, **run)
