@@ -90,8 +90,8 @@ def pressed_tooth(
     Parameters
     ----------
     pair, force, material, damage, face, groove, flanks, misalignment, supports
-        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without any it is
-        tooth 0 of the pinion.
+        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone, or the same in both.
+        Without any it is tooth 0 of the pinion.
     phases : array, optional
         Default: the one of 16 at which the damaged tooth carries most.
     refine, teeth, sizes
