@@ -21,7 +21,9 @@ def test_built_in_scene():
         scene.pair().case("broken")
 
 
-@pytest.mark.parametrize(("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8)])
+@pytest.mark.parametrize(
+    ("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8), ("herringbone_contact_line", 4)]
+)
 def test_the_other_machines(name, cases):
     pair = gf.load_scene(name).pair()
     assert len(pair.damage) == cases
@@ -79,7 +81,10 @@ def test_damage_of_another_pair_is_refused(tmp_path, name, message):
 
 
 def test_unknown_scene_and_pair():
-    with pytest.raises(ValueError, match="built in are compound_planetary, helical_pitting, herringbone, planetary_pitting"):
+    with pytest.raises(
+        ValueError,
+        match="built in are compound_planetary, helical_pitting, herringbone, herringbone_contact_line, planetary_pitting",
+    ):
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")
