@@ -86,7 +86,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "reference": [
         {
             "id": "k", "kind": "model", "quantity": "stiffness", "unit": "N/m", "source": "own", "relative": 0.1,
-            "tolerance": "own", "trend": False, "note": "", "reason": "", "correction": "",
+            "tolerance": "own", "trend": False, "note": "", "reason": "", "correction": "", "set_by": "",
             "rows": [{"case": "healthy", "kind": "model", "pair": "stage", "printed": 3e8, "corrected": 3e8, "correction": "unit",
                       "reason": ""}],
         }

@@ -132,6 +132,10 @@ class Found:
         """Our values of a reference in the order of its rows."""
         return [row.ours for row in self.rows.values() if row.id == name]
 
+    def printed(self, name):
+        """Printed values of a reference in the order of its rows."""
+        return [row.printed for row in self.rows.values() if row.id == name]
+
     def counted(self):
         """Counts of the verdicts."""
         return verdicts.counts(list(self.rows.values()))
