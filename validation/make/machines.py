@@ -96,9 +96,9 @@ def text(page):
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",
         "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
-        "*not reproducible*: nothing computed is that quantity. Kinds: *input*: put in, or found from this very value; "
-        "*arithmetic*:",
-        "follows from printed numbers; *model*: could have come out otherwise. Reasons: below.",
+        "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
+        "quantity. Kinds: *input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
+        "could have come out otherwise. Reasons: below.",
         "",
         verdicts.text(references(page), rows),
         "",
