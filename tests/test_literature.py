@@ -120,6 +120,9 @@ def test_verdict_on_a_printed_number(page, row, source):
         return
     target = row.printed if math.isnan(row.corrected) else row.corrected
     met = source.within(ours, target)
+    if row.verdict == verdicts.ASSUMED:
+        assert met or source.trend
+        return
     assert met == (row.verdict in (verdicts.REPRODUCED, verdicts.CORRECTED)), f"{source.source}: {row.printed}, found {ours}"
     if row.verdict == verdicts.TREND:
         values = [

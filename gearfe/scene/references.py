@@ -19,6 +19,7 @@ REFERENCE = {
     "note": (TEXT, ""),
     "reason": (TEXT, ""),
     "correction": (TEXT, ""),
+    "set_by": (TEXT, ""),
     "rows": (TABLES, REQUIRED),
 }
 ROW = {
@@ -30,6 +31,7 @@ ROW = {
     "corrected": (NUMBER, None),
     "correction": (TEXT, ""),
     "reason": (TEXT, ""),
+    "set_by": (TEXT, ""),
 }
 
 
@@ -54,6 +56,8 @@ class Printed:
     kind : str
         ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without a
         model of the machine; ``"model"``: a result that could have come out otherwise.
+    set_by : str
+        Assumption of the scene, or choice of ours, that sets our value: agreement is then none, and is called so.
     target : float
         What ours is compared with: the corrected value if there is one, else the printed one.
     """
@@ -65,6 +69,7 @@ class Printed:
     correction: str
     reason: str
     kind: str = "model"
+    set_by: str = ""
 
     @property
     def target(self) -> float:
@@ -164,7 +169,7 @@ def _row(file, where, table, reference, pairs):
     kind = one["kind"] or reference["kind"]
     if kind not in KINDS:
         raise ValueError(f"{file} [{where}]: kind = {kind!r}, but it must be one of {', '.join(KINDS)}")
-    return Printed(one["case"], one["pair"], value, corrected, correction, reason, kind)
+    return Printed(one["case"], one["pair"], value, corrected, correction, reason, kind, one["set_by"] or reference["set_by"])
 
 
 def printed_stiffness(scene, pair, case=None):

@@ -8,6 +8,7 @@ from ..units import NEWTON_PER_UM
 
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
+ASSUMED = "set by an assumption"  # within the tolerance, or in order, but by a value of ours
 DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
@@ -73,6 +74,8 @@ def _verdict(reference, row, ours, ordered):
         return FORMULA
     if ours is None:
         return NEVER
+    if row.set_by and (ordered or reference.within(ours, row.target)):
+        return ASSUMED
     if reference.within(ours, row.target):
         return CORRECTED if row.correction else REPRODUCED
     return TREND if ordered else NOT
@@ -107,6 +110,8 @@ def reason(reference, row):
     printed = next(one for one in reference.rows if (one.case, one.pair or "") == (row.case, row.pair))
     if row.verdict == CORRECTED:
         return printed.correction
+    if row.verdict == ASSUMED:
+        return printed.set_by
     if printed.corrected is not None and row.verdict in (TREND, NOT):
         return "; ".join(one for one in (f"judged by the corrected value ({printed.correction})", printed.reason) if one)
     return printed.reason if row.verdict in (TREND, NOT, NEVER) else ""
@@ -130,7 +135,7 @@ def _count(rows, noun):
 
 
 def _words(rows):
-    words = (REPRODUCED, CORRECTED, TREND, NOT, NEVER)
+    words = (REPRODUCED, CORRECTED, TREND, ASSUMED, NOT, NEVER)
     many = {word: sum(row.verdict == word for row in rows) for word in words}
     return ", ".join(f"{n} {word}" for word, n in many.items() if n)
 

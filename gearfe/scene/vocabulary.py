@@ -41,7 +41,7 @@ CRACK = """\
 #rounded = false  # true: the front is parabolic, of three ends elliptic
 #pair = "stage"  # only in this pair; left out: in all pairs of the gear
 
-# Pits: a row of ellipses along the width.
+# Pits: a row of ellipses.
 #[[pits]]
 #case = "pitted"
 #gear = "pinion"
@@ -49,6 +49,10 @@ CRACK = """\
 #count = 5
 #first_mm = {first:.2f}  # height of the first centre over z = 0
 #last_mm = {last:.2f}  # and of the last
+# or instead of these two, about the point at radius_mm and height middle_mm = {half:.2f}: with pitch_mm = {apart:.2f} from
+# centre to centre, or span_mm from first to last, and along = "axis", "profile" (from root to tip) or "contact_line" (where
+# the teeth touch at one moment; mirrored = true: inclined the other way)
+#both_halves = false  # true: the mirrored row in the other half of a herringbone gear too
 #axes_mm = [{axis:.2f}, {axis:.2f}]  # semi-axes along the profile and along the width
 #depth_mm = {depth:.2f}
 #angle_deg = 0.0  # of the axes, turned in the flank
@@ -149,7 +153,7 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
     axis = min(0.25 * gear.m_n, 0.04 * b)
     pitch = pair.a * gear.z / abs(pair.gear_2.z - gear.z if pair.gear_2.internal else pair.gear_2.z + gear.z)
     numbers = {
-        "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis,
+        "crack": gear.m_n, "half": 0.5 * b, "pitch": pitch, "first": 0.2 * b, "last": 0.8 * b, "axis": axis, "apart": 2 * axis,
         "depth": 0.1 * gear.m_n, "amount": 10 * gear.m_n, "length": length, "roll": roll,
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,

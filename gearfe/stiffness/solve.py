@@ -191,7 +191,7 @@ def mesh_stiffness(
         For ``fe``: number of teeth that are modelled, on a plain rim; default: all.
     variants : dict, optional
         For ``textbook`` and ``published``: options of `gearfe.energy.closed.plain_sum.plain_sum` and of the formulas'
-        ``components`` (``root``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
+        ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
     face : {"spur", "helical", "herringbone"}, optional
         For ``ritz3d``, ``fe3d`` and the plain sums: how the teeth run. Default: ``helical`` for gears with a helix angle in
         ``ritz3d`` and ``fe3d``, otherwise ``spur`` (of helical gears the transverse section, as a spur gear of the same width).

@@ -90,8 +90,8 @@ def pressed_tooth(
     Parameters
     ----------
     pair, force, material, damage, face, groove, flanks, misalignment, supports
-        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone. Without any it is
-        tooth 0 of the pinion.
+        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone, or the same in both.
+        Without any it is tooth 0 of the pinion.
     phases : array, optional
         Default: the one of 16 at which the damaged tooth carries most.
     refine, teeth, sizes
@@ -193,13 +193,28 @@ def _own(pair, side, face, groove, pits):
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
     width = (gear.b - groove) / 2
-    halves = {int(pit.z > gear.b / 2) for pit in pits}
-    if len(halves) > 1:
-        raise ValueError("pits in both halves of a herringbone gear: its halves are drawn one at a time, give those of one")
-    half = halves.pop() if halves else 0
+    parts = [tuple(pit for pit in pits if (pit.z > gear.b / 2) is upper) for upper in (False, True)]
+    if all(parts) and not _mirrored(gear, *parts):
+        raise ValueError(
+            "pits in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give those "
+            "of one"
+        )
+    half = int(not parts[0] and bool(parts[1]))
+    pits = parts[half]
     if half:
         pits = tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
+
+
+def _mirrored(gear, lower, upper):
+    """Whether the pits of one half are the mirror images of those of the other."""
+
+    def rounded(pit):
+        numbers = (pit.radius, pit.z, pit.angle, *pit.axes, pit.depth)
+        return tuple(round(value, 9) for value in numbers), pit.tooth, pit.side
+
+    turned = (replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in upper)
+    return sorted(map(rounded, lower)) == sorted(map(rounded, turned))
 
 
 def held_by(pair, supports, force, face):

@@ -18,13 +18,13 @@ from ..damage.pit_volume import removed_volume
 from ..tooth.gear import Gear
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve
 from .holed_drawing import fine, numbers_of, on_outline, section, squeezed, tool
-from .mesher import tetrahedra
+from .mesher import UnmeshedError, tetrahedra
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
 # of the smallest half axis
 SIZES = {"far": 1.6, "tooth": 0.5, "flank": 0.5, "fillet": 0.35, "tip": 0.12, "rim": 0.4}
 CUT = 2e-3  # largest relative error of the removed volume: that of the quadrature and of the splines is below 1e-3
-FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # attempts: flat tets may be turned inside out by the helix
+FINER = (1.0, 1.07, 1.15, 1.3, 1.5)  # attempts: flat tets may be turned inside out by the helix, walls between pits be too thin
 MESHED = 0.12  # largest relative error of the removed volume in the mesh: its rim is a polygon
 
 
@@ -88,7 +88,7 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     ValueError
         If a pit or the crack cannot be, or a pit reaches below the form circle.
     RuntimeError
-        If what was cut is not what the pits take.
+        If what was cut is not what the pits take, or gmsh cannot mesh what is left.
     """
     if teeth is not None and (isinstance(teeth, bool) or not isinstance(teeth, Integral)):
         raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
@@ -103,7 +103,12 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
-        made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()}, strips, stretch)
+        try:
+            made = _attempt(gear, pits, crack, teeth, {name: value / finer for name, value in size.items()}, strips, stretch)
+        except UnmeshedError:  # pits that touch leave thin walls
+            if finer == FINER[-1]:
+                raise
+            continue
         if _sizes_of(made.points, made.cells).min() > 0:
             return made
     raise RuntimeError(f"the helix of z = {gear.z} turns tets of this mesh inside out: raise refine")

@@ -22,6 +22,10 @@ TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIG
 _turn = threading.Lock()
 
 
+class UnmeshedError(RuntimeError):
+    """Gmsh made no tets of a solid with these edge lengths; with others it may."""
+
+
 @contextlib.contextmanager
 def gmsh_session():
     """A quiet gmsh session that is closed whatever happens; that of another thread waits until then.
@@ -232,6 +236,11 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
     Returns
     -------
     Pieces
+
+    Raises
+    ------
+    UnmeshedError
+        If gmsh cannot.
     """
     with gmsh_session() as gmsh:
         occ, mesh = gmsh.model.occ, gmsh.model.mesh
@@ -264,7 +273,12 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
             volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
         inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
         _sizes(gmsh, inner, fine, rim, far, growth, strips)
-        mesh.generate(3)
+        try:
+            mesh.generate(3)
+        except Exception as error:  # gmsh itself raises just Exception
+            raise UnmeshedError(
+                f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart"
+            ) from error
         found, coords, _ = mesh.getNodes()
         place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
         place[found] = np.arange(found.size)

@@ -151,6 +151,11 @@ def test_the_second_half_is_drawn_in_the_mirror():
     assert (one[1], two[1]) == (0, 1)
     assert two[0] == one[0]
     assert two[2] == one[2]
+    mirrored = pit(HELICAL, z=2.0, angle=0.5), pit(HELICAL, z=10.0, angle=-0.5)
+    assert holed._own(pair, 0, "herringbone", 2.0, mirrored) == one
+    for other in ({"z": 9.0}, {"angle": 0.5}, {"radius": HELICAL.r + 0.1}):
+        with pytest.raises(ValueError, match="both halves"):
+            holed._own(pair, 0, "herringbone", 2.0, (mirrored[0], replace(mirrored[1], **other)))
 
 
 @pytest.mark.slow
@@ -166,7 +171,7 @@ def test_halves_are_mirror_images(steel):
     assert_allclose(found[0].load, found[1].load, rtol=1e-6)
     assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
     with pytest.raises(ValueError, match="both halves"):
-        pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 10.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
+        pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
 
 
 @pytest.mark.slow

@@ -88,6 +88,49 @@ def test_lost_contact_acts_on_the_contact_or_on_the_slices():
         assert_allclose(stiffness(*shallow, phase=phase, lost=name), value, rtol=1e-6)
 
 
+@pytest.mark.parametrize("half", [0, 1])
+def test_summed_widths_act_wherever_the_line_is(half):
+    """Article S4: k_h with L less the sum of the pits' widths, also at phases at which the line meets no pit."""
+    gears = pair(0.3, 40.0)
+    row = seven(depth=1e-7, axes=(0.1, 1.0), radius=gears.gear_1.r_a - 0.2)
+    pits = [replace(pit, z=abs(40.0 * half - pit.z)) for pit in row]
+    c, options = hertz.linear_hertz(BOTH), {"on": gears, "face": "herringbone", "phase": np.array([0.7])}
+    none, one = stiffness(**options)[0], stiffness(*pits, lost="summed", **options)[0]
+    assert_allclose(stiffness(*pits, **options), none, rtol=1e-6, err_msg="the line meets pits")
+
+    def compliance(part):
+        """Of pair 0 in one half, from slices of which pits leave a part of the contact."""
+        lag = faces(gears, "herringbone")[0][2]
+        place = 0.7 - lag * (np.arange(20000) + 0.5) / 20000
+        rolls = gears.curvature_radii(place[(place > 0) & (place < gears.eps_alpha)])
+        teeth = sum(textbook.components(g, STEEL, r).total for g, r in zip((gears.gear_1, gears.gear_2), rolls, strict=True))
+        return (1 / (teeth + c / part)).sum() / 20000 / 2
+
+    assert_allclose(none - one, compliance(1.0) - compliance(1 - 14 / 20), rtol=2e-4)
+    with pytest.raises(ValueError, match=r"widths summed are 1\.4 times"):
+        stiffness(*pits, *(replace(pit, radius=pit.radius - 0.5) for pit in pits), lost="summed", **options)
+
+
+def test_beam_and_body_of_the_article_end_where_they_are_told_to():
+    """Beams on the base circle lose the prism, nothing else; a body that ends there has its lever and its S_f counted there."""
+    roll = np.array([3.0, 5.0])
+    whole, beam, body = (published.components(GEAR, STEEL, roll, **one) for one in ({}, {"root": "base"}, {"foot": "base"}))
+    assert_allclose(whole.foundation, beam.foundation, rtol=0)
+    assert_allclose(whole.bending, body.bending, rtol=0)
+    sin, cos = math.sin(GEAR.base_half_angle), math.cos(GEAR.base_half_angle)
+    prism = GEAR.r_b * cos - math.sqrt(GEAR.r_f**2 - (GEAR.r_b * sin) ** 2)
+    force = load_angle(GEAR, roll)
+    assert_allclose(whole.axial - beam.axial, np.sin(force) ** 2 * prism / (2 * STEEL.E * GEAR.r_b * sin), rtol=1e-9)
+    crack = gf.Crack(level=0.3)
+    hurt = published.components(GEAR, STEEL, roll, cracks=(crack,), root="base")
+    assert (hurt.bending < published.components(GEAR, STEEL, roll, cracks=(crack,)).bending).all()
+    on_base = replace(GEAR, dedendum=(GEAR.r - GEAR.r_b) / GEAR.m_n)  # its root circle is the base circle
+    assert_allclose(body.foundation, published.components(on_base, STEEL, roll).foundation, rtol=1e-6)
+    for name in ("root", "foot"):
+        with pytest.raises(ValueError, match=f"{name} = 'tip'"):
+            published.components(GEAR, STEEL, roll, **{name: "tip"})
+
+
 @pytest.mark.parametrize("contact", ["weber", "palmgren"])
 def test_load_dependent_contact(contact):
     """One approach for all, loads that add up, and a tangent that is the derivative."""
@@ -277,7 +320,7 @@ def test_a_ring_has_the_foundation_of_external_gears_if_printed(formulas):
         ({"contact": "iso"}, "linear, published, weber, palmgren"),
         ({"face": "bevel"}, "spur, helical, herringbone"),
         ({"groove": 2.0}, "only face = 'herringbone'"),
-        ({"lost": "width"}, "'hertz' or 'slices'"),
+        ({"lost": "width"}, "one of hertz, slices, summed"),
     ],
 )
 def test_unknown_options_are_refused(options, message):

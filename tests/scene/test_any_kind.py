@@ -66,7 +66,11 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
         {
             "case": "pitted", "gear": "sun", "radius_mm": 20.8, "count": 2, "first_mm": 5.0, "last_mm": 15.0,
             "axes_mm": [1.0, 2.0], "depth_mm": 0.2, "angle_deg": 0.0, "tooth": 0, "pair": "stage",
-        }
+        },
+        {
+            "case": "pitted", "gear": "sun", "radius_mm": 20.8, "count": 2, "along": "contact_line", "middle_mm": 10.0,
+            "pitch_mm": 3.0, "mirrored": False, "both_halves": False, "axes_mm": [1.0, 2.0], "depth_mm": 0.2,
+        },
     ],
     "machine": {
         "model": "herringbone_planetary", "speed_rpm": 1000.0, "torque_Nm": 100.0, "n_planets": 3, "contact": "linear",
@@ -82,7 +86,7 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
     "reference": [
         {
             "id": "k", "kind": "model", "quantity": "stiffness", "unit": "N/m", "source": "own", "relative": 0.1,
-            "tolerance": "own", "trend": False, "note": "", "reason": "", "correction": "",
+            "tolerance": "own", "trend": False, "note": "", "reason": "", "correction": "", "set_by": "",
             "rows": [{"case": "healthy", "kind": "model", "pair": "stage", "printed": 3e8, "corrected": 3e8, "correction": "unit",
                       "reason": ""}],
         }
@@ -136,6 +140,7 @@ ALSO = [  # keys that exclude one of the whole scene, with what goes for them
       for how in ("diameter_mm", "angle_deg", "length_mm")],
     ((*START, "root_start_roll_mm"), ()),
     (("crack", 0, "length_mm"), ("crack", 0, "level")),
+    (("pits", 1, "span_mm"), ("pits", 1, "pitch_mm")),
     (("reference", 0, "absolute"), ("reference", 0, "relative")),
     (("reference", 0, "rows", 0, "claim"), ("reference", 0, "rows", 0, "printed")),
 ]  # fmt: skip

@@ -1,3 +1,4 @@
+import math
 from importlib import resources
 
 import pytest
@@ -20,7 +21,9 @@ def test_built_in_scene():
         scene.pair().case("broken")
 
 
-@pytest.mark.parametrize(("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8)])
+@pytest.mark.parametrize(
+    ("name", "cases"), [("compound_planetary", 5), ("helical_pitting", 3), ("herringbone", 8), ("herringbone_contact_line", 4)]
+)
 def test_the_other_machines(name, cases):
     pair = gf.load_scene(name).pair()
     assert len(pair.damage) == cases
@@ -78,7 +81,10 @@ def test_damage_of_another_pair_is_refused(tmp_path, name, message):
 
 
 def test_unknown_scene_and_pair():
-    with pytest.raises(ValueError, match="built in are compound_planetary, helical_pitting, herringbone, planetary_pitting"):
+    with pytest.raises(
+        ValueError,
+        match="built in are compound_planetary, helical_pitting, herringbone, herringbone_contact_line, planetary_pitting",
+    ):
         gf.load_scene("nonsense")
     with pytest.raises(ValueError, match="it has sun_planet, planet_ring"):
         gf.load_scene("planetary_pitting").pair("sun_moon")
@@ -152,6 +158,46 @@ def test_a_row_of_no_or_of_millions_of_pits_is_refused(tmp_path, count):
     file.write_text(TEXT.replace("count = 5", f"count = {count}"))
     with pytest.raises(ValueError, match=f"count = {count} pits"):
         gf.load_scene(file)
+
+
+ROW = "first_mm = 3.0\nlast_mm = 27.0\n"
+LINE = 'along = "contact_line"\nmiddle_mm = 15.0\n'
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        (LINE + "span_mm = 12.0\nboth_halves = true\n", None),
+        (LINE + "pitch_mm = 6.0\nmirrored = true\n", None),
+        ("", "begins at first_mm or has its middle at middle_mm"),
+        (ROW + "middle_mm = 15.0\n", "begins at first_mm or has its middle at middle_mm"),
+        (ROW + 'along = "profile"\n', "first_mm and last_mm are of pits along the axis"),
+        (LINE, "3 pits about middle_mm: give pitch_mm"),
+        (LINE + "pitch_mm = 1.0\nspan_mm = 2.0\n", "3 pits about middle_mm: give pitch_mm"),
+        (LINE + "pitch_mm = 1.0\nlast_mm = 2.0\n", "last_mm goes with first_mm"),
+        (LINE + "pitch_mm = 20.0\n", r"\[pits 1\]: a row of 3 pits over 40 mm along the contact line leaves"),
+    ],
+)
+def test_rows_of_pits_about_their_middle(tmp_path, row, message):
+    """The outer ends of herringbone halves touch first: on the sun contact lines fall from there to the root."""
+    file, text = tmp_path / "mine.toml", (resources.files("gearfe.scenes") / "herringbone.toml").read_text()
+    assert text.count(ROW) > 3
+    file.write_text(text.replace("count = 3\n" + ROW, "count = 3\n" + row, 1))
+    if message:
+        with pytest.raises(ValueError, match=message):
+            gf.load_scene(file)
+        return
+    pits = [pit for pit in gf.load_scene(file).pair().damage["case1"]["pinion"] if isinstance(pit, gf.Pit)]
+    near = [pit for pit in pits if pit.z < 30]
+    assert [round(pit.z - 15.0, 6) for pit in near] == [round(6 * math.cos(near_beta()) * k, 6) for k in (-1, 0, 1)]
+    rising = near[2].radius - near[0].radius
+    assert (rising < -0.5) if "both" in row else (rising > 0.5)
+    assert len(pits) == (6 if "both" in row else 3)
+    assert {(pit.radius, round(60 - pit.z, 9)) for pit in pits[3:]} <= {(pit.radius, round(pit.z, 9)) for pit in near}
+
+
+def near_beta():
+    return gf.load_scene("herringbone").gears["sun"].beta_b
 
 
 @pytest.mark.parametrize("name", scene_names())

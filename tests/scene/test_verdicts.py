@@ -42,6 +42,18 @@ def test_the_corrected_value_is_reproduced_after_a_correction():
     assert row.verdict == verdicts.CORRECTED
 
 
+def test_agreement_that_an_assumption_sets_is_none():
+    """The healthy range of S4's sun is that of the runout assumed; where it does not agree, it is as wrong as any."""
+    rows = [Printed(str(value), None, value, None, "", "why", "model", "the runout assumed") for value in (1.0, 2.0)]
+    found = judged([1.01, 3.0], *rows)
+    assert [row.verdict for row in found] == [verdicts.ASSUMED, verdicts.NOT]
+    assert verdicts.reason(reference(*rows), found[0]) == "the runout assumed"
+    assert verdicts.counts(found) == "2 results of a model: 1 set by an assumption, 1 not reproduced"
+    assert [row.verdict for row in judged([5.0, 9.0], *rows, trend=True)] == [verdicts.ASSUMED] * 2
+    corrected = Printed("a", None, 2.0, 1.0, "swapped", "why", "model", "the runout assumed")
+    assert judged([1.0], corrected)[0].verdict == verdicts.ASSUMED
+
+
 def test_the_order_is_that_of_the_corrected_values():
     rows = [printed("a", 2.0, corrected=1.0, correction="swapped"), printed("b", 1.0, corrected=2.0, correction="swapped")]
     assert [row.verdict for row in judged([5.0, 9.0], *rows, trend=True)] == [verdicts.TREND] * 2

@@ -96,9 +96,9 @@ def text(page):
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",
         "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
-        "*not reproducible*: nothing computed is that quantity. Kinds: *input*: put in, or found from this very value; "
-        "*arithmetic*:",
-        "follows from printed numbers; *model*: could have come out otherwise. Reasons: below.",
+        "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
+        "quantity. Kinds: *input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
+        "could have come out otherwise. Reasons: below.",
         "",
         verdicts.text(references(page), rows),
         "",
@@ -131,6 +131,10 @@ class Found:
     def all(self, name):
         """Our values of a reference in the order of its rows."""
         return [row.ours for row in self.rows.values() if row.id == name]
+
+    def printed(self, name):
+        """Printed values of a reference in the order of its rows."""
+        return [row.printed for row in self.rows.values() if row.id == name]
 
     def counted(self):
         """Counts of the verdicts."""

@@ -38,12 +38,17 @@ def pressure(told):
     return f"largest pressure of Hertz {told['pressure']:.0f} MPa{elsewhere}"
 
 
+UNDRAWN = {
+    ("herringbone_contact_line", "case4")
+}  # the lowest pits reach 0.08 mm below the form circle: holes cannot be cut there
+
+
 def tasks():
     """Scene, case and kind of every picture."""
     out = []
     for name in scene_names():
         damage = next(iter(gf.load_scene(name).pairs.values())).damage
-        out += [(name, case, "stress") for case in damage]
+        out += [(name, case, "stress") for case in damage if (name, case) not in UNDRAWN]
         last = [*damage][-1]
         if any(isinstance(one, gf.Pit) for own in damage[last].values() for one in own):
             out.append((name, last, "contact"))
@@ -89,7 +94,7 @@ def run():
     FOLDER.mkdir(exist_ok=True)
     with ProcessPoolExecutor(os.cpu_count(), multiprocessing.get_context("spawn")) as pool:
         parts = dict(zip(tasks(), pool.map(picture, tasks()), strict=True))
-    answer = "Von Mises stress of every damage case of the four built-in scenes, and where some of the pitted teeth touch."
+    answer = "Von Mises stress of the damage cases of the built-in scenes, and where some of the pitted teeth touch."
     page.write("pictures", answer, *sections(parts))
 
 

@@ -2,10 +2,10 @@
 
 import math
 from functools import lru_cache
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebint, chebvander
 from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
@@ -17,7 +17,7 @@ from .section import limits, section
 
 ROOTS = ("fillet", "base", "line", "prism")
 FLANK, FOOT = leggauss(24), leggauss(64)
-DAMAGED = leggauss(40)
+NODES = 40  # of a part of a damaged tooth
 
 
 def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="constant"):
@@ -48,20 +48,14 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
     if not (cracks or pits):
         low = _lowest(gear, root)
         foot = np.array(_healthy_foot(gear, root))
-        return foot[:, None] + _panel(gear, _flank(gear), low, roll, (), (), FLANK)
+        return foot[:, None] + _panel(gear, _flank(gear), low, roll, FLANK)
     found = _limits(gear, root, cracks, crack_model)
-    edges = _flank_edges(gear, root, found, pits)
-    total = [np.zeros(5)]
+    edges, start = _flank_edges(gear, root, found, pits), np.zeros(5)
     below = _foot(gear, root)
     if below:
         curve, *ends = below
-        places = _edges(curve, found, pits, ends)
-        total += [_panel(gear, curve, a, np.array([b]), found, pits, DAMAGED)[:, 0] for a, b in pairwise(places)]
-    start = np.sum(total, axis=0)
-    whole = [_panel(gear, _flank(gear), a, np.array([b]), found, pits, DAMAGED)[:, 0] for a, b in pairwise(edges)]
-    whole = np.cumsum([start, *whole], axis=0)
-    piece = np.clip(np.searchsorted(gear.outward * edges, gear.outward * roll, side="right") - 1, 0, len(edges) - 1)
-    return whole[piece].T + _panel(gear, _flank(gear), edges[piece], roll, found, pits, DAMAGED)
+        start = _running(gear, curve, _edges(curve, found, pits, ends), found, pits)(np.array(ends[1:]))[:, 0]
+    return start[:, None] + _running(gear, _flank(gear), edges, found, pits)(roll)
 
 
 def flank_edges(gear, cracks, pits, *, root="fillet", crack_model="constant"):
@@ -101,26 +95,52 @@ def _edges(curve, found, pits, ends):
     return np.array([ends[0], *sorted(edges, reverse=ends[0] > ends[1]), ends[1]])
 
 
-def _panel(gear, curve, start, stop, found, pits, rule):
-    """The five integrals from `start` (number or array) to `stop` (array) of the curve's parameter.
-
-    Damaged sections end like square roots at the ends of pits: there the nodes are mapped by sin**2, which makes them smooth.
-    """
+def _panel(gear, curve, start, stop, rule):
+    """The five integrals of the healthy tooth from `start` (number or array) to `stop` (array) of the curve's parameter."""
     points, weights = rule
     span = (np.asarray(stop) - start)[:, None]
-    if found or pits:
-        theta = math.pi / 4 * (1 + points)
-        at = np.reshape(start, (-1, 1)) + span * np.sin(theta) ** 2
-        weight = span * np.sin(2 * theta) * math.pi / 4 * weights
-    else:
-        at = np.reshape(start, (-1, 1)) + span / 2 * (1 + points)
-        weight = span / 2 * weights
+    at = np.reshape(start, (-1, 1)) + span / 2 * (1 + points)
+    return (_integrands(gear, curve, at, (), ()) * span / 2 * weights).sum(axis=2)
+
+
+def _integrands(gear, curve, at, found, pits):
+    """The five integrands ``(5, *at.shape)`` of `integrals` by the curve's parameter."""
     h, y, slope, arc = curve(at)
-    step = slope * weight
     flat = [np.broadcast_to(v, at.shape).ravel() for v in (h, y, arc)]
     area, inertia, uncracked = (v.reshape(at.shape) for v in section(gear, *flat, found, pits))
-    values = (1 / inertia, y / inertia, y**2 / inertia, 1 / area, 1 / uncracked)
-    return np.array([(step * value).sum(axis=1) for value in values])
+    return slope * np.array([1 / inertia, y / inertia, y**2 / inertia, 1 / area, 1 / uncracked])
+
+
+def _running(gear, curve, edges, found, pits):
+    """The five integrals of a damaged tooth from the first of `edges` to any place, as a function of places ``(n,)``.
+
+    No load changes a section, so that one polynomial for each part between edges serves all of them. Damaged sections end
+    like square roots at the ends of pits: in the angle t of ``place = edge + span sin(t)**2`` they are smooth.
+    """
+    at, span = edges[:-1, None], np.diff(edges)[:, None]
+    nodes = np.cos(math.pi * (np.arange(NODES) + 0.5) / NODES)
+    angle = math.pi / 4 * (1 + nodes)
+    values = _integrands(gear, curve, at + span * np.sin(angle) ** 2, found, pits) * span * np.sin(2 * angle)
+    fitted = values @ chebvander(nodes, NODES - 1) * 2 / NODES
+    fitted[..., 0] /= 2
+    grown = chebint(fitted, lbnd=-1, scl=math.pi / 4, axis=-1)
+    before = np.cumsum(grown.sum(axis=-1), axis=1) - grown.sum(axis=-1)  # every Chebyshev polynomial is 1 at 1
+
+    sign = np.sign(span.sum())
+
+    def at_places(places):
+        part = np.clip(np.searchsorted(sign * edges, sign * places, side="right") - 1, 0, len(span) - 1)
+        way = np.clip((places - edges[part]) / span[part, 0], 0, 1)
+        beyond = np.abs(edges[part] + way * span[part, 0] - places)
+        if (beyond > 1e-6 * gear.m_n).any():
+            raise ValueError(
+                f"roll = {places[beyond.argmax()]:.6g} mm is off the flank of the damaged tooth of z = {gear.z}: give one from "
+                f"{edges.min():.6g} to {edges.max():.6g} mm"
+            )
+        place = 4 / math.pi * np.arcsin(np.sqrt(way)) - 1
+        return before[:, part] + np.einsum("knt,nt->kn", grown[:, part], chebvander(place, NODES))
+
+    return at_places
 
 
 def _flank(gear):
@@ -167,4 +187,4 @@ def _healthy_foot(gear, root):
     if below is None:
         return (0.0,) * 5
     curve, start, stop = below
-    return tuple(_panel(gear, curve, start, np.array([stop]), (), (), FOOT)[:, 0].tolist())
+    return tuple(_panel(gear, curve, start, np.array([stop]), FOOT)[:, 0].tolist())

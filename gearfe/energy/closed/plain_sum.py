@@ -1,9 +1,6 @@
 """The plain sum: tooth pairs that ignore each other, each a chain of two teeth and a contact, side by side."""
 
-import math
-
 import numpy as np
-from numpy.polynomial import Chebyshev
 
 from geometry.damage.crack import check_apart, check_through
 from geometry.damage.pit import check_pits
@@ -16,7 +13,6 @@ from .beam import load_angle
 from .integrals import flank_edges
 from .slices import faces, stations
 
-NODES = 24
 CONTACTS = ("linear", "published", "weber", "palmgren")
 
 
@@ -59,10 +55,12 @@ def plain_sum(
         left out: a slice is a spur gear.
     groove : float
         Width of a herringbone gear's relief groove [mm], part of b.
-    lost : {"hertz", "slices"}
-        What a pit takes from its pair: the lost part of the contact's stiffness (Liang et al. 2016, and article S4 as printed),
-        or the slices in it with all they carry (slices that know nothing of each other). The material it takes
-        weakens the section of the whole tooth (the mean over all of b), not of single slices, in both.
+    lost : {"hertz", "slices", "summed"}
+        What pits take from their pair: ``hertz``, of the contact's stiffness the part of its line that lies in them (Liang et al.
+        2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
+        ``summed``, the widths of all pits of the tooth, wherever along its flank the line is: article S4's ``k_h = E (L - sum dL)
+        / 2 (1 - mu**2)``, "For multiple pits, I sum the reductions", dL the largest 2 p_d, L the width of the half they lie in.
+        The material they take weakens the section of the whole tooth (the mean over all of b), not of single slices, in all.
     flanks : (FlankForm, FlankForm), optional
         Modifications: a slice whose gap is not closed carries nothing.
     **variants
@@ -105,12 +103,9 @@ def plain_sum(
         (gears[1], materials[1], at.roll_2, -at.order[at.column], cracks[1], pits[1]),
     ):
         for where, here in _by_tooth(gear, tooth, own_cracks, own_pits):
-
-            def tooth_at(rolls, gear=gear, material=material, here=here):
-                return formulas.components(gear, material, rolls, **here, **variants)
-
-            outside |= dict.fromkeys(tooth_at(np.array([gear.roll_a])).outside)
-            teeth[where] += _evaluated(gear, lambda rolls: tooth_at(rolls).total, roll[where], here, options)
+            one = formulas.components(gear, material, roll[where], **here, **variants)
+            teeth[where] += one.total
+            outside |= dict.fromkeys(one.outside)
     law = _law(pair, materials, at, contact, bands)
     return _solver(at, phase.size, teeth, law), {"outside": tuple(outside)}
 
@@ -126,23 +121,6 @@ def _by_tooth(gear, tooth, cracks, pits):
         if where.any():
             own = [tuple(d for d in found if d.tooth % gear.z == number) for found in (cracks, pits)]
             yield where, {"cracks": own[0], "pits": own[1]}
-
-
-def _evaluated(gear, flexibility, roll, here, options):
-    """Flexibility at many rolls; of a damaged tooth from Chebyshev interpolants between its edges where that is quicker.
-
-    At the ends of pits the flexibility changes like the power 3/2 of the distance: smooth in the arc sine used here.
-    """
-    edges = flank_edges(gear, here["cracks"], here["pits"], **options) if here else np.zeros(0)
-    if not here or roll.size <= NODES * edges.size:
-        return flexibility(roll)
-    out = np.empty(roll.shape)
-    piece = np.clip(np.searchsorted(gear.outward * edges, gear.outward * roll, side="right") - 1, 0, edges.size - 2)
-    for k in np.unique(piece):
-        first, span, here = edges[k], edges[k + 1] - edges[k], piece == k
-        table = Chebyshev.interpolate(lambda t, a=first, s=span: flexibility(a + s * np.sin(t) ** 2), NODES, [0, math.pi / 2])
-        out[here] = table(np.arcsin(np.sqrt(np.clip((roll[here] - first) / span, 0, 1))))
-    return out
 
 
 def _edges(pair, order, cracks, pits, options):

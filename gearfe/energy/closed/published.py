@@ -12,9 +12,12 @@ from .integrals import integrals
 
 GAUSS = leggauss(32)
 DEFAULTS = {"contact": "published", "root": "prism"}  # of `gearfe.energy.closed.plain_sum`
+ROOTS, FEET = ("prism", "base"), ("root", "base")
 
 
-def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot"):
+def components(
+    gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot", root="prism", foot="root"
+):
     """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
 
     As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
@@ -23,11 +26,14 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
     Corrections it needed, because the printed text cannot be computed:
 
     1. the integrals of k_b, k_s, k_a have lost their factors (all print ``.../(2 E L dL)``): those of the source they
-       abridge are used, with the beam starting on the base circle and a prism of constant thickness between root and
-       base circle when r_f < r_b;
+       abridge are used. When r_f < r_b the article has two integrals, from a_1 to a_2 and from a_2 to a_3, and its d ends with
+       "- R_f": the beam starts on the root circle, with a prism of constant thickness up to the base circle
+       (``root="prism"``). ``root="base"`` leaves the second integral out, a shortcut of many codes that this text contradicts;
     2. d and h_x are garbled (they lack the factors alpha_2 +- alpha): the same source's are used;
-    3. u_f, S_f and theta_f are not defined: Sainsot's, with the root half angle of a straight radial flank below the
-       base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``.
+    3. u_f, S_f and theta_f are not defined, beyond "polynomial functions of the tooth height and fillet angle": Sainsot's, with
+       the root half angle of a straight radial flank below the base circle, ``r_f sin(theta_f) = r_b sin(alpha_2)``
+       (``foot="root"``). With ``foot="base"`` the body ends, and u_f, S_f, theta_f and h are counted, on the larger of base and
+       root circle. It is apart from `root`: where the body ends is one thing, where the beam begins another.
 
     Damage (the same integrals with the article's ``A_x`` and ``I_x`` of a cracked and pitted section), corrected:
 
@@ -36,7 +42,8 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
        `gearfe.Crack`, of the half thickness at the foot;
     5. the printed ``dI = dA (h_p**2 + 3/4 p_d**2) / 12`` mixes up the axes and lacks the parallel-axis term, so that I - dI
        can become negative: the inertia here is that of the section left, about its own centroid;
-    6. several pits in a section take the union of their widths, not the sum; where the crack has made the material dead they
+    6. several pits in a section take the union of their widths, not the sum (for k_h "I sum the reductions" is the variant
+       ``lost="summed"`` of `gearfe.energy.closed.plain_sum`); where the crack has made the material dead they
        take nothing more (its case 3, there only said to be "close to");
     7. pits reduce axial compression as printed; cracks do not (the article gives no cracked k_a).
 
@@ -57,34 +64,33 @@ def components(gear, material, roll, *, cracks=(), pits=(), crack_model="constan
     """
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
     force = load_angle(gear, roll)
-    if foundation not in FOUNDATIONS:
-        raise ValueError(f"foundation = {foundation!r}, but it must be one of {', '.join(FOUNDATIONS)}")
+    for name, value, known in (("foundation", foundation, FOUNDATIONS), ("root", root, ROOTS), ("foot", foot, FEET)):
+        if value not in known:
+            raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
     if cracks or pits or gear.internal:
-        bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model)
+        bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model, root)
     else:
-        bending, shear, axial = _healthy(gear, material, force)
-    return Components(bending, shear, axial, *body(gear, material, roll, foundation))
+        bending, shear, axial = _healthy(gear, material, force, root)
+    return Components(bending, shear, axial, *body(gear, material, roll, foundation, foot))
 
 
-def body(gear, material, roll, foundation="sainsot"):
+def body(gear, material, roll, foundation="sainsot", foot="root"):
     """Foundation flexibility ``(n,)`` [mm per N/mm] of `components`, and the ranges of validity that the gear is not in."""
     force = load_angle(gear, roll)
     cos, tan = np.cos(force), np.tan(force)
     if foundation == "none" or (foundation == "external" and gear.internal):
         return np.zeros(np.shape(roll)), ()
-    theta = (
-        math.asin(min(1.0, gear.r_b * math.sin(gear.base_half_angle) / gear.r_f))
-        if gear.r_f < gear.r_b
-        else float(gear.half_thickness(gear.r_f))
-    )
-    h = body_ratio(gear, foundation)
+    below = gear.r_f < gear.r_b
+    ends = gear.r_b if below and foot == "base" else gear.r_f
+    theta = math.asin(min(1.0, gear.r_b * math.sin(gear.base_half_angle) / ends)) if below else float(gear.half_thickness(ends))
+    h = body_ratio(gear, foundation) * ends / gear.r_f
     outside = sainsot_outside(gear, h, theta)
-    ratio = gear.outward * (gear.r_b / cos - gear.r_f) / (2 * gear.r_f * theta)
+    ratio = gear.outward * (gear.r_b / cos - ends) / (2 * ends * theta)
     l, m, p, q = sainsot(h, theta)  # noqa: E741 the source's letters
     return cos**2 / material.E * (l * ratio**2 + m * ratio + p * (1 + tan**2) + q * tan), outside
 
 
-def _healthy(gear, material, force):
+def _healthy(gear, material, force, root):
     """Bending, shear and axial flexibility by the source's integrals over the angle."""
     alpha_2, cos, sin = gear.base_half_angle, np.cos(force), np.sin(force)
     points, weights = GAUSS
@@ -98,7 +104,7 @@ def _healthy(gear, material, force):
     bending = (step * 3 * arm**2 / (2 * depth**3)).sum(axis=1) / material.E
     shear = (step * 1.2 * (1 + material.nu) / depth).sum(axis=1) * cos**2 / material.E
     axial = (step / (2 * depth)).sum(axis=1) * sin**2 / material.E
-    if gear.r_f < gear.r_b:
+    if gear.r_f < gear.r_b and root == "prism":
         theta = math.asin(min(1.0, gear.r_b * math.sin(alpha_2) / gear.r_f))
         depth = (gear.r_b * math.cos(alpha_2) - gear.r_f * math.cos(theta)) / gear.r_b
         far = 1 - (gear.r_f / gear.r_b) * cos * math.cos(theta)
@@ -109,12 +115,12 @@ def _healthy(gear, material, force):
     return bending, shear, axial
 
 
-def _damaged(gear, material, roll, cracks, pits, crack_model):
+def _damaged(gear, material, roll, cracks, pits, crack_model, root):
     """The same over the same profile with the sections that damage leaves."""
     force = load_angle(gear, roll)
     cos, sin = np.cos(force), np.sin(force)
     radius, angle = flank(gear, roll)
-    i0, i1, i2, area, uncracked = integrals(gear, roll, root="prism", cracks=cracks, pits=pits, crack_model=crack_model)
+    i0, i1, i2, area, uncracked = integrals(gear, roll, root=root, cracks=cracks, pits=pits, crack_model=crack_model)
     arm = cos * gear.outward * radius * np.cos(angle) - sin * radius * np.sin(angle)
     bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
     return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E

@@ -9,6 +9,7 @@ from numpy.polynomial.legendre import leggauss
 from geometry.pair.lines import covered, halves
 from geometry.pair.modified import first_touch
 
+LOST = ("hertz", "slices", "summed")
 RULES = {False: leggauss(1), True: leggauss(24)}
 SHORT = leggauss(10)  # for panels shorter than a quarter of a base pitch
 
@@ -60,9 +61,9 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
         Pits of pinion and wheel, teeth numbered in each gear's own frame.
     bands : list
         From `faces`.
-    lost : {"hertz", "slices"}
-        What a pit takes from a pair: part of its contact stiffness (the touching part of the line), or the slices it covers
-        with all their stiffness.
+    lost : {"hertz", "slices", "summed"}
+        What pits take from a pair: part of its contact stiffness (the touching part of the line), the slices they cover with all
+        their stiffness, or of its contact stiffness their widths altogether, wherever the line is.
     flanks : (FlankForm, FlankForm), optional
         Modifications: each slice touches where its section first does.
     edges : callable, optional
@@ -72,8 +73,8 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
     -------
     Stations
     """
-    if lost not in ("hertz", "slices"):
-        raise ValueError(f"lost = {lost!r}, but it must be 'hertz' or 'slices'")
+    if lost not in LOST:
+        raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
     lag = max(band[2] for band in bands)
     order = pair.contacts([phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
@@ -84,11 +85,12 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
         whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
         gap = None if flanks is None else found.gap[i, j]
         return Stations(found.order, i, j, found.roll_1[i, j], found.roll_2[i, j], whole, np.ones(i.size), gap)
-    rows, taken = [], _taken(pair, phase, order, pits, bands)
+    rows, taken = [], {} if lost == "summed" else _taken(pair, phase, order, pits, bands)
+    summed = _summed(pair, order, pits, bands) if lost == "summed" else np.zeros((order.size, len(bands)))
     for i, p in enumerate(phase):
         for j, number in enumerate(order):
             for k, band in enumerate(bands):
-                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()))
+                found = _line(pair, p + number, taken.get((i, j, k), ()), band, lost, edges.get(number, ()), 1 - summed[j, k])
                 rows += [np.column_stack([np.full(len(f), i), np.full(len(f), j), f]) for f in found]
     table = np.concatenate(rows) if rows else np.zeros((0, 6))
     (i, j), (roll, weight, touching) = table[:, :2].astype(int).T, table[:, 2:5].T
@@ -115,7 +117,25 @@ def _taken(pair, phase, order, pits, bands):
     return out
 
 
-def _line(pair, place, taken, band, lost, edges):
+def _summed(pair, order, pits, bands):
+    """Parts of the width of each band that the pits of a pair's two teeth take, summed: ``(pairs, bands)``."""
+    out = np.zeros((order.size, len(bands)))
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    for gear, own, sense in ((pair.gear_1, pits[0], 1), (pair.gear_2, pits[1], -1)):
+        for pit in own:
+            z = pit.z - (gear.b - common) / 2
+            ends = [(max(min(a, b), z - pit.reach[1]), min(max(a, b), z + pit.reach[1])) for a, b, _ in bands]
+            width = [max(high - low, 0.0) / abs(b - a) for (low, high), (a, b, _) in zip(ends, bands, strict=True)]
+            out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
+    if (out >= 1).any():
+        raise ValueError(
+            f"the pits' widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
+            "smaller ones, or lost = 'hertz'"
+        )
+    return out
+
+
+def _line(pair, place, taken, band, lost, edges, kept_part=1.0):
     """Stations (pinion roll, weight, touching, height) of one pair whose slice at the first end is at phase `place`."""
     first, last, lag = band
     slack = 1e-9
@@ -144,6 +164,6 @@ def _line(pair, place, taken, band, lost, edges):
         points, weights = SHORT if 0 < lag * (e - s) < 0.25 else RULES[lag > 0]
         t = s + (e - s) * (1 + points) / 2
         at = roll[0] + (roll[1] - roll[0]) * t
-        kept, z = np.full(t.size, left if lost == "hertz" else 1.0), first + (last - first) * t
+        kept, z = np.full(t.size, left if lost == "hertz" else kept_part), first + (last - first) * t
         out.append(np.column_stack([at, share * (e - s) / 2 * weights, kept, z]))
     return out

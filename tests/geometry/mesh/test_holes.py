@@ -129,6 +129,27 @@ def test_the_helix_turns_no_tet_inside_out():
     assert np.einsum("im,im->m", np.cross(b - a, c - a, axis=0), d - a).min() > 0
 
 
+def test_a_mesh_that_gmsh_cannot_make_is_made_finer(monkeypatch):
+    """Pits that touch along a contact line: gmsh found overlapping facets, and with edges 1.07 times shorter it did not."""
+    import gmsh
+
+    generate, asked = gmsh.model.mesh.generate, []
+
+    def failing(dimension):
+        asked.append(dimension)
+        if len(asked) == 1:
+            raise Exception("Invalid boundary mesh (overlapping facets)")
+        generate(dimension)
+
+    monkeypatch.setattr(gmsh.model.mesh, "generate", failing)
+    assert holed_sector(GEAR, [pit(GEAR)], teeth=1, sizes=COARSE).faces["pits"].size
+    assert len(asked) == 2
+    monkeypatch.setattr(holes, "FINER", (1.0,))
+    asked.clear()
+    with pytest.raises(RuntimeError, match=r"overlapping facets\); raise refine"):
+        holed_sector(GEAR, [pit(GEAR)], teeth=1, sizes=COARSE)
+
+
 def test_holes_in_a_ring():
     made = holed_sector(RING, [pit(RING)], teeth=1, sizes=COARSE)
     assert_allclose(made.removed[1], made.removed[0], rtol=2e-3)

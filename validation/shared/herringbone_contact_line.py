@@ -1,0 +1,94 @@
+"""The ten rows of scene `herringbone_contact_line`: by `ritz3d`, by the closed forms, and by `fe3d` where it was run."""
+
+import csv
+import time
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.scene.verdicts import judge, text
+from gearfe.stiffness.inputs import overlap
+from gearfe.stiffness.methods import fitted
+
+from . import herringbone_layouts as layouts
+from .herringbone_scan_nodes import keep
+from .places import TABLES
+
+SCENE = "herringbone_contact_line"
+OFFSETS = (-0.25, -0.12, -0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09, 0.12, 0.25)  # base pitches from the pitch point
+METHODS = {  # name: method, and its variants
+    "ritz3d": ("ritz3d", {}),
+    "published": ("published", {}),
+    "published, summed": ("published", {"lost": "summed"}),
+    "textbook": ("textbook", {}),
+    "fe3d": ("fe3d", {}),
+}
+QUICK = tuple(name for name in METHODS if name != "fe3d")
+REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of `fe3d`, as of the scene herringbone
+LESS = 0.8  # of the load: what k does with it
+HEADER = ("method", "pair", "case", *(f"k at {one:+g} [N/um]" for one in OFFSETS), "power", "seconds")
+PATH = TABLES / f"{SCENE}.csv"
+
+
+def rows():
+    """(pair, case) of the ten rows."""
+    return [(row.pair, row.case) for row in gf.load_scene(SCENE).references[0].rows]
+
+
+def stored():
+    """Rows of the table by (method, pair, case): k ``(offsets,)`` under the same load [N/um], power, seconds."""
+    if not PATH.exists():
+        return {}
+    with PATH.open(encoding="utf-8", newline="") as file:
+        found = [list(row.values()) for row in csv.DictReader(file)]
+    return {tuple(row[:3]): (np.array(row[3:-2], dtype=float), *map(float, row[-2:])) for row in found}
+
+
+def load():
+    """K ``(offsets,)`` [N/um] by (method, pair, case) at the rotation of the healthy pair, see `herringbone_layouts`."""
+    known, out = stored(), {}
+    for (method, pair, case), (k, *_) in known.items():
+        whole, power, _ = known[method, pair, "healthy"]
+        out[method, pair, case] = whole * (k / whole) ** power
+    return out
+
+
+def compute(methods=QUICK):
+    """Compute the rows that are not in the table; each is kept at once."""
+    known, scene = stored(), gf.load_scene(SCENE)
+    for name, pair, case in [(name, *row) for name in methods for row in rows()]:
+        if (name, pair, case) in known:
+            continue
+        started, (method, variants) = time.process_time(), METHODS[name]
+        chosen = scene.pairs[pair]
+        phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
+        run, _ = fitted(method, chosen.case(None if case == "healthy" else case) | {"phases": phase, "method": method})
+        run |= {"variants": run.get("variants", {}) | variants} if variants else {}
+        run |= {"refine": REFINE[pair]} if method == "fe3d" else {}
+        k, less = (one.k / 1e6 for one in gf.mesh_stiffness(**run | {"force": [chosen.force, LESS * chosen.force]}))
+        power = float((np.log(LESS) / np.log(LESS * k / less)).mean())
+        keep(PATH, HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{time.process_time() - started:.2f}"])
+        print(f"{name} {pair} {case}: {time.process_time() - started:.1f} s", flush=True)
+
+
+def ours(method, found=None):
+    """Ten stiffnesses [N/um] at the phase at which case 4 of their pair takes most, and its offset by pair."""
+    found, at, out = found or load(), {}, []
+    for pair, last in (("sun_planet", "case4"), ("planet_ring", "planet4")):
+        at[pair] = int(np.argmax(1 - found[method, pair, last] / found[method, pair, "healthy"]))
+    out = [float(found[method, pair, case][at[pair]]) for pair, case in rows()]
+    return np.array(out), {pair: OFFSETS[i] for pair, i in at.items()}
+
+
+def done(method):
+    """Whether all ten rows of a method are in the table."""
+    return all((method, *row) in stored() for row in rows())
+
+
+def verdicts(method):
+    """Lines: printed numbers of the scene beside those of a method."""
+    scene, (k, _) = gf.load_scene(SCENE), ours(method)
+    lost = dict(zip([(case, pair) for pair, case in rows() if case != "healthy"], layouts.reductions(k), strict=True))
+    values = {(case, pair): 1e6 * v for (pair, case), v in zip(rows(), k, strict=True)}
+    made = [row for one in scene.references for row in judge(one, values if one.id == "stiffness_fe" else lost)]
+    return text(scene.references, made)
