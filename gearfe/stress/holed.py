@@ -202,7 +202,7 @@ def _own(pair, side, face, groove, pits):
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]
     if half:
-        pits = tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
+        pits = _mirror(gear, pits)
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
@@ -213,8 +213,11 @@ def _mirrored(gear, lower, upper):
         numbers = (pit.radius, pit.z, pit.angle, *pit.axes, pit.depth)
         return tuple(round(value, 9) for value in numbers), pit.tooth, pit.side
 
-    turned = (replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in upper)
-    return sorted(map(rounded, lower)) == sorted(map(rounded, turned))
+    return sorted(map(rounded, lower)) == sorted(map(rounded, _mirror(gear, upper)))
+
+
+def _mirror(gear, pits):
+    return tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
 
 
 def held_by(pair, supports, force, face):
