@@ -10,6 +10,7 @@ import gearfe as gf
 from validation.shared import herringbone_contact_line as line
 from validation.shared import herringbone_layouts as layouts
 from validation.shared import herringbone_layouts_page as page
+from validation.shared import herringbone_statements as statements
 from validation.shared import state, table_rows
 from validation.shared.places import PAGES, TABLES
 
@@ -87,6 +88,19 @@ def test_rows_of_the_scan_are_what_is_computed_now():
     for row in rows:
         k, _ = layouts.Model([float(row[name]) for name in layouts.RANGES]).row(row["layout"])
         assert_allclose(k, page.stiffness([row])[0], rtol=2e-3)
+
+
+def test_conclusions_are_judged_by_what_each_fault_takes():
+    """Case 3 stays near the crack alone, or does not; the order of both pairs; and the committed rows say the same."""
+    one = {"both": 11.0, "crack": 10.5, "pits": 1.0}
+    found = {("herringbone", pair, n): one for pair in ("sun_planet", "planet_ring") for n in (1, 2, 3, 4)}
+    assert [holds for _, holds, _ in statements.verdicts(found, "herringbone")] == [True, True, False, False, True]
+    found["herringbone", "planet_ring", 3] = one | {"both": 12.0}
+    found["herringbone", "sun_planet", 4] = {"both": 31.0, "crack": 5.0, "pits": 28.0}
+    assert [holds for _, holds, _ in statements.verdicts(found, "herringbone")] == [True, False, True, False, True]
+    rows = statements.rows()
+    told = [[holds for _, holds, _ in statements.verdicts(rows, scene)] for scene in statements.SCENES]
+    assert told == [[True, True, False, False, True], [True, False, True, True, True]]
 
 
 def test_the_page_opens_with_the_answer_and_old_sentences_are_gone():

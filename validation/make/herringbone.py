@@ -16,6 +16,7 @@ from ..shared import (
     herringbone_page,
     herringbone_scan_page,
     herringbone_section,
+    herringbone_statements,
     page,
 )
 from ..shared import herringbone_scan as scan
@@ -134,7 +135,8 @@ def text():
         "The finite elements, in `gearfe/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
     layouts, readings = herringbone_layouts_page.section(), herringbone_scan_page.section()
-    return answer, how, layouts, herringbone_page.ten_rows(), readings, herringbone_page.as_printed()
+    said = herringbone_statements.section()
+    return answer, how, layouts, said, herringbone_page.ten_rows(), readings, herringbone_page.as_printed()
 
 
 def run(parts=()):
@@ -143,6 +145,7 @@ def run(parts=()):
     ``all``: compute all tables but the finite elements anew; ``fe3d``: the finite elements of the contact-line scene too.
     """
     if "all" in parts:
+        herringbone_statements.rows(("",))
         every_case()
         sensitivities()
         section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
