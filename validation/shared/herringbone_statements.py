@@ -15,8 +15,8 @@ NAME = "herringbone_statements"
 TITLE = """
 ## What S4 concludes from its stiffness
 
-Largest reduction by `ritz3d` under the same load, from a quarter of a base pitch before the pitch point to as much after it [%]:
-of crack and pits together; of the crack alone; of the pits alone. 'Close': the pits add less than a tenth of what the crack takes.
+Largest reduction by `ritz3d` under the same load, within a quarter of a base pitch of the pitch point [%]: of crack and pits
+together; of the crack alone; of the pits alone. 'Close': the pits add less than a tenth of what the crack takes.
 """
 
 
