@@ -26,7 +26,6 @@ METHODS = {  # name: method, and its variants
 }
 QUICK = tuple(name for name in METHODS if name != "fe3d")
 REFINE = {"sun_planet": 0.8, "planet_ring": 0.65}  # of `fe3d`, as of the scene herringbone
-EXPECTED = 1500.0  # seconds of the processor of the ten rows by `fe3d`: the scene herringbone, on the same meshes, took 1490
 LESS = 0.8  # of the load: what k does with it
 CHOSEN = "five unprinted values and a layout of pits were chosen for the ten stiffnesses"
 HEADER = ("method", "pair", "case", *(f"k at {one:+g} [N/um]" for one in OFFSETS), "power", "seconds")
@@ -82,11 +81,6 @@ def ours(method, found=None):
         at[pair] = int(np.argmax(1 - found[method, pair, last] / found[method, pair, "healthy"]))
     out = [float(found[method, pair, case][at[pair]]) for pair, case in rows()]
     return np.array(out), {pair: OFFSETS[i] for pair, i in at.items()}
-
-
-def done(method):
-    """Whether all ten rows of a method are in the table."""
-    return all((method, *row) in stored() for row in rows())
 
 
 def verdicts(method):
