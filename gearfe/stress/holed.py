@@ -148,7 +148,8 @@ def pressed_tooth(
     if removal:
         whole, _ = _moved(nodes, cells, materials[side], held, loads, tell)
         work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
-        extra = work / (force * contact.approach)
+        halves = 2 if len(own_pits) < len(pits[side]) else 1  # the same pits in the other half do as much
+        extra = halves * work / (force * contact.approach)
     moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
     load = np.array([sum(one[3].sum() for one in found.get(0, ())) for found in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
