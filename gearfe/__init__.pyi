@@ -23,9 +23,12 @@ from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .elements.mesh_file import export_mesh as export_mesh
 from .elements.root_stress import RootStress as RootStress
 from .elements.root_stress import root_stress_along_width as root_stress_along_width
+from .machine.campbell import Campbell as Campbell
+from .machine.campbell import campbell as campbell
 from .machine.compound_planetary import compound_planetary as compound_planetary
 from .machine.force_law import ForceLaw as ForceLaw
 from .machine.force_law import force_law as force_law
+from .machine.frequency_response import frequency_response as frequency_response
 from .machine.gear_mesh import GearMesh as GearMesh
 from .machine.gear_mesh import Samples as Samples
 from .machine.gear_mesh import ToothDamage as ToothDamage
@@ -38,6 +41,7 @@ from .machine.member import Member as Member
 from .machine.member import disc as disc
 from .machine.mesh_errors import with_errors as with_errors
 from .machine.mesh_excitation import mesh_excitation as mesh_excitation
+from .machine.modal_energy import modal_energy as modal_energy
 from .machine.modes import natural_frequencies as natural_frequencies
 from .machine.of_scene import build_machine as build_machine
 from .machine.pitted_planetary import pitted_planetary as pitted_planetary
@@ -52,11 +56,13 @@ from .machine.tables import Spring as Spring
 from .machine.tables import Stage as Stage
 from .machine.tables import pulses as pulses
 from .material import Material as Material
+from .motion.dynamic_factor import dynamic_factors as dynamic_factors
 from .motion.portrait import phase_portrait as phase_portrait
 from .motion.portrait import poincare_section as poincare_section
 from .motion.response import Response as Response
 from .motion.simulate import simulate as simulate
 from .motion.steady import steady_state as steady_state
+from .pictures.campbell_plot import plot_campbell as plot_campbell
 from .pictures.contact_plot import plot_contact as plot_contact
 from .pictures.pair_plot import plot_pair as plot_pair
 from .pictures.vibration_plots import plot_kurtogram as plot_kurtogram
@@ -67,6 +73,8 @@ from .reports.page import report as report
 from .reports.sweep_page import sweep_report as sweep_report
 from .scene.load import load_scene as load_scene
 from .scene.new import new_scene as new_scene
+from .signal.bearing_lines import bearing_lines as bearing_lines
+from .signal.deconvolution import deconvolve as deconvolve
 from .signal.demodulation import demodulate as demodulate
 from .signal.gear_indicators import gear_indicator_table as gear_indicator_table
 from .signal.gear_indicators import gear_indicators as gear_indicators
@@ -75,9 +83,11 @@ from .signal.housing import ring_window as ring_window
 from .signal.indicators import indicator_table as indicator_table
 from .signal.kurtogram import fast_kurtogram as fast_kurtogram
 from .signal.kurtogram import spectral_kurtosis as spectral_kurtosis
+from .signal.mesh_modulation import mesh_modulation as mesh_modulation
 from .signal.orders import order_spectrum as order_spectrum
 from .signal.orders import residual_signal as residual_signal
 from .signal.orders import synchronous_average as synchronous_average
+from .signal.own_speed import with_own_speed as with_own_speed
 from .signal.series import Signal as Signal
 from .signal.series import decimate as decimate
 from .signal.series import envelope as envelope
