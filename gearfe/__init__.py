@@ -62,6 +62,8 @@ _HOME = {
     "single_mesh": "gearfe.machine.single_mesh",
     "force_law": "gearfe.machine.force_law",
     "ForceLaw": "gearfe.machine.force_law",
+    "LawError": "gearfe.machine.law_error",
+    "law_error": "gearfe.machine.law_error",
     "stage_phases": "gearfe.machine.planetary",
     "steady_state": "gearfe.motion.steady",
     "with_tachometer": "gearfe.signal.tachometer",

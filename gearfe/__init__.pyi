@@ -35,6 +35,8 @@ from .machine.gear_mesh import ToothDamage as ToothDamage
 from .machine.gear_pair import gear_pair as gear_pair
 from .machine.helical_pair import pitted_helical as pitted_helical
 from .machine.herringbone_planetary import herringbone_planetary as herringbone_planetary
+from .machine.law_error import LawError as LawError
+from .machine.law_error import law_error as law_error
 from .machine.layout import Body as Body
 from .machine.layout import Layout as Layout
 from .machine.member import Member as Member
