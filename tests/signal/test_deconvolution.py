@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from scipy.signal import lfilter
 
 import gearfe as gf
+from gearfe.signal.deconvolution import _impulsive
 from gearfe.signal.indicators import kurtosis
 
 PERIOD = 200
@@ -46,6 +48,24 @@ def test_in_noise_correlated_kurtosis_finds_the_train_and_kurtosis_a_single_knoc
     assert now > 2 * raw
     _, once = heard(0.1, train=False)
     assert kurtosis(gf.deconvolve(once, length=60)[0].values) > 1.5 * kurtosis(once.values)
+
+
+@pytest.mark.parametrize("apart", [[0], [0, 7], [0, 7, 14]])
+def test_the_slope_is_the_derivative_of_what_is_made_large(apart):
+    """Of the sum above the line, by differences in a direction by chance; and the steps do make it large."""
+    rng = np.random.default_rng(3)
+    y, to = rng.standard_normal((2, 200))
+
+    def above(y):
+        return _impulsive(y, apart)[0] * (y**2).sum() ** max(2, len(apart))
+
+    want = (above(y + 1e-5 * to) - above(y - 1e-5 * to)) / 2e-5
+    assert_allclose((4 if len(apart) == 1 else 2) * _impulsive(y, apart)[1] @ to, want, rtol=1e-6)
+    _, signal = heard(0.5)
+    apart = [PERIOD * i for i in range(len(apart))]
+    given = (None if len(apart) == 1 else 100.0), {"length": 100, "shifts": max(1, len(apart) - 1)}
+    once, best = (gf.deconvolve(signal, given[0], iterations=n, **given[1])[0].values for n in (1, 30))
+    assert _impulsive(best, apart)[0] > 1.5 * _impulsive(once, apart)[0]
 
 
 def test_what_cannot_be_deconvolved_is_refused():
