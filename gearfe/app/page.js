@@ -235,6 +235,7 @@ const DASHES = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
 
 function draw() {
   $("headline").textContent = shown.headline;
+  $("named").textContent = shown.named;
   $("definition").textContent = shown.definition;
   const rows = shown.table.map((cells, at) => {
     const line = document.createElement("tr");

@@ -30,7 +30,7 @@ from ..threads import own_warnings
 from ..units import NEWTON_PER_UM
 from .fields import START
 from .program import program
-from .state import CASE, SeveralError, read, tables_of, toml
+from .state import CASE, SeveralError, read, tables_of, title_of, toml
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
@@ -94,6 +94,7 @@ def _answer(state, method, phases, *, error):
     curve = found.reference
     return {
         "headline": found.headline,
+        "named": f"{title_of(state)}; {state['force']:g} N in the line of action, {state['b_1']:g} and {state['b_2']:g} mm wide",
         "definition": found.definition,
         "method": f"{method}: {phases} phases in a mesh cycle"
         + (", with estimated errors" if error else ", a first picture without estimates" if method == "ritz" else ""),

@@ -8,6 +8,7 @@ import asyncio
 import contextlib
 import json
 import multiprocessing
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
@@ -53,13 +54,18 @@ class Worker:
     def __init__(self, context: Any, memory: int):
         self.pipe, other = context.Pipe()
         self.process = context.Process(target=_work, args=(other, memory), daemon=True, name="gearfe solver")
+        self.starting = threading.Thread(target=self._start, args=(other,), daemon=True)  # a second: the page loads meanwhile
+        self.starting.start()
+        self.ready, self.ended = False, ""
+
+    def _start(self, other: Connection) -> None:
         self.process.start()
         other.close()
-        self.ready, self.ended = False, ""
 
     def ask(self, kind: str, given: dict[str, Any]) -> bytes:
         """Answer to a task in JSON; blocks. If the process ends, or takes too long and is ended, that is the answer."""
         seconds = LIMIT.get(kind, QUICK_LIMIT)
+        self.starting.join()
         try:
             if not self.ready and not self.pipe.poll(START):
                 seconds = START
@@ -73,9 +79,14 @@ class Worker:
             self.ended = "the solver ended with this case, perhaps out of memory; a new one is started"
         return _json({"refused": self.ended})
 
-    def end(self) -> None:
+    def kill(self) -> None:
         """Kill the process, whatever it does."""
+        self.starting.join()
         self.process.kill()
+
+    def end(self) -> None:
+        """The same, and close the pipe to it."""
+        self.kill()
         self.process.join()
         self.pipe.close()
 
@@ -149,7 +160,7 @@ class Pool:
             if own in self.waiting:
                 self.waiting.remove(own)
             elif own.slow and own.worker and not own.answer.done():
-                own.worker.process.kill()
+                own.worker.kill()
 
     def _deal(self) -> None:
         """Give free processes to those who wait longest; tasks that take seconds leave one free."""

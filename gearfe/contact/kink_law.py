@@ -24,7 +24,7 @@ LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
 PLACES = 9  # of the table on each side of a kink, within what a contact is wide
 ON = 9  # of the table from there to where contact leaves the kink
 BESIDE = 1e-6  # of these the first
-LEAST = 0.05  # of what contacts are wide at most: how far on the table reaches at least
+LEAST = 0.05  # of what contacts are wide at most: less far on needs no places
 SAMPLES = 400  # of a base pitch, where it is looked for what stays on the kink
 SOFT = 80  # approach of a pair of teeth, as if it were local: of pi E* times the load per width; more than any has
 
@@ -93,22 +93,23 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     stays = [max(away - wide[-1], LEAST * wide[-1]) for away in found]
     on, inside = 1 + np.linspace(0, 1, ON)[1:] ** 1.5, np.linspace(0, 1, PLACES)
     inside[0] = BESIDE  # on both sides of the kink: the radius of curvature may jump there
-    places = np.concatenate([-on[::-1], -inside[::-1], inside, on])
-    c, out = sum(half_plane(m) for m in materials), np.zeros((loads.size, places.size))
-    for j, load in enumerate(loads.tolist()):
-        more = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
-        away = np.sign(places) * (np.minimum(np.abs(places), 1.0) * wide[j] + more)
-        phase = (nominal + unit * away - pair.path[0]) / pair.p_bt
-        mesh = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=flanks)
-        column = int(np.flatnonzero(mesh.found.order == 0)[0])
-        there = np.flatnonzero(np.isfinite(mesh.found.gap[:, column]) & (mesh.found.corner[:, column] == 0))
+    each = [np.append(inside, on if beyond > LEAST * wide[-1] else []) for beyond in stays]
+    places = np.append(-each[0][::-1], each[1])
+    more = np.maximum(np.abs(places) - 1, 0.0) * np.where(places < 0, *stays)
+    away = np.sign(places) * (np.minimum(np.abs(places), 1.0) * wide[:, None] + more)
+    phase = ((nominal + unit * away - pair.path[0]) / pair.p_bt).ravel()
+    mesh = PairContact(pair, materials, bodies, phase, extended=True, state="plane strain", flanks=flanks)
+    column = int(np.flatnonzero(mesh.found.order == 0)[0])
+    gap, touches = mesh.found.gap[:, column], mesh.found.corner[:, column] == 0
+    c, out = sum(half_plane(m) for m in materials), np.zeros(phase.size)
+    for own, load in zip(np.arange(phase.size).reshape(away.shape), loads.tolist(), strict=True):
+        there = own[np.isfinite(gap[own]) & touches[own]]
         rows = kink_rows(mesh, np.array([there, np.full(there.size, column)]).T, load)
         if rows:
-            closing = (
-                pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - mesh.found.gap[there, column]
-            )
+            closing = pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - gap[there]
             width = half_width(load, mesh.radius[there, column], mesh.modulus)
-            out[j, there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
+            out[there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
+    out = out.reshape(away.shape)
     return unit, stays, (RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1])
 
 

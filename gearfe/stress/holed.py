@@ -148,7 +148,8 @@ def pressed_tooth(
     if removal:
         whole, _ = _moved(nodes, cells, materials[side], held, loads, tell)
         work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
-        extra = work / (force * contact.approach)
+        halves = 2 if len(own_pits) < len(pits[side]) else 1  # the same pits in the other half do as much
+        extra = halves * work / (force * contact.approach)
     moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
     load = np.array([sum(one[3].sum() for one in found.get(0, ())) for found in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
@@ -202,7 +203,7 @@ def _own(pair, side, face, groove, pits):
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]
     if half:
-        pits = tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
+        pits = _mirror(gear, pits)
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
@@ -213,8 +214,11 @@ def _mirrored(gear, lower, upper):
         numbers = (pit.radius, pit.z, pit.angle, *pit.axes, pit.depth)
         return tuple(round(value, 9) for value in numbers), pit.tooth, pit.side
 
-    turned = (replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in upper)
-    return sorted(map(rounded, lower)) == sorted(map(rounded, turned))
+    return sorted(map(rounded, lower)) == sorted(map(rounded, _mirror(gear, upper)))
+
+
+def _mirror(gear, pits):
+    return tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
 
 
 def held_by(pair, supports, force, face):

@@ -170,6 +170,10 @@ def test_halves_are_mirror_images(steel):
     assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
     assert_allclose(found[0].load, found[1].load, rtol=1e-6)
     assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
+    both = pressed_tooth(
+        pair, 2000.0, steel, {"pinion": [pit(HELICAL, z=z, angle=a) for z, a in ((2.0, 0.5), (10.0, -0.5))]}, **run
+    )
+    assert_allclose(both.extra, 2 * found[0].extra, rtol=0.1, err_msg="both halves lose material")
     with pytest.raises(ValueError, match="both halves"):
         pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
 

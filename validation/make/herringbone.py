@@ -9,7 +9,16 @@ import gearfe as gf
 from gearfe.scene.stored import read_curves, stored_file, write_curves
 from gearfe.studies.case_table import case_curve, case_table, damage_cycle, printed_cases
 
-from ..shared import herringbone_page, herringbone_scan_page, herringbone_section, page
+from ..shared import (
+    herringbone_contact_line,
+    herringbone_layouts,
+    herringbone_layouts_page,
+    herringbone_page,
+    herringbone_scan_page,
+    herringbone_section,
+    herringbone_statements,
+    page,
+)
 from ..shared import herringbone_scan as scan
 from ..shared import herringbone_scan_nodes as nodes
 from ..shared.herringbone_page import SCENE, SUMS, TABLES
@@ -119,29 +128,34 @@ def sensitivities():
 
 def text():
     """Arguments of `page.text`, from the tables."""
-    count = herringbone_page.beyond()
-    answer = (
-        f"{herringbone_scan_page.answer()} In the scene as it is the article's formulas are beyond 3 % in {count} of ten rows."
-    )
+    answer = herringbone_layouts_page.answer(herringbone_scan_page.answer(), herringbone_page.beyond())
     how = [
         "`python -m validation herringbone` makes this page from `tables/herringbone*.csv`; `... herringbone all` computes",
         "them anew.",
         "The finite elements, in `gearfe/scenes/herringbone_fe3d.csv`, are computed by `... herringbone --reference`.",
     ]
-    return answer, how, herringbone_page.ten_rows(), herringbone_scan_page.section(), herringbone_page.as_printed()
+    layouts, readings = herringbone_layouts_page.section(), herringbone_scan_page.section()
+    said = herringbone_statements.section()
+    return answer, how, layouts, said, herringbone_page.ten_rows(), readings, herringbone_page.as_printed()
 
 
 def run(parts=()):
-    """Continue the scan where it was and write the page; ``all``: compute all tables but the finite elements anew."""
+    """Continue both scans where they were and write the page.
+
+    ``all``: compute all tables but the finite elements anew; ``fe3d``: the finite elements of the contact-line scene too.
+    """
     if "all" in parts:
+        herringbone_statements.rows(("",))
         every_case()
         sensitivities()
         section = herringbone_section.rows(gf.load_scene(SCENE), REFINE)
         save(f"{SCENE}_section", ["pair", "resolution", "mean", "least", "most"], section)
-        for table in (nodes.path(), scan.table("_checks")):
+        for table in (nodes.path(), scan.table("_checks"), herringbone_layouts.PATH, herringbone_contact_line.path("ritz3d")):
             table.unlink(missing_ok=True)
         nodes.compute()
         scan.compute()
+    herringbone_contact_line.compute((*herringbone_contact_line.QUICK, *(["fe3d"] if "fe3d" in parts else [])))
+    herringbone_layouts.compute()
     scan.check(herringbone_scan_page.to_check())
     herringbone_scan_page.picture()
     page.write("herringbone", *text())

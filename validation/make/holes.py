@@ -13,6 +13,7 @@ from . import holed_cracks, outsider_three
 
 LAYOUTS = (
     *(("herringbone", case) for case in ("case1", "case2", "case4")),
+    ("herringbone_contact_line", "case2"),
     *(("helical_pitting", case) for case in ("minor", "severe", "multi")),
     *(("planetary_pitting", case) for case in ("mild", "moderate", "severe")),
 )
@@ -27,8 +28,9 @@ the tooth is meshed with straight second-order tets (`geometry.mesh.holes`, `gea
 without its holes on the same mesh, under the same load of the pair along the lines of contact that the pits leave, at {PHASES}
 phases of the engagement. The work of the load on the difference, over force times approach of the pair, is by how much k would
 fall if the load did not redistribute. The largest of all phases is given, beside the largest drop of k by lost contact alone.
-Volume: an integral over the involutes parallel to the flank, which knows nothing of the solid; cut: difference of the solid from
-it (more than 0.2 % is an error, not a result); meshed: of the tets, whose rims are polygons. Two values: on two meshes.
+Volume: an integral over the involutes parallel to the flank, which knows nothing of the solid; cut: difference of the solid
+from it (more than 0.2 % is an error, not a result); meshed: of the tets, whose rims are polygons. Two values: on two meshes.
+Of pits in both halves of a herringbone tooth the volume is that of one half.
 """
 SHARED = """
 The loads are those that `ritz3d` finds with lost contact, spread over 0.15 modules to either side of their line: wider than
@@ -49,13 +51,14 @@ def row(scene, case):
     phases = (pair.eps_alpha + overlap(pair, **run)) * (np.arange(PHASES) + 0.5) / PHASES
     own = by_gear(pair, pits)[1]
     k = [pair_stiffness3d(pair, found.force, found.materials, phases, pits=p, **run).k for p in (((), ()), own)]
-    refines = REFINES if FINER[scene] == case else REFINES[:1]
+    refines = REFINES if FINER.get(scene) == case else REFINES[:1]
     options = {"phases": phases, "removal": True} | run
     made = [pressed_tooth(pair, found.force, found.materials, pits, refine=refine, **options) for refine in refines]
     wanted, cut, _ = made[-1].sector.removed
+    both = " in each half" if len({pit.z > found.pair.gear_1.b / 2 for pit in pits["pinion"]}) > 1 else ""
     size = "{:g} x {:g}".format(*(2 * v for v in pits["pinion"][0].axes))
     return {
-        "pits": f"{len(pits['pinion'])} of {size} mm",
+        "pits": f"{len(pits['pinion']) // (2 if both else 1)} of {size} mm{both}",
         "volume": float(wanted),
         "cut": float(cut / wanted - 1),
         "meshed": [float(one.sector.removed[2] / wanted - 1) for one in made],

@@ -8,7 +8,6 @@ gear': at the same rotation a damaged gear carries less, ``k / k0 -> (k / k0)**p
 pair's load over its approach.
 """
 
-import csv
 import time
 from itertools import product
 
@@ -26,8 +25,9 @@ from geometry.pair.pit_lines import in_both_halves, pit_line
 from . import herringbone_scan_nodes as nodes
 from .herringbone_scan_nodes import PAIRS, SCENE
 from .places import TABLES
+from .table_rows import rows_of
 
-NAME = "herringbone_layouts"
+PATH = TABLES / "herringbone_layouts.csv"
 SIZE, SEED = 64, 31
 RANGES = {
     "sun": (0.30, 0.90),  # bore, part of the root radius
@@ -160,16 +160,12 @@ def reductions(k):
 
 def keep(row):
     """Append a row to the table."""
-    nodes.keep(TABLES / f"{NAME}.csv", HEADER, [f"{v:.5g}" if isinstance(v, float) else v for v in row])
+    nodes.keep(PATH, HEADER, [f"{v:.5g}" if isinstance(v, float) else v for v in row])
 
 
 def load():
     """Rows of the table as dicts of text; none if it is not there."""
-    path = TABLES / f"{NAME}.csv"
-    if not path.exists():
-        return []
-    with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+    return rows_of(PATH)
 
 
 def errors(rows):

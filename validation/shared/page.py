@@ -24,6 +24,7 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "detection": "How small a crack can be told from the scatter of machines?",
     "dynamics": "Are simulated vibrations integrated correctly?",
     "herringbone": "Does the claim of article S4 hold, formulas within 3 % of finite elements?",
+    "printed": "What became of every number that the articles print?",
     "machines": "Which printed numbers of four machines are reproduced?",
     "measured": "Does gearfe find what others measured?",
     "pictures": "What do the damaged teeth of the scenes look like under load?",

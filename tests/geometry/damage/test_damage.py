@@ -246,7 +246,7 @@ def test_bad_damage(damage, message):
         ((), {"method": "ritz", "teeth": 5}, "only 'fe'"),
         ((), {"method": "ritz", "variants": {"root": "base"}}, "variants"),
         ((), {"method": "textbook", "variants": {"roots": "base"}}, "it has contact, crack_model"),
-        ((), {"method": "published", "variants": {"root": "base"}}, "'root' is none of method = 'published'"),
+        ((), {"method": "published", "variants": {"roots": "base"}}, "'roots' is none of method = 'published'"),
     ],
 )
 def test_what_a_method_does_not_model_is_refused(damage, options, message):

@@ -1,0 +1,56 @@
+"""Every number that the articles print has a row, and what the row says of it is so."""
+
+import pytest
+
+from validation.make import printed
+from validation.shared import places, state
+
+ROWS = printed.ledger()
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['article']} {row['what']}")
+def test_what_is_said_of_a_printed_number(row):
+    """Judged numbers stand in their reference as printed, used ones where they are said to be; the others have a reason."""
+    which = printed.kind(row)
+    if which == "unused":
+        assert len(row["unused"]) > 20
+    elif which == "verdict":
+        there = printed.judged(row["verdict"])
+        for value in row["values"]:
+            assert any(abs(one - value) <= 1e-9 * abs(value) for one in there), f"{value}: not among {there}"
+    else:
+        there = [number for place in row["used"] for number in printed.put_in(place)]
+        if there:
+            assert len(there) == len(row["values"])
+            assert there == pytest.approx(row["values"], rel=1e-5)
+
+
+def test_places_that_are_not_there_are_found():
+    with pytest.raises(TypeError):
+        printed.put_in("gearfe/machine/impact.py: no such words")
+    with pytest.raises(KeyError):
+        printed.put_in("herringbone: gear.sun.teeth")
+    with pytest.raises(ValueError, match="none of verdict, used, unused"):
+        printed.kind({"article": "S4", "what": "teeth"})
+
+
+def test_every_judged_number_is_printed_somewhere():
+    """The other way round: results of the scenes that have a printed number stand in the ledger."""
+    import gearfe as gf
+
+    told = {row["verdict"].partition(", per ")[0] for row in ROWS if "verdict" in row}
+    derived = {  # quotients and differences of printed values, and formulas whose value is ours
+        "herringbone: displacement_span", "compound_planetary: stiffness_ratio", "compound_planetary: converged_stiffness",
+        "compound_planetary: measured_speed", "helical_pitting: one_speed", "herringbone: mesh_period",
+        "compound_planetary: same_instant",
+    }  # fmt: skip
+    for scene in printed.PAGES:
+        for one in gf.load_scene(scene).references:
+            number = any(row.value == row.value for row in one.rows) and one.unit != "statement"
+            assert not number or f"{scene}: {one.id}" in told | derived, f"{scene}: {one.id} has no row in printed.toml"
+
+
+def test_the_page_is_made_of_the_ledger():
+    text = state.without_first_line("printed")
+    assert printed.answer(ROWS) in text
+    assert (places.PAGES / "tables" / "printed.csv").is_file()

@@ -1,0 +1,135 @@
+"""The page `printed`: every number that the articles print, and whether it is judged, put in, or not used and why."""
+
+import csv
+import inspect
+import tomllib
+from importlib import import_module, resources
+
+import gearfe as gf
+from gearfe.files import written
+from gearfe.markdown import table_row
+
+from ..shared import page
+from ..shared.places import ROOT, SOURCES, TABLES
+
+KINDS = {"verdict": "judged", "used": "input: used", "unused": "input: not used"}
+CSV = TABLES / "printed.csv"
+PAGES = {  # where the rows of a scene's references stand
+    "planetary_pitting": "planetary_pitting",
+    "compound_planetary": "compound_planetary",
+    "helical_pitting": "helical_pitting",
+    "herringbone": "herringbone_machine",
+}
+
+
+def ledger():
+    """Rows of `sources/printed.toml`: article, what, values, and verdict, used or unused."""
+    return tomllib.loads((SOURCES / "printed.toml").read_text(encoding="utf-8"))["printed"]
+
+
+def kind(row):
+    """Which of `KINDS` a row is; ValueError if it is none or several."""
+    found = [name for name in KINDS if row.get(name)]
+    if len(found) != 1:
+        raise ValueError(f"{row['article']}, {row['what']}: it has {found or 'none'} of {', '.join(KINDS)}; give one")
+    return found[0]
+
+
+def judged(text):
+    """Printed values of a reference, given as ``scene: id``, or ``scene: id, per factor`` (they are divided by it)."""
+    scene, _, rest = text.partition(": ")
+    name, _, factor = rest.partition(", per ")
+    reference = next(one for one in gf.load_scene(scene).references if one.id == name)
+    return [row.value / float(factor or 1.0) for row in reference.rows]
+
+
+def put_in(text):
+    """Numbers at a place that ``used`` names, divided by its factor; see the ledger's head."""
+    place, _, factor = text.partition(", per ")
+    return [value / float(factor or 1.0) for value in _found(place)]
+
+
+def _found(place):
+    home, _, what = place.partition(": ")
+    if "/" in home:  # the text of a file
+        return [] if what in (ROOT / home).read_text(encoding="utf-8") else None
+    if home.startswith("gearfe."):  # a default of a function
+        function, name = what.split()
+        return [inspect.signature(getattr(import_module(home), function)).parameters[name].default]
+    word, _, key = what.partition(" of ")
+    if key:
+        case = key.partition(".")[2]
+        damage = [one for own in gf.load_scene(home).pair().damage[case].values() for one in own]
+        return (
+            [sum(isinstance(one, gf.Pit) for one in damage)]
+            if word == "count"
+            else [one.level for one in damage if isinstance(one, gf.Crack)]
+        )
+    value = tomllib.loads((resources.files("gearfe.scenes") / f"{home}.toml").read_text(encoding="utf-8"))
+    for part in what.split("."):
+        if isinstance(value, list):
+            value = value[int(part)] if part.isdigit() else next(one for one in value if one["case"] == part)
+        elif part not in value and part in DEFAULTS:
+            value = DEFAULTS[part]
+        else:
+            value = value[part]
+    return value if isinstance(value, list) else [value]
+
+
+DEFAULTS = {"x": 0.0, "angle_deg": 45.0}  # of a scene's tables, where the file leaves them out
+
+
+def counts(rows, article):
+    """Numbers of an article by kind, in the order of `KINDS`."""
+    own = [row for row in rows if row["article"] == article]
+    return [sum(len(row["values"]) for row in own if kind(row) == name) for name in KINDS]
+
+
+def lines(rows):
+    """The table."""
+    out = ["| article | printed | what | became of it |", "|---|---|---|---|"]
+    for row in rows:
+        which = kind(row)
+        told = row[which]
+        if which == "verdict":
+            scene, _, name = told.partition(": ")
+            home = "herringbone" if name.startswith("stiffness") else PAGES[scene]
+            told = f"judged: `{name.partition(', per ')[0]}` on [{home}.md]({home}.md)"
+        elif which == "used":
+            places = ", ".join(f"`{one.partition(', per ')[0]}`" for one in dict.fromkeys(told))
+            told = f"input: used, {places}"
+        else:
+            told = f"input: not used, because {told}"
+        out.append(table_row([row["article"], ", ".join(f"{value:.6g}" for value in row["values"]), row["what"], told]))
+    return out
+
+
+def answer(rows):
+    """The first line."""
+    total = [sum(one) for one in zip(*(counts(rows, name) for name in articles(rows)), strict=True)]
+    return (
+        f"Of {sum(total)} printed numbers {total[0]} are results, each with a verdict on its page, {total[1]} are inputs that "
+        f"gearfe uses, and {total[2]} inputs that it does not use, each with the reason."
+    )
+
+
+def articles(rows):
+    """Names of the articles."""
+    return list(dict.fromkeys(row["article"] for row in rows))
+
+
+def run():
+    """Write table and page."""
+    rows = ledger()
+    with written(CSV) as name, open(name, "w", encoding="utf-8", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(("article", *KINDS.values()))
+        out.writerows((name, *counts(rows, name)) for name in articles(rows))
+    how = [
+        "`python -m validation printed` writes this page from `sources/printed.toml`, which has every number as printed; a test",
+        "compares it with scenes, references and code. A number that is printed twice stands where its rows do. Statements",
+        "without a number are rows of the pages of the machines.",
+    ]
+    small = ["| article | results | inputs used | inputs not used |", "|---|---|---|---|"]
+    small += [table_row([name, *map(str, counts(rows, name))]) for name in articles(rows)]
+    page.write("printed", answer(rows), how, small, lines(rows))

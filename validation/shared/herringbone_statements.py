@@ -1,0 +1,88 @@
+"""What article S4 concludes from its stiffness, in both readings: reductions by `ritz3d` of each fault alone and of both."""
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.stiffness.inputs import overlap
+
+from .herringbone_contact_line import OFFSETS
+from .kept_rows import kept
+
+SCENES = ("herringbone", "herringbone_contact_line")
+FAULTS = ("both", "crack", "pits")
+CLOSE = 0.1  # of the crack alone
+NAME = "herringbone_statements"
+TITLE = """
+## What S4 concludes from its stiffness
+
+Largest reduction by `ritz3d` under the same load, within a quarter of a base pitch of the pitch point [%]: of crack and pits
+together; of the crack alone; of the pits alone. 'Close': the pits add less than a tenth of what the crack takes.
+"""
+
+
+def reduction(scene, pair, case):
+    """Largest reductions [%] by both faults of a case and by each alone."""
+    chosen = gf.load_scene(scene).pairs[pair]
+    phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
+    run = {"method": "ritz3d", "phases": phase}
+    whole, every = gf.mesh_stiffness(**chosen.case(), **run).k, chosen.damage[case]
+    own = {"both": every}
+    for name, kind in (("crack", gf.Crack), ("pits", gf.Pit)):
+        own[name] = {side: [one for one in found if isinstance(one, kind)] for side, found in every.items()}
+    return {
+        name: float(100 * (1 - gf.mesh_stiffness(**chosen.case() | {"damage": damage}, **run).k / whole).max())
+        for name, damage in own.items()
+    }
+
+
+def rows(again=()):
+    """Reductions by (scene, pair, number of the case)."""
+    out = {}
+    for scene in SCENES:
+        for pair, prefix in (("sun_planet", "case"), ("planet_ring", "planet")):
+            for number in (1, 2, 3, 4):
+                name = f"{scene}, {pair}, {prefix}{number}"
+                make = lambda scene=scene, pair=pair, case=f"{prefix}{number}": reduction(scene, pair, case)  # noqa: E731
+                out[scene, pair, number] = kept(NAME, name, make, again)
+    return out
+
+
+def verdicts(found, scene):
+    """Statements of S4 with whether they hold in a scene, and by what."""
+    sun, ring = ([found[scene, pair, number] for number in (1, 2, 3, 4)] for pair in ("sun_planet", "planet_ring"))
+    pairs = gf.load_scene(scene).pairs
+    eps = [pairs[name].pair.eps_alpha for name in ("sun_planet", "planet_ring")]
+    lower = all(one["both"] > max(one["crack"], one["pits"]) for one in (*sun, *ring))
+    beside = [one[2]["both"] - one[2]["crack"] for one in (sun, ring)]
+    both = ", ".join(f"{a['both']:.2f} / {b['both']:.2f}" for a, b in zip(sun, ring, strict=True))
+    close = f"pits add {beside[0]:.1f} and {beside[1]:.1f} points to {sun[2]['crack']:.1f} and {ring[2]['crack']:.1f} %"
+    return (
+        ("the coupled stiffness is lower than that of either fault", lower, "in all eight rows" if lower else "not in all"),
+        ("case 3 is close to the 60 % crack alone, which covers the pits", max(beside) < CLOSE * sun[2]["crack"], close),
+        (
+            "pits beyond the crack, case 4: their contact loss dominates",
+            sun[3]["pits"] > sun[3]["crack"],
+            f"14 pits alone take {sun[3]['pits']:.1f} %, the crack alone {sun[3]['crack']:.1f} %",
+        ),
+        (
+            "sun and planet are more sensitive than planet and ring",
+            all(a["both"] > b["both"] for a, b in zip(sun, ring, strict=True)),
+            f"{both} %",
+        ),
+        ("because their contact ratio is smaller", eps[0] < eps[1], f"{eps[0]:.2f} and {eps[1]:.2f}"),
+    )
+
+
+def section(again=()):
+    """Lines of the page."""
+    found = rows(again)
+    lines = [*TITLE.strip().splitlines(), "", "| scene | pair | case 1 | case 2 | case 3 | case 4 |", "|---|---|---|---|---|---|"]
+    for scene in SCENES:
+        for pair in ("sun_planet", "planet_ring"):
+            cells = [" ; ".join(f"{found[scene, pair, n][name]:.1f}" for name in FAULTS) for n in (1, 2, 3, 4)]
+            lines.append(f"| {scene} | {pair} | " + " | ".join(cells) + " |")
+    lines += ["", "| S4 says | " + " | ".join(SCENES) + " |", "|---|---|---|"]
+    told = [verdicts(found, scene) for scene in SCENES]
+    for both in zip(*told, strict=True):
+        lines.append(f"| {both[0][0]} | " + " | ".join(f"{'yes' if holds else 'no'}: {why}" for _, holds, why in both) + " |")
+    return lines
