@@ -1,7 +1,5 @@
 """The page of measured gearboxes: its cheap rows computed again, and what it says of them."""
 
-import re
-
 from numpy.testing import assert_allclose
 
 from validation.make import measured
@@ -18,7 +16,5 @@ def test_the_lines_of_the_phm_train_and_the_error_of_its_tachometer():
 
 
 def test_a_perfect_planetary_set_has_its_line_at_a_multiple_of_three():
-    left, right = measured.perfect()
-    printed = re.search(r"perfect set gives left (\S+) and right (\S+):", " ".join(TEXT.split()))
-    assert_allclose([left, right], [float(printed[1]), float(printed[2])], rtol=0.02)
-    assert right > 5 > 1 > left
+    assert max(measured.perfect()) < 1e-3
+    assert "has the right line, left and mesh line are below a thousandth of it" in " ".join(TEXT.split())

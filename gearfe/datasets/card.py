@@ -37,8 +37,8 @@ MEANING = {
 }
 FILTERED = """\
 filter: simulated at a whole multiple of this rate, as fine as the machine asks for, then brought down by a linear-phase filter
-  without delay, half of the amplitude at {half:g} Hz, 53 dB less from 1.16 times that on; none where the rate itself is as fine.
-  Noise is added after it"""
+  without delay, half of the amplitude at {half:g} Hz, 53 dB less from 1.16 times that on; where the rate itself is as fine, one
+  that leaves nothing above half of it. Noise is added after it"""
 ERRORS = """\
 The loss is that of the mesh stiffness while the damaged tooth is in contact; errors of the machine take none. The error of the
 motion is that of the integration, relative to its range; that of the stiffness (`gearfe stiffness --error`) comes on top, and

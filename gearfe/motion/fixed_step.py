@@ -1,14 +1,19 @@
 """Runs of the fast path with a given step."""
 
+import math
 import time
+from functools import partial
 
 import numpy as np
 
 from . import excitation, propagator
-from .response import Response
+from .response import Response, all_channels
+from .thinned import thinned
+
+PIECE = 4096  # steps of a run whose channels are in memory at once
 
 
-def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False):
+def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=()):
     """Response of a machine over `steps` equal steps.
 
     Parameters
@@ -26,6 +31,9 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     adapt : bool
         Under a law of contact that is not linear, halve steps also where `gearfe.motion.propagator.Plan.allowed` asks for it.
 
+    counts : tuple of int
+        Of `gearfe.motion.thinned.stages`, their product `every`; none: channels are not filtered.
+
     Returns
     -------
     Response
@@ -42,8 +50,34 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     plan = propagator.plan(machine, h, x, adapt)
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 4 * steps + 1))
     breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
+    run = partial(run, plan, machine, flat, breaks=breaks)
+    z = plan.inverse @ state
     with np.errstate(over="ignore", invalid="ignore"):
-        states, stats = run(plan, machine, flat, plan.inverse @ state, steps, every, breaks, start)
+        if counts:
+            states, stats, filtered = _filtered(run, machine, flat, plan, z, steps, start, counts)
+        else:
+            states, stats = run(z, steps, every, start=start)
+            filtered = None
     stats |= {"method": "fast", "dt": h, "seconds": time.perf_counter() - started}
     stats["dofs"] = len(machine.dofs)
-    return Response(machine, start + h * every * np.arange(len(states)), states, plan.basis, stats)
+    return Response(machine, start + h * every * np.arange(len(states)), states, plan.basis, stats, filtered)
+
+
+def _filtered(run, machine, flat, plan, z, steps, start, counts):
+    """States kept, statistics, and channels filtered, piece by piece: of the whole run only what is kept stays in memory."""
+    kept, total, every = [], {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts)
+
+    def pieces():
+        now = z
+        for first in range(0, steps, PIECE):
+            begin = start + plan.h * first
+            states, stats = run(now, min(PIECE, steps - first), 1, start=begin)
+            now, new = states[-1], slice(1 if first else 0, None)
+            for name in total:
+                total[name] += stats[name]
+            kept.append(states[new][-(first + new.start) % every :: every].copy())
+            t = begin + plan.h * np.arange(len(states))[new]
+            yield all_channels(Response(machine, t, states[new], plan.basis), flat)
+
+    channels = thinned(pieces(), counts)
+    return np.concatenate(kept), total, channels

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from typing import Any
 
@@ -27,6 +27,10 @@ class Response:
     ``response[name]`` is a channel, an array like `time`: a degree of freedom (``"sun.theta"``), with ``" velocity"`` or
     ``" acceleration"`` after it, or of a mesh ``"compression NAME"``, ``"stiffness NAME"``, ``"force NAME"``.
 
+    Channels by name, `mesh`, `accelerations`, `signal` and files are filtered to the rate of the response where `gearfe.simulate`
+    filtered them (`filtered`): what vibrates above half of it is not in them. `states`, `q` and `v` are those of the integrator
+    at these times, to go on from; all of ``response.raw`` is, for energies, and for contact that is lost or not.
+
     Attributes
     ----------
     machine : Machine
@@ -38,6 +42,8 @@ class Response:
         ``(q, v) = basis @ state``.
     stats : dict
         Solver, step, calls or steps, seconds, losses of contact, error estimate if asked for.
+    filtered : ndarray, shape (t, 3n + 3m), optional
+        States, accelerations, and compressions, stiffnesses and forces of the meshes, filtered.
     """
 
     machine: Machine
@@ -45,6 +51,23 @@ class Response:
     states: NDArray[np.float64]
     basis: NDArray[np.float64]
     stats: dict[str, Any] = field(default_factory=dict)
+    filtered: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse times, states and filtered channels of different lengths."""
+        counts = {len(self.time), len(self.states), len(self.time if self.filtered is None else self.filtered)}
+        if len(counts) > 1:
+            raise ValueError("a response needs as many times as states and filtered channels: cut it by part")
+
+    @property
+    def raw(self) -> "Response":
+        """The same, its channels those of the integrator at these times, not filtered."""
+        return replace(self, filtered=None)
+
+    def part(self, kept: slice) -> "Response":
+        """Some of the samples, as a slice of them."""
+        filtered = None if self.filtered is None else self.filtered[kept]
+        return replace(self, time=self.time[kept], states=self.states[kept], filtered=filtered)
 
     def __repr__(self):
         """One line: machine, time, solver."""
@@ -84,7 +107,8 @@ class Response:
         dof, n = self._dof(head, name), len(self.machine.dofs)
         if tail == "acceleration":
             return self.accelerations()[:, dof]
-        return self.states @ self.basis[dof + (n if tail == "velocity" else 0)]
+        states = self.states if self.filtered is None else self.filtered[:, : 2 * n]
+        return states @ self.basis[dof + (n if tail == "velocity" else 0)]
 
     @property
     def q(self) -> NDArray[np.float64]:
@@ -100,18 +124,17 @@ class Response:
         """Compression [m], stiffness [N/m^power] or force [N] of all meshes ``(t, m)``."""
         if kind not in MESH:
             raise ValueError(f"kind = {kind!r}, but it must be one of {', '.join(MESH)}")
-        machine, n = self.machine, len(self.machine.dofs)
-        flat = excitation.flatten(machine, self.time)
-        e, rate = excitation.errors(flat, self.time)
-        x = self.states @ (machine.G @ self.basis[:n]).T - e
-        k = excitation.stiffness_at(machine, flat, self.time, x)[0]
-        if kind == "stiffness":
-            return k
-        v = self.states @ (machine.G @ self.basis[n:]).T - rate
-        return x if kind == "compression" else force(x, v, k, machine.law)
+        which = list(MESH).index(kind)
+        if self.filtered is not None:
+            return np.split(self.filtered[:, 3 * len(self.machine.dofs) :], 3, axis=1)[which]
+        flat = excitation.flatten(self.machine, self.time)
+        return mesh_channels(self.machine, flat, self.time, self.q, self.v)[which]
 
     def accelerations(self) -> NDArray[np.float64]:
         """Accelerations ``(t, n)``, from the equations of motion."""
+        if self.filtered is not None:
+            n = len(self.machine.dofs)
+            return self.filtered[:, 2 * n : 3 * n]
         return acceleration(self.machine, excitation.flatten(self.machine, self.time), self.time, self.q, self.v)
 
     def signal(self, name: str, turning: float | None = None) -> Signal:
@@ -165,12 +188,18 @@ class Response:
         return self.machine.dofs.index(head)
 
 
-def acceleration(machine, flat, t, q, v, side=None):
-    """Accelerations at times `t` from displacements and velocities ``(..., n)``; of meshes held on a `side` if given."""
+def mesh_channels(machine, flat, t, q, v, side=None):
+    """Compressions, stiffnesses and forces of the meshes ``(..., m)``, running phases; of meshes held on a `side` if given."""
     e, rate = excitation.errors(flat, t)
-    law, x, speed = machine.law, q @ machine.G.T - e, v @ machine.G.T - rate
+    x, speed = q @ machine.G.T - e, v @ machine.G.T - rate
     k, _, phase = excitation.stiffness_at(machine, flat, t, x)
-    total = force(x, speed, k, law) if side is None else sided_force(x, speed, k, law, side)
+    total = force(x, speed, k, machine.law) if side is None else sided_force(x, speed, k, machine.law, side)
+    return x, k, total, phase
+
+
+def acceleration(machine, flat, t, q, v, side=None, meshes=None):
+    """Accelerations at times `t` from displacements and velocities ``(..., n)``; `meshes`: their `mesh_channels`, if known."""
+    _, _, total, phase = mesh_channels(machine, flat, t, q, v, side) if meshes is None else meshes
     out = -q @ machine.K.T - v @ machine.C.T - total @ machine.G
     rub = [row for mesh in machine.meshes for row, _ in mesh.friction]
     if rub:
@@ -178,3 +207,10 @@ def acceleration(machine, flat, t, q, v, side=None):
     if machine.loads:
         out = out + excitation.loads(flat, t) @ np.array([one.row for one in machine.loads])
     return out / machine.mass
+
+
+def all_channels(response, flat):
+    """`Response.filtered` of a response before it is filtered ``(t, 3n + 3m)``."""
+    machine, t, q, v = response.machine, response.time, response.q, response.v
+    meshes = mesh_channels(machine, flat, t, q, v)
+    return np.concatenate([response.states, acceleration(machine, flat, t, q, v, meshes=meshes), *meshes[:3]], axis=1)

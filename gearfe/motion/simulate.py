@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 from ..elements.solver import free_memory
 from ..machine.tables import Machine
 from ..threads import single
+from . import excitation
 from .fixed_step import fixed_steps
 from .law_range import compared
 from .reference import SOLVERS, reference
-from .response import Response
+from .response import Response, all_channels
 from .step_control import (
     WANTED_OPEN,
     Estimate,
@@ -28,7 +29,9 @@ from .step_control import (
     longest_seen,
     unseen,
 )
+from .thinned import stages, thinned
 
+FINE = 4  # steps of the reference that the filter sees in each `default_step`
 FINER = 3  # times the step of a whole run is halved where contact is lost
 DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no tooth is so high, no gear so fast
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
@@ -52,13 +55,16 @@ def simulate(
     every: int = 1,
     rtol: float = 1e-8,
     error: bool | None = None,
+    filtered: bool | None = None,
     progress: Callable[[str], object] | None = None,
 ) -> Response:
     """Response of a machine.
 
-    What is kept and how it is integrated are two things: `rate` is the first, `step` the second. The states kept are those of
-    the integrator at these times, exact to its error, not filtered: what vibrates above half of `rate` appears folded in a
-    spectrum. For a spectrum at a low rate keep a high one and bring the channel down by `gearfe.decimate`, which filters first.
+    What is kept and how it is integrated are two things: `rate` is the first, `step` the second. Channels are filtered before
+    they are thinned (`gearfe.motion.thinned`): amplitudes below 0.4 of the rate kept stay, and nothing above half of it folds
+    into a spectrum. The states (`Response.q`, `Response.v`) are those of the integrator, exact to its error, at the times kept,
+    and so are the channels of `Response.raw`. The first and the last sample of a channel are not filtered, as nothing is
+    known beyond them; the 26 next to them pass from one to the other.
 
     Parameters
     ----------
@@ -72,8 +78,8 @@ def simulate(
     rate : float, optional
         Samples per second kept [Hz], at the times ``start + i / rate`` up to the duration. Default: one each `default_step`.
     step : float, optional
-        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output. Its
-        error is estimated. Default: a
+        Step of the fast path [s], halved about changes of contact alone; rounded down to divide the interval of the output (of
+        what is filtered, by two or more). Its error is estimated. Default: a
         step whose error on a short stretch is at most 7e-4 of the range (`gearfe.motion.step_control.chosen_step`); where
         contact is lost the whole run is repeated at half the step until both agree within 1e-2. If they never do, a state
         disturbed by 1e-9 tells why: where that grows to as much, no integration can follow the motion, which
@@ -91,6 +97,9 @@ def simulate(
     error : bool, optional
         Fast path: True integrates the whole run again with half the step, until two runs agree within 1e-3 where the step is
         chosen; ``stats["error"]`` is then of the whole run. False leaves a given step unestimated.
+    filtered : bool, optional
+        False: channels are those of the integrator at the times kept. Default: filtered, unless `dt` makes each step an output.
+        There are then two steps or more for each output.
     progress : callable, optional
         Gets a line before the loop is compiled, which the first run on a machine does in about 10 s, and one with the seconds
         expected where a run takes long.
@@ -132,13 +141,14 @@ def simulate(
         duration = count / rate
     else:
         count = math.ceil(duration / (dt or min(default_step(machine), duration)) / every * (1 - 1e-12))
-    _check_memory(machine, duration, count)
+    filtered = dt is None if filtered is None else filtered
+    _check_memory(machine, duration, count, filtered)
     if method != "fast":
-        return compared(reference(machine, duration, count, state, method, rtol, start))
+        return compared(_reference(machine, duration, count, state, method, rtol, start, filtered))
     own = state if initial is not None else None
     from .loop_parts import announced  # loads numba
 
-    run = _Runs(machine, duration, count, state, own, start, progress)
+    run = _Runs(machine, duration, count, state, own, start, filtered, progress)
     with announced(progress):
         if step is None and dt is None:
             return compared(run.controlled(error))
@@ -157,9 +167,21 @@ def _check_initial(machine, state):
         )
 
 
-def _check_memory(machine, duration, count):
+def _reference(machine, duration, count, state, method, rtol, start, filtered):
+    """`reference`, its channels filtered if asked for."""
+    if not filtered:
+        return reference(machine, duration, count, state, method, rtol, start)
+    counts = stages(FINE * math.ceil(duration / count / default_step(machine) * (1 - 1e-9)))
+    every = math.prod(counts)
+    whole = reference(machine, duration, count * every, state, method, rtol, start)
+    flat = excitation.flatten(machine, whole.time)
+    return replace(whole.part(slice(None, None, every)), filtered=thinned([all_channels(whole, flat)], counts))
+
+
+def _check_memory(machine, duration, count, filtered):
     """Refuse more outputs than memory holds, before they are computed."""
-    memory, free = 32.0 * count * len(machine.dofs), free_memory()  # states, and a copy
+    size = 4 * len(machine.dofs) + (6 * (len(machine.dofs) + len(machine.meshes)) if filtered else 0)  # and a copy
+    memory, free = 8.0 * count * size, free_memory()
     if memory > free:
         raise ValueError(
             f"duration = {duration:g} s: {count:.3g} outputs, every {duration / count:.3g} s, need about {memory / 1e9:.3g} GB, "
@@ -170,9 +192,9 @@ def _check_memory(machine, duration, count):
 class _Runs:
     """Runs of the fast path that keep the same times: `count` intervals of output, each of some steps."""
 
-    def __init__(self, machine, duration, count, state, own, start, progress):
+    def __init__(self, machine, duration, count, state, own, start, filtered, progress):
         self.machine, self.duration, self.count, self.state = machine, duration, count, state
-        self.own, self.start = own, start
+        self.own, self.start, self.filtered = own, start, filtered
         self.tell = progress or (lambda line: None)
 
     def _watch(self, cost):
@@ -181,15 +203,20 @@ class _Runs:
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
+    def steps(self, every):
+        """Steps for each output: `every`, or some more where channels are filtered."""
+        return math.prod(stages(every)) if self.filtered else every
+
     def __call__(self, every, state=None, adapt=False):
-        """Run of `every` steps for each output."""
+        """Run of `steps` of `every` for each output."""
         state = self.state if state is None else state
-        options = {"every": every, "start": self.start, "adapt": adapt}
+        counts, every = stages(every) if self.filtered else (), self.steps(every)
+        options = {"every": every, "start": self.start, "adapt": adapt, "counts": counts}
         return fixed_steps(self.machine, self.duration, every * self.count, state, **options)
 
     def given(self, every, error):
         """Run of steps that the caller chose, with their estimate unless `error` is False."""
-        started = time.perf_counter()
+        started, every = time.perf_counter(), self.steps(every)
         out = self(every)
         if error is False:
             return out
@@ -222,7 +249,7 @@ class _Runs:
         longest = longest_seen(self.machine, self.start, self.duration)
         options = {"begin": self.start, "adapt": True, "watch": self._watch, "longest": longest}
         dt, found = chosen_step(self.machine, self.duration, self.own, **options)
-        every = math.ceil(self.duration / self.count / dt * (1 - 1e-9))
+        every = self.steps(math.ceil(self.duration / self.count / dt * (1 - 1e-9)))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
             return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
@@ -244,7 +271,8 @@ class _Runs:
             why += f" of the range, and two whose start differs by {NUDGE:g} by {grown:.2g}: no integration can follow the motion"
             why += " for so long; trust its averages and spectra, or shorten the run"
             return told(out, chaotic=why, error=doubt, error_seconds=length)
-        want = reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, self.start)
+        start = self.start
+        want = _reference(self.machine, self.duration, self.count, self.state, "DOP853", 1e-10, start, self.filtered)
         return told(want, switched=f"{why} of the range", error=max(difference(out, want)), error_seconds=length)
 
 

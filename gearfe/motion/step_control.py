@@ -35,7 +35,7 @@ def difference(one, two):
     displacement = _by_kind(one.q, two.q, two.machine)
     if not two.machine.meshes:
         return displacement, 0.0
-    force, reference = one.mesh(), two.mesh()
+    force, reference = one.raw.mesh(), two.raw.mesh()
     size = np.ptp(reference, axis=0)
     size = np.where(size > 1e-6 * np.abs(reference).max(), size, np.inf)
     return displacement, float((np.abs(force - reference).max(axis=0) / size).max())
@@ -50,7 +50,7 @@ def _by_kind(one, two, machine):
 
 def acceleration_difference(one, two):
     """Largest difference of the accelerations of two responses at the same times, over ranges as `difference` takes them."""
-    return _by_kind(one.accelerations(), two.accelerations(), two.machine)
+    return _by_kind(one.raw.accelerations(), two.raw.accelerations(), two.machine)
 
 
 def unseen(machine, start, duration, h):

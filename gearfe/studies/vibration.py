@@ -14,6 +14,7 @@ from ..markdown import table_row
 from ..motion.reference import SOLVERS
 from ..motion.simulate import simulate
 from ..motion.step_control import default_step
+from ..motion.thinned import REACH
 from ..signal.demodulation import Demodulated, demodulate
 from ..signal.indicators import LOBES, indicator_table, table_text
 from ..signal.series import Signal
@@ -219,6 +220,7 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
     """Response of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
+    The run begins before and ends after what is kept, so that its filter has all it looks at.
     ``stats["settled"]`` is that time [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take longer
     than `LONGEST`, or for ever.
 
@@ -237,17 +239,17 @@ def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None
     -------
     Response
     """
-    decay = slowest_decay(machine)
+    decay, margin = slowest_decay(machine), REACH / rate
     need = -math.log(FREE) / decay if decay else math.inf
-    settle = min(need, LONGEST) if decay else UNDAMPED * duration
-    whole = settle + duration
-    with part("", 0.0, settle / whole):
-        before = simulate(machine, settle, rate=1 / settle, start=start, progress=progress)
-    last = before.q[-1], before.v[-1]
-    with part("", settle / whole, 1.0):
-        out = simulate(machine, duration, rate=rate, method=method, initial=last, start=start + settle, progress=progress)
-    stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": before.stats["seconds"] + out.stats["seconds"]}
-    return replace(out, stats=out.stats | stats)
+    settle = max(min(need, LONGEST) if decay else UNDAMPED * duration, 2 * margin)
+    before, whole = settle - margin, settle + duration + margin
+    with part("", 0.0, before / whole):
+        first = simulate(machine, before, rate=1 / before, start=start, filtered=False, progress=progress)
+    last, options = (first.q[-1], first.v[-1]), {"method": method, "start": start + before, "progress": progress}
+    with part("", before / whole, 1.0):
+        out = simulate(machine, duration + 2 * margin, rate=rate, initial=last, **options)
+    stats = {"settled": settle, "free": math.exp(-decay * settle), "seconds": first.stats["seconds"] + out.stats["seconds"]}
+    return replace(out.part(slice(REACH, -REACH)), stats=out.stats | stats)
 
 
 def slowest_decay(machine):

@@ -31,7 +31,7 @@ def machine(stiffness, phase=0.0, frequency=5.0):
 def test_a_slow_mesh_follows_the_transmission_error(curve, about):
     stiffness, error = gf.mesh_excitation(curve, about)
     run = gf.with_errors(machine(stiffness), profile={"mesh": error})
-    options = {"rate": 320.0, "step": 4e-5, "error": False}  # at the phases of the curve
+    options = {"rate": 320.0, "step": 4e-5, "error": False, "filtered": False}  # at the phases of the curve
     found, plain = (gf.simulate(one, 0.4, **options)["pair.x"][64:128] for one in (run, machine(stiffness)))
     assert np.ptp(curve.te) > 1e-6
     assert_allclose(found, curve.te, atol=0.02 * np.ptp(curve.te))

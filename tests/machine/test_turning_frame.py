@@ -34,7 +34,7 @@ def test_free_motion_is_the_motion_in_space_seen_from_the_frame():
     """Damped by a bearing that stands still: without the circulatory term the decay would be wrong."""
     omega = np.sqrt(STIFF / MASS)
     start = 1e-4
-    got = gf.simulate(body(), 0.01, step=1e-5, rate=1e5, initial=((start, 0, 0), (0, -SPIN * start, 0)), error=False)
+    got = gf.simulate(body(), 0.01, step=1e-5, rate=1e5, initial=((start, 0, 0), (0, -SPIN * start, 0)), error=False).raw
     damped = omega * np.sqrt(1 - ZETA**2)
     t = got.time  # released from rest in space, so that its velocity in the frame is -spin across
     x = start * np.exp(-ZETA * omega * t) * (np.cos(damped * t) + ZETA / np.sqrt(1 - ZETA**2) * np.sin(damped * t))

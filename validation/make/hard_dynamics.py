@@ -118,7 +118,7 @@ def outcome(build, duration, options):
     """What a case ended in, as cells, and whether the estimate covers; `options`: method of the ``reference``."""
     try:
         made = build()
-        got = simulate(made, duration)
+        got = simulate(made, duration, filtered=False)
     except (ValueError, RuntimeError) as error:
         return {"cells": f"{type(error).__name__}: {error} | | "}
     forces = got.mesh()

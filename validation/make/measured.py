@@ -85,9 +85,10 @@ def planetary():
 
 
 def perfect():
-    """The same of a set without errors and faults."""
+    """Line at the left and mesh line over the right one, of a set without errors and faults."""
     gears, torque, curves = stage()
-    return ratios(gf.pitted_planetary(gears, curves, speed=SPEED, torque=torque))
+    left, right = ratios(gf.pitted_planetary(gears, curves, speed=SPEED, torque=torque))
+    return left / right, 1 / right
 
 
 def _along(shift, angle):
@@ -227,8 +228,9 @@ def _planetary_text(found, alone):
             tooth, a planet's on the side of the sun or of the ring. Not printed and kept: module 1 mm, width 10 mm, profile
             shifts (0, 0, -0.866), 1000 rpm, 21.85 N m, bearings. The contact is linear: another load is like another error."""),
         _line(f"""**Verdict: {"trend" if holds else "not reproduced"}.** {told[0].upper()}{told[1:]}; ranges that overlap the
-            printed ones: {", ".join(met) or "none"}, by the misplacement, not by the faults. A perfect set gives left
-            {alone[0]:.3g} and right {alone[1]:.3g}: its signal repeats with every third of a turn of the carrier, so that only
+            printed ones: {", ".join(met) or "none"}, by the misplacement, not by the faults. A perfect set has
+            the right line, left and mesh line are {"below a thousandth" if max(alone) < 1e-3 else f"{max(alone):.2g}"} of it: its
+            signal repeats with every third of a turn of the carrier, so that only
             orders that are multiples of three last, and 96 (right) is one while 94 and 95 are not. The printed set has its
             stronger sideband at the left, also if its axis were mirrored: a line as high as the mesh line beside one that is a
             third of it or less is in no set here. Its mesh line and its left sideband come from planets that differ. Places

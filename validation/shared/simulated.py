@@ -9,6 +9,7 @@ import numpy as np
 import gearfe as gf
 from gearfe.machine.tables import pulses
 from gearfe.motion.step_control import default_step
+from gearfe.motion.thinned import REACH
 
 PHASES = {"herringbone": 32}  # per mesh cycle of its stiffness curves, which are smooth
 
@@ -46,14 +47,12 @@ def periodic(name, case=None, method="ritz3d"):
 
 def record(made, seconds, rate, settle, start=None):
     """Response of `made` from `settle` on, `seconds` long, `rate` samples per second; `start` as of `gearfe.simulate`."""
-    if (made.law["power"] != 1).any():  # steep: halved where it is
-        whole = gf.simulate(made, settle + seconds, rate=rate, initial=start)
-    else:
-        finer = math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
-        whole = gf.simulate(made, settle + seconds, dt=1 / rate / finer, every=finer, initial=start)
-    kept = whole.time >= settle - 1e-9
-    count = round(seconds * rate)
-    return replace(whole, time=whole.time[kept][:count], states=whole.states[kept][:count])
+    options = {}
+    if (made.law["power"] == 1).all():  # not steep: nowhere halved
+        options["step"] = 1 / rate / math.ceil(1 / rate / default_step(made) * (1 - 1e-9))
+    whole = gf.simulate(made, settle + seconds + REACH / rate, rate=rate, initial=start, **options)
+    first = math.ceil(settle * rate - 1e-6)
+    return whole.part(slice(first, first + round(seconds * rate)))
 
 
 def signal(response, channel, name=None):

@@ -1,0 +1,126 @@
+"""Campbell diagram: natural frequencies and the orders of meshes and shafts over the speed, and where they cross."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .modes import natural_frequencies
+from .tables import Machine
+
+
+class Crossing(NamedTuple):
+    """An order meets a natural frequency: at `speed` over the nominal one, at `frequency` [Hz], mode number from 0."""
+
+    speed: float
+    frequency: float
+    order: str
+    mode: int
+
+
+@dataclass(frozen=True, slots=True)
+class Campbell:
+    """Natural frequencies and orders over the speed.
+
+    Attributes
+    ----------
+    speed : ndarray, shape (s,)
+        Over that of the machine.
+    natural : ndarray, shape (s, n)
+        Natural frequencies [Hz]; 0 for rigid-body modes.
+    orders : dict of str to float
+        Frequency of each order at the machine's speed [Hz].
+    crossings : tuple of Crossing
+        By rising speed.
+    """
+
+    speed: NDArray[np.float64]
+    natural: NDArray[np.float64]
+    orders: dict[str, float]
+    crossings: tuple[Crossing, ...]
+
+
+def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders: Mapping[str, float] | None = None) -> Campbell:
+    """Campbell diagram of a machine.
+
+    The natural frequencies are those of the mean mesh stiffnesses; of a machine with a `spin`, that of its carrier, they depend
+    on the speed. Straight lines are laid between the speeds given.
+
+    Parameters
+    ----------
+    machine : Machine
+    speeds : array_like, shape (s,)
+        Speeds over that of the machine, rising, two or more.
+    harmonics : int
+        Of the mesh frequencies.
+    orders : dict of str to float, optional
+        Orders of your own, with their frequencies at the machine's speed [Hz]. Default: meshes with their harmonics, and by
+        stage the turns of the driving gear, of a damaged tooth and of the carrier.
+
+    Returns
+    -------
+    Campbell
+
+    Raises
+    ------
+    ValueError
+        If the speeds do not rise, or an order is not positive.
+
+    References
+    ----------
+    W. Campbell, Trans. ASME 46 (1924) 31-160.
+
+    Examples
+    --------
+    A mesh of 500 Hz with a natural frequency of 1591.55 Hz is met by the mesh at 3.18 times its speed, by its second harmonic
+    at half of that:
+
+    >>> import gearfe as gf
+    >>> found = campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=2)
+    >>> [(one.order, round(one.speed, 3), round(one.frequency, 1)) for one in found.crossings]
+    [('2 mesh', 1.592, 1591.5), ('mesh', 3.183, 1591.5)]
+    """
+    speed = np.asarray(speeds, dtype=float)
+    if speed.ndim != 1 or speed.size < 2 or not (np.isfinite(speed).all() and (speed >= 0).all() and (np.diff(speed) > 0).all()):
+        raise ValueError("speeds: give two or more over that of the machine, 0 or more and rising")
+    if isinstance(harmonics, bool) or harmonics != int(harmonics) or harmonics < 1:
+        raise ValueError(f"harmonics = {harmonics!r}, but give a whole number >= 1")
+    named = _orders(machine, int(harmonics)) if orders is None else dict(orders)
+    for name, value in named.items():
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"order {name} = {value} Hz, but it must be positive")
+    if machine.spin:
+        natural = np.array([natural_frequencies(replace(machine, spin=machine.spin * one))[0] for one in speed])
+    else:
+        natural = np.tile(natural_frequencies(machine)[0], (speed.size, 1))
+    return Campbell(speed, natural, named, tuple(sorted(_crossings(speed, natural, named))))
+
+
+def _orders(machine, harmonics):
+    """Orders of a machine: by stage if it names stages, of its meshes if not."""
+    stages = machine.stages
+    meshes = {one.name: one.mesh for one in stages} or {one.name: abs(one.frequency) for one in machine.meshes if one.frequency}
+    single = len(meshes) == 1
+    out = {}
+    for name, value in meshes.items():
+        mesh = "mesh" if single else f"mesh {name}"
+        out |= {mesh if k == 1 else f"{k} {mesh}": k * value for k in range(1, harmonics + 1)}
+    for one in stages:
+        told = {"driving gear": one.turning, "damaged tooth": one.fault, "carrier": one.carrier}
+        out |= {name if single else f"{name} {one.name}": value for name, value in told.items() if value}
+    unique: dict[float, str] = {}
+    for name, value in out.items():  # meshes of one frequency have one line
+        unique.setdefault(round(value, 9), name)
+    return {name: value for name, value in out.items() if name in unique.values()}
+
+
+def _crossings(speed, natural, orders):
+    for name, value in orders.items():
+        away = value * speed[:, None] - natural
+        for i, mode in np.argwhere((away[:-1] * away[1:] < 0) | (away[1:] == 0)):
+            if natural[i : i + 2, mode].min() > 0:
+                at = away[i, mode] / (away[i, mode] - away[i + 1, mode])
+                place = float(speed[i] + at * (speed[i + 1] - speed[i]))
+                yield Crossing(place, value * place, name, int(mode))

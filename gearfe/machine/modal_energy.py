@@ -1,0 +1,94 @@
+"""Where the energy of each mode is: in which springs and meshes, in which bodies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .modes import natural_frequencies
+from .tables import Machine
+
+
+@dataclass(frozen=True, slots=True)
+class ModalEnergy:
+    """Shares of the energy of every mode.
+
+    Attributes
+    ----------
+    frequencies : ndarray, shape (n,)
+        [Hz], rising.
+    modes : ndarray, shape (n, n)
+        In columns, of modal mass 1.
+    strain : dict of str to ndarray, shape (n,)
+        Part of the elastic energy by spring and mesh; nan for rigid-body modes, which have none.
+    kinetic : dict of str to ndarray, shape (n,)
+        Part of the kinetic energy by degree of freedom.
+    """
+
+    frequencies: NDArray[np.float64]
+    modes: NDArray[np.float64]
+    strain: dict[str, NDArray[np.float64]]
+    kinetic: dict[str, NDArray[np.float64]]
+
+    def participation(self, row: ArrayLike) -> NDArray[np.float64]:
+        """Modal participation factors ``modes.T @ row`` of a load along a row ``(n,)``, such as that of a mesh.
+
+        A harmonic force F along it moves mode j by ``F participation[j] / (w_j**2 - w**2)``.
+        """
+        return np.asarray(self.modes.T @ np.asarray(row, dtype=float))
+
+    def largest(self, mode: int, count: int = 3) -> dict[str, float]:
+        """The springs and meshes that hold most of the elastic energy of a mode, with their parts of it."""
+        ranked = sorted(self.strain, key=lambda name: -self.strain[name][mode])
+        return {name: float(self.strain[name][mode]) for name in ranked[:count]}
+
+
+def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy:
+    """Elastic energy of every mode by spring and mesh, kinetic energy by degree of freedom, parts of one.
+
+    ::
+
+        strain = k (row @ mode)**2 / sum of all,   kinetic = m mode**2
+
+    The derivative of a natural frequency by a stiffness is ``f strain / (2 k)``: which member to change. Meshes are at their
+    mean stiffness (of a `ForceLaw` the tangent one).
+
+    Parameters
+    ----------
+    machine : Machine
+        Of a machine with a `spin` the modes are complex and the energies their means over a cycle.
+    x : ndarray, shape (m,), optional
+        As of `gearfe.natural_frequencies`.
+
+    Returns
+    -------
+    ModalEnergy
+
+    References
+    ----------
+    J. Lin, R. G. Parker, J. Sound Vib. 228(1) (1999) 109-128, eqs. 8-12: sensitivities as modal strain and kinetic energies.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> found = modal_energy(gf.single_mesh(1.0, 1e8, 500.0))
+    >>> {name: part.tolist() for name, part in found.strain.items()}
+    {'mesh': [1.0]}
+    """
+    frequencies, modes = natural_frequencies(machine, x=x)
+    k = machine.linear(machine.working() if x is None else x)[2]
+    members = [(s.name, s.row, s.k) for s in machine.springs] + list(
+        zip((m.name for m in machine.meshes), machine.G, k, strict=True)
+    )
+    energy: dict[str, NDArray[np.float64]] = {}
+    for name, row, stiffness in members:
+        energy[name] = energy.get(name, np.zeros(len(frequencies))) + stiffness * np.abs(row @ modes) ** 2
+    total = np.sum(list(energy.values()), axis=0)
+    total = np.where(frequencies > 0, total, np.nan)
+    kinetic = machine.mass[:, None] * np.abs(modes) ** 2
+    return ModalEnergy(
+        frequencies,
+        modes,
+        {name: value / total for name, value in energy.items()},
+        dict(zip(machine.dofs, kinetic / kinetic.sum(axis=0), strict=True)),
+    )

@@ -1,0 +1,63 @@
+"""Dynamic factor: the largest mesh force of a run over that of the load at rest."""
+
+import numpy as np
+
+from ..machine.contact_law import force
+from .response import Response
+
+LOOKS = 200  # times at which loads that change are taken at rest
+
+
+def dynamic_factors(response: Response) -> dict[str, float]:
+    """Dynamic factor K_v of every mesh: its largest force in the run, over its largest force at rest under the run's loads.
+
+    ISO 6336-1 takes K_v for the largest force over the nominal one at constant load, K_A for what the loads do: under a load that
+    changes the static force here is the largest of the loads' course. Forces are those of the integrator (`Response.raw`), not
+    filtered: keep a rate that shows the peaks, and begin when the free vibrations of the start have died out
+    (``initial`` of a first run), or they count.
+
+    Parameters
+    ----------
+    response : Response
+
+    Returns
+    -------
+    dict of str to float
+        By mesh, without unit.
+
+    Raises
+    ------
+    ValueError
+        If a mesh carries nothing at rest.
+
+    References
+    ----------
+    ISO 6336-1:2019, section 6: internal dynamic factor.
+
+    Examples
+    --------
+    A load put at once on a mass on a constant mesh stiffness without damping doubles the force:
+
+    >>> import gearfe as gf
+    >>> machine = gf.single_mesh(1.0, 1e8, 500.0, force=1000.0)
+    >>> run = gf.simulate(machine, 0.002, initial=([0.0], [0.0]), rate=2e5)
+    >>> round(dynamic_factors(run)["mesh"], 4)
+    2.0
+    """
+    machine = response.machine
+    times = response.time[:: max(1, len(response.time) // LOOKS)] if _change(machine) else response.time[:1]
+    zero = np.zeros(len(machine.meshes))
+    still = []
+    for t in times:
+        x = machine.G @ machine.rest(float(t))
+        still.append(force(x, zero, machine._mean_at(x)[0], machine.law))
+    most = np.max(np.abs(still), axis=0)
+    largest = np.abs(response.raw.mesh()).max(axis=0)
+    for mesh, static in zip(machine.meshes, most, strict=True):
+        if not static > 1e-9 * max(most.max(), 1e-30):
+            raise ValueError(f"mesh {mesh.name} carries nothing at rest: it has no dynamic factor; give its load")
+    return {mesh.name: float(own / static) for mesh, own, static in zip(machine.meshes, largest, most, strict=True)}
+
+
+def _change(machine):
+    return any(callable(one.value) or one.breaks.size > 1 for one in machine.loads)

@@ -1,0 +1,126 @@
+"""The speed of a shaft from the signal alone: the angle that its own lines follow, without a tachometer."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+from scipy.ndimage import maximum_filter1d
+from scipy.signal import fftconvolve, get_window, stft
+
+from .given import hertz, whole
+from .series import Signal
+
+WIDTH = 4  # bins of a line with Hann's window: how far a line may move from one window to the next half
+FINE = 4  # speeds tried for each bin of the highest harmonic
+ROUNDS = 3  # of phase demodulation
+
+
+def with_own_speed(
+    signal: Signal, order: float, speeds: tuple[float, float], *, harmonics: int = 3, seconds: float | None = None
+) -> Signal:
+    """The signal with the angle of its shaft, found from a line and its harmonics, such as those of the mesh.
+
+    First a path through a spectrogram: at each time the speed whose harmonics hold most, in logarithms, on a path on which no
+    line moves further than it is wide from one window to the next. Then the phase of the line along that path, which corrects
+    it (Bonnardot et al.). The path is as good as the line stands out: look at ``gearfe.plot_spectrogram`` first, and give
+    a range of speeds in which no other line has the same course.
+
+    Parameters
+    ----------
+    signal : Signal
+    order : float
+        Events per turn of the shaft: its teeth.
+    speeds : (float, float)
+        Slowest and fastest turns per second of the shaft [Hz].
+    harmonics : int
+        Of the line, those below half of the rate at the fastest.
+    seconds : float, optional
+        Length of a window; default: that in which a line that sweeps through the range in the record moves by one bin.
+
+    Returns
+    -------
+    Signal
+        Its `angle` begins at 0; the angle of the shaft itself at that time is not known.
+
+    Raises
+    ------
+    ValueError
+        If the range is none, or the line lies above half of the rate there, or the record is too short.
+
+    References
+    ----------
+    - Q. Leclere, H. Andre, J. Antoni, Mech. Syst. Signal Process. 81 (2016) 371-386: several orders at once.
+    - F. Bonnardot et al., Mech. Syst. Signal Process. 19(4) (2005) 766-785: angle from the phase of a mesh line.
+    """
+    low, high = speeds
+    for name, value in {"order": order, "speeds[0]": low, "speeds[1]": high}.items():
+        hertz(name, value)
+    if not low < high:
+        raise ValueError(f"speeds = {speeds} Hz, but give the slowest first, and one that is faster")
+    count = min(whole("harmonics", harmonics, 1), int(signal.rate / 2 / (order * high)))
+    if count < 1:
+        raise ValueError(f"order {order:g} reaches {order * high:g} Hz, but {signal.name} shows up to {signal.rate / 2:g} Hz")
+    if seconds is None:
+        seconds = max(math.sqrt(signal.duration / (order * (high - low) * count)), 2 * WIDTH / (order * low))
+    size = 2 * round(seconds * signal.rate / 2)
+    if not WIDTH * 2 <= size <= signal.values.size // 4:
+        raise ValueError(
+            f"{signal.name}: windows of {seconds:.3g} s in a record of {signal.duration:.3g} s, but four or more are needed: "
+            "record longer, or give a slowest speed that is higher, or seconds="
+        )
+    time, speed = _path(signal, order, (low, high), count, size)
+    angle = make_interp_spline(time, 2 * np.pi * speed, k=min(3, time.size - 1)).antiderivative()
+    turned = _straight_ends(angle, time, speed, signal.time)
+    for _ in range(ROUNDS):
+        turned = turned - _lag(signal, order, turned, size)
+    return replace(signal, angle=turned - turned[0], shaft_frequency=None)
+
+
+def _path(signal, order, speeds, count, size):
+    """Middles of windows and the speed in each: the best path (R. Bellman's dynamic programming)."""
+    x = signal.values - signal.values.mean()
+    frequency, time, lines = stft(x, signal.rate, nperseg=size, noverlap=size // 2, nfft=2 * size, boundary=None, padded=False)
+    bin_ = signal.rate / size
+    tried = np.linspace(*speeds, max(8, math.ceil(FINE * count * order * (speeds[1] - speeds[0]) / bin_)))
+    power = np.abs(lines) + 1e-6 * np.abs(lines).max() + 1e-300
+    level = np.log(power / np.median(power, axis=1, keepdims=True))
+    score = sum(np.array([np.interp(k * order * tried, frequency, one) for one in level.T]) for k in range(1, count + 1))
+    step = max(1, math.ceil(WIDTH * bin_ / (count * order) / (tried[1] - tried[0])))
+    total, came = score[0], []
+    for one in score[1:]:
+        reach = maximum_filter1d(total, 2 * step + 1, mode="constant", cval=-np.inf)
+        came.append((total, reach))
+        total = reach + one
+    at, path = int(np.argmax(total)), []
+    for before, reach in reversed(came):
+        path.append(at)
+        near = np.arange(max(0, at - step), min(len(tried), at + step + 1))
+        at = int(near[np.argmin(np.abs(before[near] - reach[at]) + 1e-12 * np.abs(near - at))])
+    path.append(at)
+    return time, _between(score, tried, np.array(path[::-1]))
+
+
+def _between(score, tried, path):
+    """Speeds of a path, each moved to the top of a parabola through its neighbours' scores."""
+    inner = np.clip(path, 1, len(tried) - 2)
+    rows = np.arange(len(path))
+    left, here, right = (score[rows, inner + i] for i in (-1, 0, 1))
+    bend = left - 2 * here + right
+    off = np.where(bend < 0, (left - right) / 2 / np.where(bend < 0, bend, -1.0), 0.0)
+    return tried[path] + np.where(path == inner, np.clip(off, -1, 1), 0.0) * (tried[1] - tried[0])
+
+
+def _straight_ends(angle, time, speed, t):
+    """An angle at times `t`; before the first and after the last window at the speed there."""
+    inside = np.clip(t, time[0], time[-1])
+    return angle(inside) + 2 * np.pi * ((t - inside) * np.where(t < time[0], speed[0], speed[-1]))
+
+
+def _lag(signal, order, turned, size):
+    """How far a line lags behind an angle [rad of the shaft], smooth over a window."""
+    window = get_window("hann", size + 1, fftbins=False)
+    wave = (signal.values - signal.values.mean()) * np.exp(-1j * order * turned)
+    slow = fftconvolve(wave, window, mode="same") / fftconvolve(np.ones(wave.size), window, mode="same")
+    phase = np.unwrap(np.angle(slow))
+    return -(phase - phase[phase.size // 2]) / order

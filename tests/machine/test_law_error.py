@@ -1,0 +1,38 @@
+"""What a law of force says of its own error, against contacts solved between its loads and phases."""
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+
+RACK = {"m_n": 2.0, "alpha_n": np.radians(20), "b": 20.0}
+PAIR = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
+STEEL = gf.Material(E=207e3, nu=0.25)
+
+
+def true(law, loads, phases):
+    """Error over the force at loads and phases solved anew."""
+    curves = gf.mesh_stiffness(PAIR, list(loads), STEEL, phases=list(phases))
+    return np.array([np.abs(law(one.lte, one.phase) / load - 1) for one, load in zip(curves, loads, strict=True)])
+
+
+@pytest.mark.parametrize(("ratio", "phases"), [(2.0, 32), (2.0**0.5, 64)])
+def test_it_covers_what_is_solved_between(ratio, phases):
+    loads = 100.0 * ratio ** np.arange(6)
+    law = gf.force_law(PAIR, loads, STEEL, phases=phases)
+    found = gf.law_error(law)
+    between = true(law, np.sqrt(loads[:-1] * loads[1:]), law.phase)
+    across = true(law, loads[::2], np.sort(np.random.default_rng(0).random(100)))
+    for own, rms, most in ((between, found.loads_rms, found.loads), (across, found.phases_rms, found.phases)):
+        assert 0.05 * rms < np.sqrt((own**2).mean()) < rms
+        assert own.max() < 1.5 * most
+
+
+def test_more_loads_leave_less():
+    few, many = (gf.law_error(gf.force_law(PAIR, np.geomspace(100.0, 3200.0, n), STEEL, phases=32)) for n in (4, 13))
+    assert many.loads_rms < 0.2 * few.loads_rms
+
+
+def test_two_loads_tell_nothing():
+    with pytest.raises(ValueError, match="three loads and four phases"):
+        gf.law_error(gf.force_law(PAIR, [100.0, 200.0], STEEL, phases=8))

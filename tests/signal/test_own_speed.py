@@ -1,0 +1,60 @@
+"""The speed of a shaft from the signal alone, on signals and simulated run-ups whose speed is known."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+
+TEETH = 21
+
+
+def off(found, turns):
+    """Largest error of the speed over its largest value, and of the angle in mesh cycles; the ends left out."""
+    angle = found.angle - found.angle[found.angle.size // 2]
+    true = 2 * np.pi * (turns - turns[turns.size // 2])
+    inside = slice(angle.size // 20, -angle.size // 20)
+    speed, want = np.gradient(angle)[inside], np.gradient(true)[inside]
+    return np.abs(speed - want).max() / want.max(), TEETH * np.abs(angle - true)[inside].max() / (2 * np.pi)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1.0])
+def test_a_line_that_sweeps(noise):
+    t = np.arange(100_000) / 2e4
+    turns = 10 * t + 1.5 * t**2 + 0.1 * np.sin(2 * np.pi * 0.5 * t)
+    values = sum(np.cos(k * TEETH * 2 * np.pi * turns + k) / k for k in (1, 2, 3))
+    values = values + noise * np.random.default_rng(0).standard_normal(t.size)
+    found = gf.with_own_speed(gf.Signal(values, 2e4, "g"), TEETH, (8.0, 30.0))
+    speed, angle = off(found, turns)
+    assert speed < (0.01 if noise else 0.0005)
+    assert angle < (0.05 if noise else 0.01)
+
+
+def test_a_simulated_run_up():
+    """The acceleration of a gear through its resonances: its speed is that of the machine, and its orders are sharp."""
+    phase = np.arange(64) / 64
+    made = gf.single_mesh(0.5, 3e8 * (1 + 0.15 * np.cos(2 * np.pi * phase)), 2000.0, force=2000.0, zeta=0.05)
+    made = gf.with_speed(made, [0.0, 2.0], [0.3, 1.0])
+    run = gf.simulate(made, 2.0, rate=2e4)
+    known = run.signal("force mesh", turning=2000.0 / TEETH)
+    bare = gf.Signal(known.values, known.rate, known.unit)
+    found = gf.with_own_speed(bare, TEETH, (20.0, 105.0), harmonics=2)
+    speed, angle = off(found, known.angle / (2 * np.pi))
+    assert speed < 0.005
+    assert angle < 0.35, "of a mesh cycle: its own phase turns through a resonance by a quarter to a half"
+    line = gf.find_lines(gf.order_spectrum(found), {"mesh": TEETH}, between=True)["mesh"][1]
+    want = gf.find_lines(gf.order_spectrum(known), {"mesh": TEETH}, between=True)["mesh"][1]
+    assert line > 0.9 * want
+
+
+def test_what_shows_no_speed_is_refused():
+    signal = gf.Signal(np.sin(np.arange(4000.0)), 1000.0, "g")
+    for given, said in (
+        ((21, (30.0, 20.0)), "slowest first"),
+        ((21, (20.0, 30.0)), "shows up to 500 Hz"),
+        ((-1, (1.0, 2.0)), "order = -1"),
+        ((4, (0.5, 2.0), 3, 2.0), "four or more are needed"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            gf.with_own_speed(signal, given[0], given[1], **dict(zip(("harmonics", "seconds"), given[2:], strict=False)))
+    assert_allclose(signal.values[0], 0.0)
