@@ -9,6 +9,7 @@ pair's load over its approach.
 """
 
 import time
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -146,10 +147,15 @@ class Model:
         return np.array(out), where
 
 
+@cache
+def _references():
+    return {one.id: one for one in gf.load_scene(SCENE).references}
+
+
 def printed():
     """S4's finite element column, after the stated correction of its swapped rows [N/um]."""
-    found = next(one for one in gf.load_scene(SCENE).references if one.id == "stiffness_fe")
-    return np.array([(row.value if row.corrected is None else row.corrected) / 1e6 for row in found.rows])
+    rows = _references()["stiffness_fe"].rows
+    return np.array([(row.value if row.corrected is None else row.corrected) / 1e6 for row in rows])
 
 
 def reductions(k):
@@ -171,8 +177,7 @@ def load():
 def errors(rows):
     """Worst of ten stiffnesses [%], of eight reductions beside the finite elements' own and beside the printed list [points]."""
     k = np.array([[float(row[f"{pair} {case or 'healthy'}"]) for pair, case in ROWS] for row in rows])
-    listed = next(one for one in gf.load_scene(SCENE).references if one.id == "stiffness_reduction")
-    list_of = np.array([row.value for row in listed.rows])
+    list_of = np.array([row.value for row in _references()["stiffness_reduction"].rows])
     own = reductions(k)
     worst = [np.abs(own - wanted).max(axis=1) for wanted in (reductions(printed()), list_of)]
     return np.abs(100 * (k / printed() - 1)).max(axis=1), *worst
