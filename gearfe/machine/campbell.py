@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from .modes import natural_frequencies
 from .tables import Machine
 
+FASTEST = 50.0  # times the speed of the machine: larger numbers are meant in other units
+
 
 class Crossing(NamedTuple):
     """An order meets a natural frequency: at `speed` over the nominal one, at `frequency` [Hz], mode number from 0."""
@@ -66,7 +68,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     Raises
     ------
     ValueError
-        If the speeds do not rise, or an order is not positive.
+        If the speeds do not rise or are none of this machine, or an order is not positive.
 
     References
     ----------
@@ -85,6 +87,10 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     speed = np.asarray(speeds, dtype=float)
     if speed.ndim != 1 or speed.size < 2 or not (np.isfinite(speed).all() and (speed >= 0).all() and (np.diff(speed) > 0).all()):
         raise ValueError("speeds: give two or more over that of the machine, 0 or more and rising")
+    if speed[-1] > FASTEST:
+        raise ValueError(
+            f"speeds up to {speed[-1]:g} times that of the machine: give them over its own speed (1: as it runs), not in rpm"
+        )
     if isinstance(harmonics, bool) or harmonics != int(harmonics) or harmonics < 1:
         raise ValueError(f"harmonics = {harmonics!r}, but give a whole number >= 1")
     named = _orders(machine, int(harmonics)) if orders is None else dict(orders)
