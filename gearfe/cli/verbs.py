@@ -248,7 +248,7 @@ def dynamics(arguments):
 
     _check_outputs(arguments, output="response", plot="picture", kurtogram="picture")
     scene = load_scene(arguments.scene)
-    if arguments.contact:
+    if arguments.contact and scene.machine:
         scene = replace(scene, machine=scene.machine | {"contact": arguments.contact})
     print(f"{scene.title}\n")
     with working("stiffness curves and response") as tell:

@@ -191,3 +191,8 @@ def test_missing_renderer_names_the_package(monkeypatch, tmp_path, capsys):
     assert main(["render", "planetary_pitting", "-o", str(tmp_path / "s.png")]) == 1
     assert "pip install pyvista" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_a_law_of_contact_for_a_scene_without_machine_is_refused(capsys):
+    assert main(["dynamics", "herringbone_contact_line", "--contact", "impact"]) == 1
+    assert "has no [machine] table" in capsys.readouterr().err
