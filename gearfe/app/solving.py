@@ -34,7 +34,9 @@ from .state import CASE, SeveralError, read, tables_of, title_of, toml
 
 QUICK, FINE, SOLID = 32, 64, 16  # phases per mesh cycle
 KEPT = 128 * 2**20  # memory of solved gears in one process [bytes]
-ALONG = {"pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it"}  # sections
+ALONG = {  # what changes along the width, as a section has it
+    "pits": "no", "lead_1": 0.0, "lead_2": 0.0, "F_beta": 0.0, "tilt_1": 0.0, "tilt_2": 0.0, "part": "all of it",
+}  # fmt: skip
 STRESS = (1000, 750)  # picture [px]
 SECONDS = 0.5  # of vibration
 SHOWN = 1500  # points of a spectrum that is drawn

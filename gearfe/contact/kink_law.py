@@ -122,8 +122,9 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
     rolls, host = (found.roll_1[:, column], found.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
     beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)
     on = np.abs(arc_at(host, rolls[gear]) - arc_at(host, roll)) < beside
-    gone = np.flatnonzero(~(on & (found.gap[:, column] < reach) & (found.corner[:, column] == 0)))
-    return float(away[gone[0] - 1] if gone.size and gone[0] else 0.0 if gone.size else away[-1])
+    stays = on & (found.gap[:, column] < reach) & (found.corner[:, column] == 0)
+    count = int(np.argmin(np.append(stays, False)))  # of the first places, until one is off it
+    return float(away[count - 1]) if count else 0.0
 
 
 def _straight(mesh, phases, column):

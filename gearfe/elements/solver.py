@@ -182,20 +182,20 @@ def factor(matrix, plan_=None):
     except ArithmeticError as error:
         raise RuntimeError("the stiffness matrix is not positive definite: the body is not held") from error
 
-    def solve(rhs, parts=(A,)):
+    def solve(rhs, part=A):
         given = np.reshape(rhs, (matrix.shape[0], -1))
         out, width = np.empty(given.shape, order="F"), max(1, BLOCK // (8 * matrix.shape[0]))
         for start in range(0, given.shape[1], width):
             own = slice(start, start + width)
             block = dense(np.asfortranarray(given[:, own], dtype=float))
-            if P in parts:
+            if part == L:
                 cholmod.solve(factored, block, sys=P)
             # as sparse columns CHOLMOD takes several at once, so that the factor is read less often: half the time
-            out[:, own] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=parts[-1])))
+            out[:, own] = np.asarray(dense(cholmod.spsolve(factored, sparse(block), sys=part)))
         return out.reshape(np.shape(rhs))
 
     def gram(rhs):
-        moved = solve(rhs, (P, L))
+        moved = solve(rhs, L)
         return moved.T @ moved
 
     solve.gram = gram

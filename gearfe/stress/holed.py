@@ -11,6 +11,7 @@ import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
 from geometry.pair.flanks import flank_forms
+from geometry.pair.pit_lines import in_both_halves
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
 from ..contact.solid import Contact3D, pair_stiffness3d
@@ -203,7 +204,7 @@ def _own(pair, side, face, groove, pits):
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]
     if half:
-        pits = _mirror(gear, pits)
+        pits = tuple(in_both_halves(gear, pits, face))
     return replace(gear, beta=-sense * abs(gear.beta), b=width), half, pits
 
 
@@ -214,11 +215,7 @@ def _mirrored(gear, lower, upper):
         numbers = (pit.radius, pit.z, pit.angle, *pit.axes, pit.depth)
         return tuple(round(value, 9) for value in numbers), pit.tooth, pit.side
 
-    return sorted(map(rounded, lower)) == sorted(map(rounded, _mirror(gear, upper)))
-
-
-def _mirror(gear, pits):
-    return tuple(replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits)
+    return sorted(map(rounded, lower)) == sorted(map(rounded, in_both_halves(gear, upper, "herringbone")))
 
 
 def held_by(pair, supports, force, face):
@@ -323,7 +320,11 @@ def _pressure(sector, nodes, number, lines, spread):
             away = np.abs(arc_at(gear, roll) - arc_at(gear, np.interp(z, heights, rolls)))
             press = np.where(inside, load[cell] / width[cell] * np.maximum(1 - away / spread, 0.0), 0.0) * area[:, None]
             if press.sum() <= 0:
-                press.flat[np.hypot(z - heights[cell], away).argmin()] = 1.0
+                near = np.hypot(z - heights[cell], away)
+                face = np.unravel_index(near.argmin(), near.shape)
+                if near[face] > math.sqrt(area[face[0]]):  # not even within the size of a triangle
+                    raise RuntimeError("the mesh is too coarse to carry the load of a contact line: raise refine")
+                press[face] = 1.0
             press *= load.sum() / press.sum()
             np.add.at(force, six.T, -np.einsum("kq,dfq,fq->fkd", shape, normal, press))
     return force.ravel()

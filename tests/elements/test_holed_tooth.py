@@ -110,6 +110,14 @@ def test_a_line_shorter_than_the_triangles_presses_at_the_nearest(end):
     assert np.linalg.norm(centre - place[:, 0]) < size / holed.PARTS
 
 
+def test_a_line_far_from_all_triangles_is_refused():
+    sector = holed_sector(HELICAL, [pit(HELICAL)], teeth=3, sizes=COARSE)
+    nodes, _, number = second_order(sector.points, sector.cells)
+    line = [(np.array([-3.0]), np.array([2e-4]), np.array([HELICAL.roll_a - 1e-3]), np.array([20.0]))]
+    with pytest.raises(RuntimeError, match="too coarse to carry the load of a contact line"):
+        holed._pressure(sector, nodes, number, {1: line}, 1e-6)
+
+
 def test_holes_and_cracks_weaken(pressed):
     _, made = pressed
     assert (made.extra > 0).all()

@@ -1,9 +1,7 @@
-"""Which rows are of the present code: a project of one page, whose job imports one module and reads one file of data."""
+"""Which rows are of the present code, and how they are computed again."""
 
 import json
 import os
-import re
-import shutil
 import signal
 import subprocess
 import sys
@@ -11,80 +9,14 @@ import time
 from pathlib import Path
 
 import pytest
+from trial_project import KEPT, MAKE, MODULE, first_line, old, told, trial
 
 from validation.shared import decks, places, renew, state
-
-MODULE = '"""One."""\n\n\ndef one():\n    """Give 1."""\n    return 1  # that is one\n'
-MAKE = """
-import time
-from pathlib import Path
-from validation.shared.kept_rows import kept
-from validation.shared.places import PAGES, ROOT, TABLES
-
-def run(parts=()):
-    from gearfe.used import one
-    more = float((ROOT / "gearfe" / "data.csv").read_text())
-    with (TABLES / "cracks.csv").open("w") as file:
-        file.write("name,value\\nfirst,")
-        file.flush()
-        time.sleep(more)
-        file.write(f"{one()}\\nsecond,2\\n")
-    (PAGES / "cracks.md").write_text("# How much?\\n\\nMuch.\\n")
-"""
-KEPT = "from validation.shared.kept_rows import kept\n\n\ndef run(parts=()):\n"
-KEPT += "    for name in ('one', 'two'):\n        print(kept('dynamics_rows', name, lambda: {'value': 1}, parts))\n"
-KEPT += "\n\ndef reference():\n    for name in ('three', 'four'):\n        kept('dynamics_far', name, lambda: {'value': 1})\n"
 
 
 @pytest.fixture
 def project(tmp_path):
-    home = places.HOME
-    for folder in ("gearfe", "geometry", "tests", "validation/make", "validation/pages/tables"):
-        (tmp_path / folder).mkdir(parents=True)
-        (tmp_path / folder / "__init__.py").touch()
-    shutil.copytree(home / "shared", tmp_path / "validation" / "shared", ignore=shutil.ignore_patterns("arbiter", "__pycache__"))
-    for name in ("__init__.py", "__main__.py"):
-        shutil.copy(home / name, tmp_path / "validation")
-    text = re.sub(
-        "PAGES = QUESTIONS.*?\n}", "PAGES = {'cracks': '', 'dynamics': ''}", (home / "__main__.py").read_text(), flags=re.S
-    )
-    text = re.sub(
-        "CONTINUED = {.*?\n}",
-        "CONTINUED = {'cracks': ('cracks.csv',), 'dynamics --reference': ('dynamics_far.jsonl',)}",
-        text,
-        flags=re.S,
-    )
-    (tmp_path / "validation/__main__.py").write_text(text)
-    for name, text in {
-        "gearfe/used.py": MODULE,
-        "gearfe/idle.py": MODULE,
-        "gearfe/data.csv": "0\n",
-        "validation/make/cracks.py": MAKE,
-        "validation/make/dynamics.py": KEPT,
-    }.items():
-        (tmp_path / name).write_text(text)
-    return tmp_path
-
-
-def told(project, *words, code=0):
-    """What `python -m validation` prints in the project; its exit code is asserted."""
-    own = {name: value for name, value in os.environ.items() if not name.startswith(("GIT_", "GEARFE_"))}
-    own |= {"PYTHONPATH": "", "PYTHONDONTWRITEBYTECODE": "1"}  # which does not see a change of a digit within the second
-    command = [sys.executable, "-m", "validation", *words]
-    done = subprocess.run(command, cwd=project, env=own, capture_output=True, text=True, check=False)
-    assert done.returncode == code, done.stdout + done.stderr
-    return done.stdout + done.stderr
-
-
-def old(project):
-    """Rows of the page that `--stale` calls old."""
-    lines = [line.split() for line in told(project, "--stale").splitlines() if line.startswith("cracks ")]
-    assert len(lines) <= 1
-    return int(lines[0][1]) if lines else 0
-
-
-def first_line(project):
-    return (project / "validation" / "pages" / "cracks.md").read_text().partition("\n")[0]
+    return trial(tmp_path)
 
 
 REWORDED = (
@@ -116,175 +48,6 @@ def test_rows_are_old_when_what_they_used_means_something_else(project, file, ch
         (project / file).write_text(text.replace(was, now))
     assert old(project) == rows
     assert first_line(project) == f"{2 - rows} of 2 rows on the present code"
-
-
-CALLED = '''
-import functools
-LIMIT = 3
-
-def one(more=0, inner=None):
-    """Give 1."""
-    def deep():
-        return 1
-    return deep() + more + Square().area + len(list(steps()))
-
-def other(more=1):
-    return more
-
-def steps():
-    yield 0
-
-class Square:
-    side = 0
-
-    @functools.cached_property
-    def area(self):
-        return self.side * filled() - 1
-
-    def grow(self):
-        self.side += 1
-
-@functools.cache
-def filled():
-    return 4
-'''
-THREADED = """
-    import threading
-    from gearfe.idle import one as far
-    thread = threading.Thread(target=far)
-    thread.start()
-    thread.join()
-"""
-DISPATCHER = "class Dispatcher:\n    def __init__(self, function):\n        self.py_func = function\n"
-
-
-@pytest.mark.parametrize(
-    ("was", "now", "rows"),
-    [
-        pytest.param("return more\n", "return more + 1\n", 0, id="function that was not called"),
-        pytest.param("self.side += 1", "self.side += 2", 0, id="method that was not called"),
-        pytest.param("deep() + more", "deep() + 2 * more", 2, id="function that was called"),
-        pytest.param("        return 1", "        return 2", 2, id="function inside it"),
-        pytest.param("* filled() - 1", "* filled() - 2", 2, id="property that was read"),
-        pytest.param("return 4", "return 5", 2, id="function behind a memory cache"),
-        pytest.param("yield 0", "yield 1", 2, id="generator"),
-        pytest.param("LIMIT = 3", "LIMIT = 4", 2, id="constant"),
-        pytest.param("side = 0", "side = 1", 2, id="constant of a class"),
-        pytest.param("more=0", "more=5", 2, id="default"),
-        pytest.param("def other(more=1)", "def other(more=2)", 2, id="default of a function that was not called"),
-        pytest.param("    def grow", "    @property\n    def grow", 2, id="decorator of a method that was not called"),
-        pytest.param("def filled", "def filled_up", 2, id="name of a function that was called"),
-        pytest.param("def grow(self)", "def __len__(self)", 2, id="name of a method that was not called"),
-    ],
-)
-def test_rows_are_old_when_a_function_they_called_means_something_else(project, was, now, rows):
-    (project / "gearfe/used.py").write_text(CALLED)
-    told(project, "cracks")
-    assert old(project) == 0
-    assert CALLED.count(was) == 1
-    (project / "gearfe/used.py").write_text(CALLED.replace(was, now))
-    assert old(project) == rows
-
-
-@pytest.mark.parametrize(
-    ("more", "rows"),
-    [
-        pytest.param("    from gearfe.idle import one as far\n", 0, id="imported only"),
-        pytest.param("    from gearfe.idle import one as far; far()\n", 2, id="called"),
-        pytest.param(THREADED, 2, id="called in a thread"),
-        pytest.param(
-            "    import gearfe.idle, subprocess, sys; subprocess.run([sys.executable, '--version'])\n", 2, id="in a process"
-        ),
-        pytest.param("    import gearfe.idle, os; os.system('true')\n", 2, id="in a shell"),
-        pytest.param("    import gearfe.idle; print((TABLES / 'far.csv').read_text())\n", 2, id="a table of other jobs was read"),
-    ],
-)
-def test_modules_count_whole_where_calls_are_not_seen(project, more, rows):
-    (project / "validation/make/cracks.py").write_text(MAKE.replace("    more =", f"{more}    more ="))
-    (project / "validation/pages/tables/far.csv").write_text("far\n")
-    told(project, "cracks")
-    assert old(project) == 0
-    (project / "gearfe/idle.py").write_text(MODULE.replace("return 1", "return 2"))
-    assert old(project) == rows
-
-
-@pytest.mark.parametrize("text", ["from numba import njit\n", "# numba compiles this\n"])
-def test_modules_that_speak_of_numba_count_whole(project, text):
-    (project / "gearfe/used.py").write_text(MODULE + "\n\ndef other():\n    return 1\n" + text)
-    (project / "numba.py").write_text("njit = None\n")
-    told(project, "cracks")
-    (project / "gearfe/used.py").write_text(
-        (project / "gearfe/used.py").read_text().replace("():\n    return 1\n", "():\n    return 2\n")
-    )
-    assert old(project) == 2
-
-
-def test_modules_whose_functions_are_compiled_elsewhere_count_whole(project):
-    (project / "numba/core").mkdir(parents=True)
-    for name, text in {"__init__": "", "core/__init__": "", "core/dispatcher": DISPATCHER}.items():
-        (project / f"numba/{name}.py").write_text(text)
-    (project / "gearfe/loop.py").write_text(
-        "from numba.core.dispatcher import Dispatcher\nfrom .idle import one\nloop = Dispatcher(one)\n"
-    )
-    (project / "validation/make/cracks.py").write_text(MAKE.replace("    more =", "    import gearfe.loop\n    more ="))
-    told(project, "cracks")
-    assert old(project) == 0
-    (project / "gearfe/idle.py").write_text(MODULE.replace("return 1", "return 2"))
-    assert old(project) == 2
-
-
-FIRST = "    first = kept('dynamics_rows', 'one', lambda: {'value': one()}, parts)\n"
-SECOND = "    kept('dynamics_rows', 'two', lambda: {'value': LOOK}, parts)\n"
-
-
-@pytest.mark.parametrize(
-    ("look", "rows"),
-    [
-        ("first['value']", 2),
-        ("{**first}['value']", 2),
-        ("({} | first)['value']", 2),
-        ("stored('dynamics_rows')['one']['value']", 2),
-        ("1", 1),
-    ],
-)
-def test_what_made_a_row_on_file_counts_for_a_row_that_is_made_of_it(project, look, rows):
-    text = KEPT.partition("    for name")[0].replace("import kept", "import kept, stored") + FIRST + SECOND.replace("LOOK", look)
-    text += KEPT[KEPT.index("\n\ndef reference") :]
-    (project / "validation/make/dynamics.py").write_text(f"from gearfe.used import one\n{text}")
-    for words in ((), ("--reference",), ("two",)):
-        told(project, "dynamics", *words)
-    assert "dynamics " not in told(project, "--stale")
-    (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
-    assert f"{rows} of     4 rows old" in told(project, "--stale")
-
-
-def test_a_method_that_an_earlier_row_of_the_process_called_for_a_cache_counts_for_later_rows(project):
-    """Row two finds the value in memory and calls nothing: yet it is old when the method that made it says something else."""
-    cached = "import functools\n\nclass Made:\n    @functools.cache\n    def one(self):\n        return 1\n\nMADE = Made()\n"
-    (project / "gearfe/used.py").write_text(cached)
-    text = KEPT.replace("lambda: {'value': 1}, parts", "lambda: {'value': MADE.one()}, parts")
-    (project / "validation/make/dynamics.py").write_text(f"from gearfe.used import MADE\n{text}")
-    told(project, "dynamics")
-    told(project, "dynamics", "--reference")
-    assert "dynamics " not in told(project, "--stale")
-    (project / "gearfe/used.py").write_text(cached.replace("return 1", "return 2"))
-    assert "2 of     4 rows old" in told(project, "--stale")
-
-
-def test_lines_of_before_calls_were_noted_count_files_whole(project):
-    told(project, "cracks")
-    path = project / "validation/pages/tables/state.jsonl"
-    lines = [json.loads(line) for line in path.read_text().splitlines()]
-    files = {"gearfe": "data.csv used", "validation/make": "cracks"}
-    ask = "from validation.shared.state import digest, files_of; told = {'f': {'files': " + repr(files) + "}}"
-    ask += "; print(digest(list(files_of({'files': 'f'}, told))))"
-    own = {"cwd": project, "env": os.environ | {"PYTHONPATH": ""}, "capture_output": True, "text": True}
-    code = subprocess.run([sys.executable, "-c", ask], check=True, **own).stdout.strip()
-    line = next(line for line in lines if line.get("job") == "cracks") | {"code": code, "files": "0123abcd"}
-    path.write_text("".join(json.dumps(one) + "\n" for one in (line, {"key": "0123abcd", "files": files})))
-    assert old(project) == 0
-    (project / "gearfe/used.py").write_text(MODULE + "\n\ndef other():\n    pass\n")
-    assert old(project) == 2
 
 
 def test_a_module_that_changes_while_a_job_runs_makes_it_fail(project):
