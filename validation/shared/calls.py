@@ -1,10 +1,11 @@
 """Which functions of the project a process called, and what its modules mean with these functions alone.
 
-`begin` loads modules so that each function that stands in no other one notes, as its first act, that it was called: in any thread
-and however it was reached. What was called counts with all that stands in it; of a function that was not called only decorators,
-name and signature count, and everything outside functions always does. Notes are never taken back, so that what a memory cache
-gives brings the functions that filled it. A module counts whole if it was loaded otherwise, as tests are by pytest, or speaks of
-numba, since compiled calls are not seen.
+`begin` loads modules so that each function that stands in no other one notes, as its first act, that it was called: in any
+thread and however it was reached. What was called counts with all that stands in it. Of what was not called a method counts
+with decorators, name and signature, since it may hide another one; a function of a module counts so only if it is decorated
+or named as a builtin, since one more or less changes nothing for the others. Everything outside functions always counts.
+Notes are never taken back, so that what a memory cache gives brings the functions that filled it. A module counts whole if it
+was loaded otherwise, as tests are by pytest, or speaks of numba, since compiled calls are not seen.
 """
 
 import ast
@@ -117,10 +118,13 @@ def meaning(path, names=WHOLE):
 @cache
 def _parts(path):
     """Digests of the functions of a module by name, those of one name together; by the empty name of the rest."""
-    tree, out = ast.parse(path.read_bytes()), {}
+    tree, out, silent = ast.parse(path.read_bytes()), {}, []
     for name, node in functions(tree):
         out[name] = out.get(name, "") + _spelt(node)
         node.body = []
+        if not node.decorator_list and not hasattr(builtins, name):
+            silent.append(node)
+    tree.body = [node for node in tree.body if node not in silent]
     return out | {"": _spelt(tree)}
 
 
