@@ -163,6 +163,15 @@ def stiffness_at(machine, flat, t, x):
     return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0), phase
 
 
+def changing(machine, flat):
+    """Which of the forces of meshes, friction rows and loads change, and the values of those that do not (0 for the others)."""
+    count = np.diff(flat.knot_place)
+    other = len(machine.meshes) + len(flat.rub_mesh)
+    kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
+    still = np.where(count > 1, 0.0, flat.knots[flat.knot_place[:-1], 1][: count.size])
+    return kept, np.concatenate([np.zeros(other), still])
+
+
 def _paced(flat, t):
     """Turned times at times `t`, and the speed over the nominal one."""
     t = np.asarray(t, dtype=float)

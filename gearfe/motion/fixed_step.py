@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from . import excitation, propagator
-from .response import Response, all_channels
+from .response import Response
 from .thinned import thinned
 
 PIECE = 4096  # steps of a run whose channels are in memory at once
@@ -66,18 +66,37 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
     """States kept, statistics, and channels filtered, piece by piece: of the whole run only what is kept stays in memory."""
     kept, total, every = [], {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts)
+    m, errors = len(machine.meshes), bool(flat.error_mesh.size)
+    width = excitation.changing(machine, flat)[0].size + m + (m if errors else 0)
 
     def pieces():
         now = z
         for first in range(0, steps, PIECE):
-            begin = start + plan.h * first
-            states, stats = run(now, min(PIECE, steps - first), 1, start=begin)
+            count = min(PIECE, steps - first)
+            acting = np.empty((count + 1, width))
+            states, stats = run(now, count, 1, start=start + plan.h * first, acting=acting)
             now, new = states[-1], slice(1 if first else 0, None)
             for name in total:
                 total[name] += stats[name]
             kept.append(states[new][-(first + new.start) % every :: every].copy())
-            t = begin + plan.h * np.arange(len(states))[new]
-            yield all_channels(Response(machine, t, states[new], plan.basis), flat)
+            yield np.concatenate([states[new], acting[new]], axis=1)
 
-    channels = thinned(pieces(), counts)
-    return np.concatenate(kept), total, channels
+    told = thinned(pieces(), counts)
+    return np.concatenate(kept), total, _channels(machine, flat, plan, told)
+
+
+def _channels(machine, flat, plan, told):
+    """`Response.filtered` from filtered states and what acts (`gearfe.motion.loop.run`): all the rest is a linear part of them.
+
+    So fewer numbers are filtered than there are channels, and only those that the loop computes in any case.
+    """
+    n, m = len(machine.dofs), len(machine.meshes)
+    kept, still = excitation.changing(machine, flat)
+    states, acting, k, e = np.split(told, np.cumsum([2 * n, kept.size, m]), axis=1)
+    forces = np.tile(still, (len(told), 1))
+    forces[:, kept] = acting
+    q, v = states @ plan.basis[:n].T, states @ plan.basis[n:].T
+    K, C, _, _ = machine.linear(machine.working())
+    a = (forces @ plan.rows - q @ K.T - v @ C.T) / machine.mass
+    x, rate = q @ machine.G.T, v @ machine.G.T
+    return np.concatenate([states, a, x - e if e.size else x, k, forces[:, :m] + plan.k * x + plan.c * rate], axis=1)
