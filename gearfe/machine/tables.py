@@ -271,8 +271,8 @@ class Machine:
         """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
         mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
         for i, mesh in enumerate(self.meshes):
-            if mesh.laws:
-                mean[i], bend[i] = mesh.laws[0].mean(0.0, depth(x, self.law)[i])
+            if mesh.average is not None:
+                mean[i], bend[i] = mesh.average(0.0, depth(x, self.law)[i])
         return mean, bend
 
     @property

@@ -94,7 +94,7 @@ def _laid_out(laws):
             continue
         if id(one.k) not in places:
             places[id(one.k)] = end
-            parts.append(one.k.ravel())
+            parts.append(one.k.T.ravel())
             end += one.k.size
         shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
     return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)

@@ -11,6 +11,7 @@ from .response import Response
 from .thinned import thinned
 
 PIECE = 4096  # steps of a run whose channels are in memory at once
+PART = 512  # samples kept that are worked on at once: what a processor has near at hand
 
 
 def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=()):
@@ -92,11 +93,17 @@ def _channels(machine, flat, plan, told):
     """
     n, m = len(machine.dofs), len(machine.meshes)
     kept, still = excitation.changing(machine, flat)
-    states, acting, k, e = np.split(told, np.cumsum([2 * n, kept.size, m]), axis=1)
-    forces = np.tile(still, (len(told), 1))
-    forces[:, kept] = acting
-    q, v = states @ plan.basis[:n].T, states @ plan.basis[n:].T
+    ends = np.cumsum([2 * n, kept.size, m])
     K, C, _, _ = machine.linear(machine.working())
-    a = (forces @ plan.rows - q @ K.T - v @ C.T) / machine.mass
-    x, rate = q @ machine.G.T, v @ machine.G.T
-    return np.concatenate([states, a, x - e if e.size else x, k, forces[:, :m] + plan.k * x + plan.c * rate], axis=1)
+    out = np.empty((len(told), 3 * n + 3 * m))
+    for first in range(0, len(out), PART):
+        part = slice(first, first + PART)
+        states, acting, k, e = np.split(told[part], ends, axis=1)
+        forces = np.tile(still, (len(states), 1))
+        forces[:, kept] = acting
+        q, v = states @ plan.basis[:n].T, states @ plan.basis[n:].T
+        x, rate = q @ machine.G.T, v @ machine.G.T
+        a = (forces @ plan.rows - q @ K.T - v @ C.T) / machine.mass
+        force = forces[:, :m] + plan.k * x + plan.c * rate
+        np.concatenate([states, a, x - e if e.size else x, k, force], axis=1, out=out[part])
+    return out

@@ -96,7 +96,7 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, t
     """
     affine, rates, bent, stepped, pushing = kind
     m, rub, lawful = total.size, rub_mesh.size, table.size > 0
-    at = now.shape[1] - (shape.shape[0] if lawful else 0)
+    at = now.shape[1] - (2 * shape.shape[0] if lawful else 0)
     for j in range(at - 3 * m - rub):
         g[first + m + rub + j] = now[row, 3 * m + rub + j]
     if affine:  # every mesh stays closed: the same, without asking where it is
@@ -108,12 +108,13 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, t
     for i in range(m):
         v = x[m + i] if rates else 0.0
         k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
-        if lawful and now[row, at + i] >= 0:
+        if lawful and now[row, at + 2 * i] >= 0:
             deep = max(x[i] - e, 0.0) + max(-laws[i, 4] - (x[i] - e), 0.0)
-            k = secant(table, shape, i, now[row, at + i], deep)
+            k = secant(table, shape, i, now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
             for j in range(change_mesh.size):
-                if change_mesh[j] == i and now[row, at + m + j] >= 0:
-                    k += secant(table, shape, m + j, now[row, at + m + j], deep)
+                own = at + 2 * (m + j)
+                if change_mesh[j] == i and now[row, own] >= 0:
+                    k += secant(table, shape, m + j, now[row, own], now[row, own + 1], deep)
             k = max(k, 0.0)
         law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
         whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
@@ -189,7 +190,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
     m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
     table, shape, change_mesh = flat.secant, flat.shape, flat.change_mesh
     whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
-    now = np.zeros((own + 3, 3 * m + f - m + (len(shape) if table.size > 0 else 0)))
+    now = np.zeros((own + 3, 3 * m + f - m + (2 * len(shape) if table.size > 0 else 0)))
     g, last_g, apart = np.zeros(4 * f), np.zeros(f), np.zeros(f)  # forces of the stages 1, 3, 4, 2; at the end; it less stage 4
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
