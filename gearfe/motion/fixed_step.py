@@ -8,10 +8,9 @@ import numpy as np
 
 from . import excitation, propagator
 from .response import Response
-from .thinned import thinned
+from .thinned import thinned_pieces
 
 PIECE = 4096  # steps of a run whose channels are in memory at once
-PART = 512  # samples kept that are worked on at once: what a processor has near at hand
 
 
 def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=False, counts=()):
@@ -66,9 +65,9 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
     """States kept, statistics, and channels filtered, piece by piece: of the whole run only what is kept stays in memory."""
-    kept, total, every = [], {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts)
-    m, errors = len(machine.meshes), bool(flat.error_mesh.size)
-    width = excitation.changing(machine, flat)[0].size + m + (m if errors else 0)
+    total, every, n, m = {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts), len(machine.dofs), len(machine.meshes)
+    kept, channels = np.empty((1 + steps // every, 2 * n)), np.empty((1 + steps // every, 3 * n + 3 * m))
+    width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error_mesh.size else m)
 
     def pieces():
         now = z
@@ -76,34 +75,40 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
             count = min(PIECE, steps - first)
             acting = np.empty((count + 1, width))
             states, stats = run(now, count, 1, start=start + plan.h * first, acting=acting)
-            now, new = states[-1], slice(1 if first else 0, None)
+            now, new = states[-1].copy(), slice(1 if first else 0, None)
             for name in total:
                 total[name] += stats[name]
-            kept.append(states[new][-(first + new.start) % every :: every].copy())
+            some = states[-first % every :: every]
+            at = -(-first // every)
+            kept[at : at + len(some)] = some
             yield np.concatenate([states[new], acting[new]], axis=1)
 
-    told = thinned(pieces(), counts)
-    return np.concatenate(kept), total, _channels(machine, flat, plan, told)
+    done, whole = 0, _channels(machine, flat, plan)
+    for told in thinned_pieces(pieces(), counts):
+        channels[done : done + len(told)] = whole(told)
+        done += len(told)
+    return kept, total, channels
 
 
-def _channels(machine, flat, plan, told):
-    """`Response.filtered` from filtered states and what acts (`gearfe.motion.loop.run`): all the rest is a linear part of them.
+def _channels(machine, flat, plan):
+    """Function that makes `Response.filtered` of filtered states and what acts (`gearfe.motion.loop.run`).
 
-    So fewer numbers are filtered than there are channels, and only those that the loop computes in any case.
+    All channels are a linear part of these, so that fewer numbers are filtered than there are channels, and only such as the
+    loop computes in any case.
     """
     n, m = len(machine.dofs), len(machine.meshes)
     kept, still = excitation.changing(machine, flat)
     ends = np.cumsum([2 * n, kept.size, m])
     K, C, _, _ = machine.linear(machine.working())
-    out = np.empty((len(told), 3 * n + 3 * m))
-    for first in range(0, len(out), PART):
-        part = slice(first, first + PART)
-        states, acting, k, e = np.split(told[part], ends, axis=1)
+
+    def whole(told):
+        states, acting, k, e = np.split(told, ends, axis=1)
         forces = np.tile(still, (len(states), 1))
         forces[:, kept] = acting
         q, v = states @ plan.basis[:n].T, states @ plan.basis[n:].T
         x, rate = q @ machine.G.T, v @ machine.G.T
         a = (forces @ plan.rows - q @ K.T - v @ C.T) / machine.mass
         force = forces[:, :m] + plan.k * x + plan.c * rate
-        np.concatenate([states, a, x - e if e.size else x, k, force], axis=1, out=out[part])
-    return out
+        return np.concatenate([states, a, x - e if e.size else x, k, force], axis=1)
+
+    return whole

@@ -51,9 +51,14 @@ def thinned(pieces, counts):
     -------
     ndarray, shape (kept + 1, c)
     """
+    return np.concatenate(list(thinned_pieces(pieces, counts)))
+
+
+def thinned_pieces(pieces, counts):
+    """As `thinned`, piece by piece."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
-    return np.concatenate(list(_filtered(pieces, counts[-1], REACH, PASSED)))
+    return _filtered(pieces, counts[-1], REACH, PASSED)
 
 
 @cache
