@@ -83,7 +83,7 @@ def _paced(pace, t):
 
 @compiled
 def _row(now, row, at, shape, which, place):
-    """Write into two places from `at` on where the table `which` has its row number `place`, and how far beyond that row it is."""
+    """Write into two places from `at` on where the row `place` of the table `which` is, and how far beyond its middle."""
     i = min(max(int(place + 0.5), 1), int(shape[which, 1]) - 2)
     now[row, at], now[row, at + 1] = shape[which, 0] + i, place + 0.5 - i
 
