@@ -8,6 +8,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ..scene.load import Scene
 from ..stiffness.curve import StiffnessCurve
 from .compound_planetary import scene_compound
@@ -27,6 +29,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "helical_pair": {"linear": scene_pair, "impact": impact_helical},
     "herringbone_planetary": {"linear": scene_herringbone},
 }
+EVEN = 1e-9  # how far phases may lie from equal distances
 ROUGH = 8  # phases of the curves that tell these forces
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
@@ -91,13 +94,23 @@ def build_machine(
 
 
 def with_flanks(machine):
-    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves have one."""
+    """The machine with the unloaded transmission error of modified flanks in the meshes whose curves or laws have one."""
     found = {
-        mesh.name: Samples(mesh.stiffness.phase, mesh.stiffness.unloaded)
+        mesh.name: _unloaded(mesh.stiffness)
         for mesh in machine.meshes
         if isinstance(mesh.stiffness, (StiffnessCurve, ForceLaw)) and mesh.stiffness.unloaded is not None
     }
     return with_errors(machine, profile=found) if found else machine
+
+
+def _unloaded(curve):
+    """Unloaded error at the phases of a curve; of a law at those equally spaced, without what is solved where pairs come in."""
+    phase = curve.phase
+    if isinstance(curve, ForceLaw):
+        at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()
+        kept = np.abs(phase[:, None] - at).min(axis=1) < EVEN
+        return Samples(phase[kept], curve.unloaded[kept])
+    return Samples(phase, curve.unloaded)
 
 
 def with_scene_errors(scene, machine):

@@ -15,6 +15,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import cumulative_simpson
 
 import gearfe as gf
+from gearfe.machine.of_scene import with_flanks
 
 STEEL = gf.Material(E=207e3, nu=0.25)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -45,6 +46,22 @@ def test_turned_slowly_a_mesh_has_its_static_transmission_error_at_every_load(lo
     assert rms(got[8:] / want[8:] - 1) < 2e-3
     assert_allclose(got[8:], want[8:], rtol=1e-2, err_msg="the worst is between two phases solved where a pair comes in")
     assert abs(np.ptp(got[8:]) / np.ptp(want[8:]) - 1) < 0.01
+
+
+@pytest.mark.parametrize("load", [300.0, 1600.0])
+def test_relieved_flanks_turned_slowly_have_the_transmission_error_that_the_contact_has(load):
+    """Unloaded gaps and deflections together, at loads that close the relief and at such that do not."""
+    gears = {"pinion": PAIR.gear_1, "wheel": PAIR.gear_2}
+    flanks = {side: gf.Flank(tip_relief=0.01, tip_start_diameter=2 * one.r_a - 1.5) for side, one in gears.items()}
+    relieved = gf.force_law(PAIR, [50.0 * 2 ** (i / 2) for i in range(13)], STEEL, force=1600.0, flanks=flanks)
+    frequency = 2.0
+    machine = with_flanks(mass(relieved, frequency, load, damping=20 * DAMPING))
+    response = gf.simulate(machine, 1 / frequency, rate=128 * frequency, filtered=False)
+    want = gf.mesh_stiffness(PAIR, load, STEEL, phases=128, flanks=flanks).te
+    got = response["pair.x"][:128]
+    assert rms(got[8:] / want[8:] - 1) < 5e-3
+    assert_allclose(got[8:], want[8:], rtol=2e-2)
+    assert rms(gf.mesh_stiffness(PAIR, load, STEEL, phases=128).te[8:] / want[8:] - 1) > 0.05, "the relief matters"
 
 
 def test_a_cracked_tooth_turned_slowly_has_its_static_transmission_error():
