@@ -22,7 +22,18 @@ PARTS = {  # what is computed at once, where that is not the page
     "outlines": ("", "arbiter"),
     "three": ("", "decks"),
 }
-ROWS = ("detection", "dynamics", "hard", "holes", "map", "outlines", "sample", "sweeps", "three")  # parts: rows, by beginnings
+ROWS = (
+    "detection",
+    "dynamics",
+    "hard",
+    "holes",
+    "map",
+    "outlines",
+    "rig",
+    "sample",
+    "sweeps",
+    "three",
+)  # parts: rows, by beginnings
 ALONE = ("speed", "sweeps")  # pages that say what time things take
 CONTINUED = {  # tables that a job continues where they lie: it counts as computed only if it begins without them
     "flanks --reference": ("flanks_calculix.csv", "flanks_fe.csv", "flanks_fe3d.csv", "flanks_three.csv"),

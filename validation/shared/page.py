@@ -27,6 +27,7 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "printed": "What became of every number that the articles print?",
     "machines": "Which printed numbers of four machines are reproduced?",
     "measured": "Does gearfe find what others measured?",
+    "rig": "Do resonances and jumps of a single pair on a test rig come out?",
     "pictures": "What do the damaged teeth of the scenes look like under load?",
 }
 
