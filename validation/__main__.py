@@ -27,6 +27,7 @@ ROWS = (
     "dynamics",
     "hard",
     "holes",
+    "joint",
     "map",
     "outlines",
     "rig",

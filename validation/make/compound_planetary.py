@@ -13,6 +13,7 @@ from gearfe.files import written
 from gearfe.machine.compound_planetary import compound_planetary
 from gearfe.units import in_newton_per_um
 
+from ..shared.joint_inputs import Draw, changed, noise, through_mode
 from ..shared.places import TABLES
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
 from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies  # noqa: F401
@@ -23,6 +24,11 @@ RATE, SECONDS, SETTLE = 5120.0, 3.3, 0.5  # the rate of S2
 SAMPLED = 24 * 2184.0  # Hz, 2184 is the least common multiple of both mesh frequencies: what folds, folds onto multiples of 14 Hz
 NOISE = 0.5  # of the standard deviation of the healthy signal; assumed
 SENSOR = "ring.theta acceleration"  # planets in phase cancel in x and y
+SUN, HOUSING = "sun2.theta velocity", "ring's acceleration through a mode"
+DRAWN, DRAWN_SETTLE = 1.6, 0.5  # s, of a draw of the unprinted inputs
+BAND = (500.0, 1000.0)  # Hz, in which S2 sees more and larger sidebands of the broken sun 2
+ABOVE = 3.0  # of the healthy line: a larger one
+HIGHEST = 2000.0  # Hz, below which S2 expects the dominant frequencies
 
 
 @cache
@@ -41,41 +47,47 @@ def _made(case):
 
 
 @cache
-def _response(case):
+def _response(case, law=HEARD):
+    if isinstance(law, Draw):
+        return record(changed(_made(case), law), DRAWN, SAMPLED, DRAWN_SETTLE)
     return record(_made(case), SECONDS, SAMPLED, SETTLE)
 
 
 @cache
-def _whole(case):
-    """Angular acceleration of the ring as simulated."""
-    return signal(_response(case), SENSOR)
+def _whole(case, law=HEARD, channel=SENSOR):
+    """A channel as simulated: the angular acceleration of the ring."""
+    one = signal(_response(case, law), SENSOR if channel == HOUSING else channel)
+    return through_mode(one, law, frequencies()[0][1]) if channel == HOUSING else one
 
 
 @cache
-def heard(case):
+def heard(case, law=HEARD, channel=SENSOR):
     """The same behind an anti-aliasing filter, at the rate of S2."""
     ratio = Fraction(round(RATE), round(SAMPLED))
-    values = resample_poly(_whole(case).values, ratio.numerator, ratio.denominator)
-    cut = slice(round(0.05 * RATE), round((SECONDS - 0.05) * RATE))  # where the filter has its whole length
-    return gf.Signal(values[cut], RATE, _whole(case).unit, case or "healthy")
+    values = resample_poly(_whole(case, law, channel).values, ratio.numerator, ratio.denominator)
+    length = DRAWN if isinstance(law, Draw) else SECONDS
+    cut = slice(round(0.05 * RATE), round((length - 0.05) * RATE))  # where the filter has its whole length
+    return gf.Signal(values[cut], RATE, _whole(case, law, channel).unit, case or "healthy")
 
 
 @cache
-def _noisy(case):
+def _noisy(case, law=HEARD, channel=SENSOR):
     """With noise of one size for all cases."""
-    level = NOISE * heard(None).values.std()
-    return noisy(heard(case), level / heard(case).values.std())
+    one, healthy = heard(case, law, channel), heard(None, law, channel).values.std()
+    if isinstance(law, Draw):
+        more = law["noise"] * healthy * noise(law, f"{case} {channel}", one.values.size)
+        return gf.Signal(one.values + more, one.rate, one.unit, one.name)
+    return noisy(one, NOISE * healthy / one.values.std())
 
 
 def kurtosis():
     """Of 1 s of the signals with noise."""
-    cut = {name: _noisy(case) for name, case in (("healthy", None), ("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))}
-    return {name: gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"] for name, one in cut.items()}
+    return {name: _of_second(case) for name, case in (("healthy", None), ("sun 1 broken", "sun 1"), ("sun 2 broken", "crack80"))}
 
 
 @cache
-def _kurtogram(case):
-    found = gf.fast_kurtogram(_noisy(case), levels=7)
+def _kurtogram(case, law=HEARD, channel=SENSOR):
+    found = gf.fast_kurtogram(_noisy(case, law, channel), levels=5 if isinstance(law, Draw) else 7)  # as many as its length has
     return float(found.level[found.best]), float(found.centre[found.best]), found.band
 
 
@@ -97,32 +109,85 @@ def _stands_out(found, frequency, near=3.0):
     return amplitude(found, frequency) > 3 * np.median(beside)
 
 
-def _sideband(case, mesh, fault):
-    """Amplitude of the first sidebands of a stage over its mesh line, without noise."""
-    found = spectrum(_whole(case))
+def _sideband(case, mesh, fault, law=HEARD, channel=SENSOR):
+    """Amplitude of the first sidebands of a stage, without noise."""
+    found = spectrum(_whole(case, law, channel))
     return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
 
 
-def statements():
+def statements(law=HEARD, channel=SENSOR):
     """What S2 says of its spectra; see the scene for the words."""
     mesh, fault = frequencies()
-    grown = [_sideband(case, mesh[1], fault[1]) for case in LEVELS.values()]
-    healthy = _sideband(None, mesh[1], fault[1])
-    one = _sideband("sun 1", mesh[0], fault[0]), _sideband(None, mesh[0], fault[0])
-    found = spectrum(_whole(None))
+    grown = [_sideband(case, mesh[1], fault[1], law, channel) for case in LEVELS.values()]
+    healthy = _sideband(None, mesh[1], fault[1], law, channel)
+    one = [_sideband(case, mesh[0], fault[0], law, channel) for case in ("sun 1", None)]
+    whole = _whole(None, law, channel)
+    found = spectrum(whole)
     size = sum(amplitude(found, n * f) ** 2 for f in mesh for n in range(1, 141))
-    squared = {case: gf.squared_envelope_spectrum(_noisy(case), _kurtogram(case)[2]) for case in ("sun 1", "crack80")}
+    broken = ("sun 1", "crack80")
+    squared = {
+        case: gf.squared_envelope_spectrum(_noisy(case, law, channel), _kurtogram(case, law, channel)[2]) for case in broken
+    }
     sun, planet = scene(NAME).gears["sun"], scene(NAME).gears["planet"]
     return {
         "root circles smaller than base circles (external gears)": sun.r_f < sun.r_b and planet.r_f < planet.r_b,
-        "healthy: only mesh frequencies and their harmonics": size / 2 > 0.99 * _whole(None).values.var(),
+        "healthy: only mesh frequencies and their harmonics": size / 2 > 0.99 * whole.values.var(),
         "crack in sun 1: sidebands f_m1 +- 16.8 Hz": one[0] > 10 * one[1],
         "crack in sun 2: sidebands f_m2 +- 18.2 Hz": grown[3] > 10 * healthy,
         "sidebands grow with the crack": bool((np.diff(grown[:4]) > 0).all()),
         "10 %: sidebands too small to be identified": grown[0] < 0.1 * grown[3],
         "squared envelope of the best band has 16.8 Hz (sun 1)": _stands_out(squared["sun 1"], fault[0]),
         "squared envelope of the best band has 18.2 Hz (sun 2)": _stands_out(squared["crack80"], fault[1]),
+        "dominant frequencies are below 2000 Hz": below(law, channel) > 0.5,
+        "sun 2 broken: more sidebands from 500 to 1000 Hz": more_lines(law, channel)[0] > 0.5,
+        "most of them larger than the healthy ones": more_lines(law, channel)[1] > 0.5,
+        "broken teeth raise the kurtosis": _of_second(None, law, channel) < min(_of_second(c, law, channel) for c in broken),
     }
+
+
+def below(law=HEARD, channel=SENSOR):
+    """Part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
+    found = spectrum(_whole(None, law, channel))
+    frequency, height = found.within(0.0, found.frequency[-1])
+    return float((height[frequency < HIGHEST] ** 2).sum() / (height**2).sum())
+
+
+def more_lines(law=HEARD, channel=SENSOR):
+    """Parts of the lines f_2 apart in `BAND`, off mesh harmonics, that are `ABOVE` times and that are above the healthy ones."""
+    mesh, fault = frequencies()
+    hurt, healthy = (spectrum(_noisy(case, law, channel)) for case in ("crack80", None))
+    places = [n * mesh[1] + k * fault[1] for n in range(7) for k in range(-5, 6) if k]
+    places = [f for f in places if BAND[0] < f < BAND[1] and min(abs(f - m * round(f / m)) for m in mesh) > 3.0]
+    ratio = np.array([amplitude(hurt, f) / amplitude(healthy, f) for f in places])
+    return float((ratio > ABOVE).mean()), float((ratio > 1.0).mean())
+
+
+def _of_second(case, law=HEARD, channel=SENSOR):
+    """Kurtosis of 1 s of a signal with noise."""
+    one = _noisy(case, law, channel)
+    return gf.Signal(one.values[: round(RATE)], RATE, one.unit).indicators()["kurtosis"]
+
+
+PRINTED = {  # numbers that draws are set beside: by name, the reference
+    f"kurtosis, {SENSOR}": "kurtosis",
+    f"centre, {SENSOR}": "kurtogram_centre",
+    f"kurtosis, {HOUSING}": "kurtosis",
+    f"centre, {HOUSING}": "kurtogram_centre",
+}
+
+
+def drawn(draw):
+    """Whether the statements hold with the inputs of a draw, by statement and channel, and kurtoses and kurtograms."""
+    holds, numbers = {}, {}
+    for channel in (SENSOR, SUN, HOUSING):
+        for name, found in statements(draw, channel).items():
+            holds.setdefault(name, {})[channel] = bool(found)
+        numbers[f"kurtosis, {channel}"] = [_of_second(case, draw, channel) for case in (None, "sun 1", "crack80")]
+        numbers[f"centre, {channel}"] = [_kurtogram(case, draw, channel)[1] for case in ("sun 1", "crack80")]
+    del holds["root circles smaller than base circles (external gears)"]
+    for one in (_response, _whole, heard, _noisy, _kurtogram):
+        one.cache_clear()
+    return {"holds": holds, "numbers": numbers}
 
 
 def write_more():
@@ -204,5 +269,6 @@ SIMULATED = {
     "kurtogram_level": kurtogram_level,
     "kurtogram_centre": kurtogram_centre,
     "statements": statements,
+    "further": statements,
 }
 RUN_OF = dict.fromkeys(SIMULATED, HEARD)

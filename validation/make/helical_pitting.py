@@ -6,46 +6,49 @@ from functools import cache
 import numpy as np
 
 import gearfe as gf
-from gearfe.machine.contact_law import hertz_coefficient
-from geometry.pair.lines import total_length
 
+from ..shared.joint_inputs import Draw, changed, noise, through_mode
 from ..shared.laws import beside, tables
-from ..shared.simulated import amplitude, machine, own_law, periodic, record, scene, signal, spectrum, told
+from ..shared.simulated import amplitude, machine, own_law, periodic, record, signal, spectrum, told
+from .helical_numbers import CASES, NAME, QUICK, frequencies, lines_of_lost_length, pair  # noqa: F401
 
-NAME = "helical_pitting"
-CASES = ("minor", "severe", "multi")
 SECONDS, SETTLE = 0.48, 0.24  # 20 turns of the pinion, after 10
 RATE = 128 * 2500 / 60 * 17  # a multiple of f_m
 FORCE = "force mesh"
+PINION, HOUSING = "pinion.y acceleration", "pinion's acceleration through a mode"
 OWN, LINEAR = "impact law", "linear stiffness"
-
-
-def pair():
-    """The pair."""
-    return scene(NAME).pair().pair
-
-
-def frequencies():
-    """Turning frequency of the pinion and mesh frequency [Hz]."""
-    turn = scene(NAME).machine["speed_rpm"] / 60
-    return {"f_r": turn, "f_m": turn * pair().gear_1.z}
-
-
-def theory():
-    """Of the article's table."""
-    return frequencies()
+HIGH = 1.1  # of the healthy signal's largest deviation: a high impact
+SLIGHTLY = 0.1  # of the healthy mesh line
 
 
 @cache
-def _found(case, law=OWN):
-    """Spectrum of the simulated mesh force."""
-    return spectrum(signal(_record(case, law), FORCE))
+def _found(case, law=OWN, channel=FORCE):
+    """Spectrum of a channel, the simulated mesh force."""
+    return spectrum(_heard(case, law, channel))
+
+
+@cache
+def _heard(case, law=OWN, channel=FORCE):
+    """A channel; of a draw with its noise, a part of the standard deviation of the minor case."""
+    one = _clean(case, law, channel)
+    if not isinstance(law, Draw):
+        return one
+    size = law["noise"] * _clean("minor", law, channel).values.std()
+    return replace(one, values=one.values + size * noise(law, f"{case} {channel}", one.values.size))
+
+
+@cache
+def _clean(case, law, channel):
+    one = signal(_record(case, law), PINION if channel == HOUSING else channel)
+    return through_mode(one, law, frequencies()["f_m"]) if channel == HOUSING else one
 
 
 @cache
 def _record(case, law=OWN):
-    """Response of a case under S3's law, its load shared by contact lines, or with linear stiffness curves."""
+    """Response of a case under S3's law, its load shared by contact lines, with linear stiffness curves, or of a `Draw`."""
     name = None if case == "healthy" else case
+    if isinstance(law, Draw):
+        return record(changed(own_law(NAME, name, pulsed=False), law), SECONDS, RATE, 2 * SETTLE)
     if law == OWN:
         return record(own_law(NAME, name, pulsed=False), SECONDS, RATE, SETTLE)
     return record(machine(NAME, name), SECONDS, RATE, SETTLE, periodic(NAME, name))
@@ -57,117 +60,97 @@ def simulated():
     return {name: lines[name][0] for name in frequencies()}
 
 
-def measured():
-    """At 2500 rpm."""
-    return frequencies()
-
-
-def errors_simulated():
-    """Errors [%] of the article's table from its own printed values."""
-    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.62), ("f_m", 708.33, 708.09))}
-
-
-def errors_measured():
-    """The same for its measurement."""
-    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.23), ("f_m", 708.33, 707.48))}
-
-
-def one_speed():
-    """Pinion speed [rpm] of the printed simulated and measured mesh frequency over that of the turning frequency."""
-    rows = {"simulated": (41.62, 708.09), "measured": (41.23, 707.48)}
-    return {name: mesh / turn / pair().gear_1.z for name, (turn, mesh) in rows.items()}
-
-
-def impact_period():
-    """One turn of the pinion [s]."""
-    return {"severe": 1 / frequencies()["f_r"]}
-
-
-def hertz():
-    """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
-    radii = pair().curvature_radii(pair().pitch_phase) / np.cos(pair().gear_1.beta_b)
-    return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
-
-
-def contact_ratios():
-    """Transverse, overlap and total contact ratio."""
-    over = pair().eps_beta
-    return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
-
-
-def line_length():
-    """Of all contact lines over a cycle [mm], and the least with pits."""
-    length = total_length(pair(), np.arange(400) / 400)
-    out = {"mean": length.mean(), "least": length.min(), "most": length.max()}
-    phase = np.linspace(-0.1, sum(contact_ratios()[name] for name in ("transverse", "overlap")) + 0.1, 1200)
-    whole = total_length(pair(), phase)
-    for case in CASES:
-        pits = scene(NAME).pair().damage[case]["pinion"]
-        out[f"{case}, most lost"] = (whole - total_length(pair(), phase, pits=(pits, ()))).max()
-    return {name: float(value) for name, value in out.items()}
-
-
-def _low(case, n, law=OWN):
+def _low(case, n, law=OWN, channel=FORCE):
     """Amplitude at n f_r [N]."""
-    return amplitude(_found(case, law), n * frequencies()["f_r"])
+    return amplitude(_found(case, law, channel), n * frequencies()["f_r"])
 
 
-def _largest(case, law=OWN):
+def _largest(case, law=OWN, channel=FORCE):
     """Which of f_r, 2 f_r, 3 f_r has the largest amplitude."""
-    return 1 + int(np.argmax([_low(case, n, law) for n in (1, 2, 3)]))
+    return 1 + int(np.argmax([_low(case, n, law, channel) for n in (1, 2, 3)]))
 
 
-def _side(case, n, m, law=OWN):
+def _side(case, n, m, law=OWN, channel=FORCE):
     """Mean amplitude at n f_m +- m f_r [N]."""
     turn, mesh = frequencies().values()
-    found = _found(case, law)
+    found = _found(case, law, channel)
     return (amplitude(found, n * mesh - m * turn) + amplitude(found, n * mesh + m * turn)) / 2
 
 
-def _impacts(case, law=OWN):
+def _impacts(case, law=OWN, channel=FORCE):
     """Largest force within a turn over the median of the others' largest, folded by tooth: one tooth must stand out."""
-    force = signal(_record(case, law), FORCE).values
+    force = _heard(case, law, channel).values
     turn = round(RATE / frequencies()["f_r"])
     own = np.abs(force - force.mean())[: force.size // turn * turn].reshape(-1, turn).mean(axis=0)
     by_tooth = own[: turn // 17 * 17].reshape(17, -1).max(axis=1)
     return float(by_tooth.max() / np.median(by_tooth))
 
 
-def _lines_of_lost_length(teeth):
-    """Amplitudes at f_r and 2 f_r of the contact line [mm] lost to the case `multi` with its pits on these pinion teeth."""
-    count = 64
-    pits = [replace(pit, tooth=tooth) for pit, tooth in zip(scene(NAME).pair().damage["multi"]["pinion"], teeth, strict=True)]
-    phase = np.arange(17 * count) / count
-    lost = total_length(pair(), phase) - total_length(pair(), phase, pits=(pits, ()))
-    return 2 * np.abs(np.fft.rfft(lost))[1:3] / lost.size
+def _high(case, law=OWN, channel=FORCE):
+    """Mesh cycles in a turn in which the signal deviates more than `HIGH` times as far as the healthy one ever does."""
+    deviation = {name: np.abs(one - one.mean()) for name in ("healthy", case) for one in (_heard(name, law, channel).values,)}
+    cycle = round(RATE / frequencies()["f_m"])
+    own = deviation[case][: deviation[case].size // cycle * cycle].reshape(-1, cycle).max(axis=1)
+    return float((own > HIGH * deviation["healthy"].max()).mean() * pair().gear_1.z)
 
 
-def statements(law=OWN):
+def _mesh_lines(case, law=OWN, channel=FORCE):
+    """Lines at f_m and 2 f_m over the healthy ones."""
+    found, healthy = _found(case, law, channel), _found("healthy", law, channel)
+    return [amplitude(found, n * frequencies()["f_m"]) / amplitude(healthy, n * frequencies()["f_m"]) for n in (1, 2)]
+
+
+def statements(law=OWN, channel=FORCE):
     """What S3 says of its spectra; see the scene for the words."""
     mesh = frequencies()["f_m"]
-    healthy = _found("healthy", law)
+    healthy = _found("healthy", law, channel)
     main = amplitude(healthy, mesh) ** 2 + amplitude(healthy, 2 * mesh) ** 2
-    power = signal(_record("healthy", law), FORCE).values.var()
-    minor, severe = ([_low(case, n, law) for n in (1, 2, 3)] for case in ("minor", "severe"))
-    sides = {case: [_side(case, n, m, law) for n in (1, 2) for m in (1, 2)] for case in ("healthy", *CASES)}
+    power = _heard("healthy", law, channel).values.var()
+    minor, severe = ([_low(case, n, law, channel) for n in (1, 2, 3)] for case in ("minor", "severe"))
+    sides = {case: [_side(case, n, m, law, channel) for n in (1, 2) for m in (1, 2)] for case in ("healthy", *CASES)}
+    whole = max(_low("healthy", n, law, channel) for n in (1, 2, 3))
+    lines = [line for case in ("minor", "severe") for line in _mesh_lines(case, law, channel)]
     out = {
         "healthy: f_m and 2 f_m dominate": main / 2 > 0.5 * power,
         "healthy: no sidebands": max(sides["healthy"]) < 0.01 * min(sides["severe"]),
-        "minor and severe: f_r, 2 f_r, 3 f_r appear": min(minor + severe) > 10 * max(_low("healthy", n, law) for n in (1, 2, 3)),
+        "minor and severe: f_r, 2 f_r, 3 f_r appear": min(minor + severe) > 10 * whole,
         "they grow from minor to severe": all(a < b for a, b in zip(minor, severe, strict=True)),
         "sidebands grow from minor to severe": all(a < b for a, b in zip(sides["minor"], sides["severe"], strict=True)),
-        "severe: impacts once a turn stand out": _impacts("severe", law) > 1.5,
-        "minor: no such impacts": _impacts("minor", law) < 1.5,
-        "multi: 2 f_r is the largest low line": _largest("multi", law) == 2,
-        "severe: f_r is the largest low line": _largest("severe", law) == 1,
+        "severe: impacts once a turn stand out": _impacts("severe", law, channel) > 1.5,
+        "minor: no such impacts": _impacts("minor", law, channel) < 1.5,
+        "multi: 2 f_r is the largest low line": _largest("multi", law, channel) == 2,
+        "severe: f_r is the largest low line": _largest("severe", law, channel) == 1,
         "multi: sidebands at 2 f_r above those at f_r": sides["multi"][1] > sides["multi"][0],
         "severe: sidebands at f_r above those at 2 f_r": sides["severe"][0] > sides["severe"][1],
+        "multi: fewer high impacts than severe": _high("multi", law, channel) < _high("severe", law, channel),
+        "minor and severe: f_m and 2 f_m change slightly": max(abs(one - 1) for one in lines) < SLIGHTLY,
     }
     if law == OWN:
-        same, opposite = _lines_of_lost_length((0, 0, 0)), _lines_of_lost_length((0, 0, 8))
+        same, opposite = lines_of_lost_length((0, 0, 0)), lines_of_lost_length((0, 0, 8))
         out["multi, all pits on one tooth: lost contact line has most at 2 f_r"] = bool(same[1] > same[0])
         out["multi, two pits on tooth 0 and one on tooth 8: the same"] = bool(opposite[1] > opposite[0])
     return out
+
+
+def drawn(draw):
+    """Whether the statements hold with the inputs of a draw, by statement and channel."""
+    holds = {}
+    for channel in (FORCE, PINION, HOUSING):
+        for name, found in statements(draw, channel).items():
+            holds.setdefault(name, {})[channel] = bool(found)
+    for one in (_found, _heard, _clean, _record):
+        one.cache_clear()
+    return {"holds": holds, "numbers": {}}
+
+
+def _many(law=OWN):
+    """High impacts a turn by case."""
+    return {case: _high(case, law) for case in CASES}
+
+
+def _of_mesh(law=OWN):
+    """Mesh lines of the pitted pinion over the healthy one's."""
+    return {f"{case}, {n} f_m": _mesh_lines(case, law)[n - 1] for case in CASES for n in (1, 2)}
 
 
 def _by_turn(law=OWN):
@@ -191,6 +174,8 @@ BESIDE = {
     "low lines [N]": _by_turn,
     "lines about f_m [N]": _about_mesh,
     "largest force of the damaged tooth over the others'": _standing_out,
+    "high impacts in a turn: mesh cycles beyond 1.1 times the healthy pair's largest deviation": _many,
+    "line over that of the healthy pair": _of_mesh,
     "the article says": statements,
 }
 BOTH = (
@@ -229,16 +214,5 @@ def draw(folder):
     )
 
 
-QUICK = {
-    "theory": theory,
-    "measured": measured,
-    "errors_simulated": errors_simulated,
-    "errors_measured": errors_measured,
-    "one_speed": one_speed,
-    "impact_period": impact_period,
-    "hertz_coefficient": hertz,
-    "contact_ratios": contact_ratios,
-    "line_length": line_length,
-}
-SIMULATED = {"simulated": simulated, "statements": statements}
-RUN_OF = {"simulated": OWN, "statements": OWN}
+SIMULATED = {"simulated": simulated, "statements": statements, "further": statements}
+RUN_OF = dict.fromkeys(SIMULATED, OWN)

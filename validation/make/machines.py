@@ -2,6 +2,7 @@
 
 import importlib
 import time
+import tomllib
 import warnings
 from functools import cache
 from pathlib import Path
@@ -9,9 +10,11 @@ from pathlib import Path
 import gearfe as gf
 from gearfe.files import written
 from gearfe.scene import verdicts
+from gearfe.scene.references import read_references
 
 from ..shared import places, table_rows
 from ..shared.openings import OPENINGS
+from . import joint
 
 FOLDER = places.PAGES
 PAGES = {  # page and its module: scene
@@ -40,9 +43,14 @@ def module(page):
     return importlib.import_module(f"validation.make.{page}")
 
 
+FURTHER = places.SOURCES / "statements.toml"
+
+
 def references(page):
-    """References of its scene that the page computes."""
-    return [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
+    """References of its scene that the page computes, and further statements."""
+    more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))[page]
+    own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
+    return [*own, *read_references(FURTHER.name, more, {})]
 
 
 def functions(page, *, quick=False):
@@ -84,7 +92,8 @@ def text(page):
         f"{scene.source}.",
         "",
         f"Made by `python -m validation machines {page}` from [tables/{page}.csv](tables/{page}.csv); the printed values",
-        f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`.",
+        f"are the `[[reference]]` rows of `gearfe/scenes/{PAGES[page]}.toml`, the last statements those of "
+        "`validation/sources/statements.toml`.",
         "Verdicts are computed: *reproduced*: within the tolerance; *after a stated correction*: of the corrected value, "
         "which alone",
         "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
@@ -95,6 +104,7 @@ def text(page):
         verdicts.text(references(page), rows),
         "",
         *runs_of(page, rows),
+        *joint.section(page),
         *(home.more() if hasattr(home, "more") else ()),
     ]
     for name, caption in home.PICTURES.items():

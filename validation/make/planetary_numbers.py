@@ -1,5 +1,8 @@
 """What articles S0 and S1 print and no simulation is needed for: frequencies, geometry, contact lines."""
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 
 import gearfe as gf
@@ -17,6 +20,23 @@ BINS = 61440 / 307200  # Hz, of the measured spectra
 def stage():
     """Pairs sun-planet and planet-ring."""
     return scene(NAME).pairs["sun_planet"], scene(NAME).pairs["planet_ring"]
+
+
+@cache
+def lined():
+    """The scene with the N pits of a level on one line of contact, as the articles' L = 2 b - N l has them.
+
+    On the pitch circle, evenly over the width, of the size that the scene assumes; the scene itself has rows of five on one, two
+    and three lines.
+    """
+    own, pair = scene(NAME), scene(NAME).pairs["sun_planet"]
+    width, damage = pair.pair.gear_1.b, {}
+    for case in CASES:
+        pits = pair.damage[case]["pinion"]
+        places = (np.arange(len(pits)) + 0.5) / len(pits) * width
+        row = [replace(pits[0], radius=pair.pair.pitch_radius_1, z=float(z)) for z in places]
+        damage[case] = pair.damage[case] | {"pinion": row}
+    return replace(own, pairs=own.pairs | {"sun_planet": replace(pair, damage=damage)})
 
 
 def speeds():
@@ -86,12 +106,12 @@ def contact_ratio():
 
 
 def lengths(count=400):
-    """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same rows.
+    """Phases over the tooth's engagement, length of all contact lines [mm] by case, and S0's formulas for the same pits.
 
     S0: a pit takes the chord ``l = sqrt((D/2)**2 - (D/2 - d)**2)`` (half of a circle's chord), d the distance of the contact
     from the pit's edge; N pits take N l.
     """
-    outer, _ = stage()
+    outer = lined().pairs["sun_planet"]
     pair = outer.pair
     phase = (np.arange(count) + 0.5) / count * (pair.eps_alpha + 0.5) - 0.25
     out = {"healthy": total_length(pair, phase)}

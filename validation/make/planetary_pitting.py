@@ -7,64 +7,51 @@ import numpy as np
 import gearfe as gf
 
 from ..shared.laws import beside, tables
-from ..shared.simulated import amplitude, knocked, machine, own_law, record, scene, signal, spectrum, told
+from ..shared.simulated import amplitude, own_law, record, scene, signal, spectrum, told
 from . import centroid
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
+from .planetary_repeats import (  # noqa: F401
+    PRINTED,
+    about_impacts,
+    about_spectra,
+    drawn,
+    further,
+    section,
+    spread,
+    strewn,
+    write_repeats,
+)
+from .planetary_runs import (  # noqa: F401
+    FORCE,
+    LINEAR,
+    OWN,
+    RATE,
+    ROWS,
+    SECONDS,
+    SENSOR,
+    SETTLE,
+    STEADY,
+    linear,
+    record_of,
+    ring_path,
+    sidebands_of,
+    spectrum_of,
+    values_of,
+)  # fmt: skip
 
-SECONDS, SETTLE = 2.0, 0.25
-RATE = 10000.0  # S0: 100 000 steps in 10 s
 FINE = 256 * 280.0  # above twice the highest natural frequency, 16.5 kHz; a multiple of f_m
-OWN, LINEAR = "impact law", "linear stiffness"
-STEADY = ", no pulses"
-FORCE, SENSOR = "force sun_planet1", "ring.y acceleration"
-
-
-@cache
-def _record(case, impact, law=OWN):
-    """Response of a case with or without pulses on the carrier, under S0's law or with linear stiffness curves."""
-    name, options = None if case == "healthy" else case, scene(NAME).machine["impact"]
-    if law == OWN:
-        made = own_law(NAME, name, pulsed=impact)
-    else:
-        made = machine(NAME, name)
-        made = knocked(made, "carrier torque", options, SECONDS + SETTLE) if impact else made
-    return record(made, SECONDS, RATE, SETTLE)
-
-
-@cache
-def _values(case, impact, channel=FORCE, law=OWN):
-    """Indicators of a channel."""
-    return signal(_record(case, impact, law), channel).indicators(*speeds()[2:])
-
-
-@cache
-def _spectrum(case, impact, channel=FORCE, law=OWN):
-    return spectrum(signal(_record(case, impact, law), channel))
-
-
-BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
-
-
-def ring_path():
-    """Window of a ring-fixed sensor: the thin ring between root circle and rim of the scene, on its bearing as a foundation."""
-    ring = scene(NAME).pairs["planet_ring"].pair.gear_2
-    thick, radius = 1e-3 * (ring.r_rim - ring.r_f), 5e-4 * (ring.r_rim + ring.r_f)
-    bending = 1e6 * scene(NAME).pairs["planet_ring"].materials[1].E * 1e-3 * ring.b * thick**3 / 12
-    return gf.ring_window(radius, bending, BEARING / (np.pi * radius))
-
-
 PATHS = {"raised cosine": lambda: None, "ring on its bearing": ring_path}
 
 
 @cache
 def _housing(case, path="raised cosine"):
     """Spectrum of the forces in the ring's meshes as a sensor on the ring hears them through a path, without pulses."""
-    return spectrum(gf.housing_signal(_record(case, False), window=PATHS[path]()))
+    return spectrum(gf.housing_signal(record_of(case, False), window=PATHS[path]()))
 
 
 def sc_simulated(law=OWN):
     """S0's definition on the force of a sun mesh, under impacts."""
-    return {case: _values(case, True, law=law)["SC (S0)"] for case in CASES}
+    return {case: values_of(case, True, law=law)["SC (S0)"] for case in CASES}
 
 
 def sc_measured(law=OWN):
@@ -73,7 +60,7 @@ def sc_measured(law=OWN):
 
 
 def _measured(name, law):
-    return {case: _values(case, True, SENSOR, law)[name] for case in CASES}
+    return {case: values_of(case, True, SENSOR, law)[name] for case in CASES}
 
 
 def rms(law=OWN):
@@ -96,19 +83,12 @@ def amplitudes(law=OWN):
     return _measured("peak", law)
 
 
-def _sidebands(case, law=OWN):
-    """Mean amplitude of the force at f_m +- f_fault without pulses [N]."""
-    mesh, fault = speeds()[2:]
-    found = _spectrum(case, False, law=law)
-    return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
-
-
 @cache
 def folded(law=OWN):
     """Healthy force at 240 Hz over its mesh line: 10 000 samples per second as in S0, and `FINE`."""
-    made = own_law(NAME, pulsed=False) if law == OWN else machine(NAME)
+    made = linear(None) if law == LINEAR else own_law(NAME, pulsed=False)
     finer = spectrum(signal(record(made, 0.3, FINE, SETTLE), FORCE))
-    return [amplitude(one, 240.0) / amplitude(one, 280.0) for one in (_spectrum("healthy", False, law=law), finer)]
+    return [amplitude(one, 240.0) / amplitude(one, 280.0) for one in (spectrum_of("healthy", False, law=law), finer)]
 
 
 @cache
@@ -155,23 +135,9 @@ def seen(path):
 def statements(law=OWN):
     """What the articles say of spectra and indicators; see the scene for the words."""
     mesh, fault = speeds()[2:]
-    side = {case: _sidebands(case, law) for case in ("healthy", *CASES)}
-    knocked_peak = {impact: np.ptp(signal(_record("healthy", impact, law), FORCE).values) for impact in (False, True)}
-    rate = 1 / scene(NAME).machine["impact"]["pulse_period_s"]
-    beside = [amplitude(_spectrum("healthy", impact, law=law), mesh + rate, 1 / SECONDS) for impact in (False, True)]
-    s0, s1 = ([_values(case, True, law=law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
-    calm = [_values(case, False, law=law)["SC (S1)"] for case in CASES]
-    out = {
-        "pits raise sidebands 40 Hz beside 280 Hz": min(side[case] for case in CASES) > 10 * side["healthy"],
-        "they grow with severity": side["healthy"] < side["mild"] < side["moderate"] < side["severe"],
-        "impacts raise the force": knocked_peak[True] > 1.1 * knocked_peak[False],
-        "impacts bring close sidebands of the mesh line": beside[1] > 10 * beside[0],
-        "SC by S0's formula rises with severity": bool((np.diff(s0) > 0.1).all()),
-        "SC by S1's formula rises with severity": bool((np.diff(s1) > 0.01 * s1[0]).all()),
-        "SC by S1's formula is little affected by impacts": max(abs(a / b - 1) for a, b in zip(s1, calm, strict=True)) < 0.1,
-        "a healthy machine has no such sidebands, sampled as in S0": folded(law)[0] < 0.01,
-        "a healthy machine has no such sidebands, sampled finer": folded(law)[1] < 0.01,
-    }
+    out = about_spectra(law) | about_impacts(law)
+    out["a healthy machine has no such sidebands, sampled as in S0"] = folded(law)[0] < 0.01
+    out["a healthy machine has no such sidebands, sampled finer"] = folded(law)[1] < 0.01
     if law == OWN:
         out |= {"sidebands at the carrier's frequency beside them": seen("raised cosine")["holds"]}
         out |= {"the window of SC allows 349.8 and 352.9 Hz": mesh + fault >= 349.8}
@@ -180,36 +146,41 @@ def statements(law=OWN):
 
 def sidebands(law=OWN):
     """Sidebands of the force [N] behind the first two statements, and the mesh line."""
-    lines = {case: _sidebands(case, law) for case in ("healthy", *CASES)}
-    return lines | {"healthy, mesh line": amplitude(_spectrum("healthy", False, law=law), speeds()[2])}
+    lines = {case: sidebands_of(case, law) for case in ("healthy", *CASES)}
+    return lines | {"healthy, mesh line": amplitude(spectrum_of("healthy", False, law=law), speeds()[2])}
 
 
 def runs():
     """What the simulations were made with."""
     return {
-        OWN: told(_record("healthy", True)),
-        OWN + STEADY: told(_record("healthy", False)),
-        LINEAR: told(_record("healthy", True, LINEAR)),
-        LINEAR + STEADY: told(_record("healthy", False, LINEAR)),
+        OWN: told(record_of("healthy", True)),
+        OWN + STEADY: told(record_of("healthy", False)),
+        ROWS: told(record_of("healthy", True, ROWS)),
+        LINEAR: told(record_of("healthy", True, LINEAR)),
+        LINEAR + STEADY: told(record_of("healthy", False, LINEAR)),
     }
 
 
 def write_more():
     """Table of both laws."""
-    beside("planetary_pitting", BESIDE, OWN, LINEAR)
+    beside("planetary_pitting", BESIDE, OWN, ROWS, LINEAR)
+    write_repeats()
     beside("planetary_pitting_paths", BY_PATH, *PATHS)
 
 
 def more():
     """Lines of the page beside the verdicts."""
-    laws = tables("planetary_pitting", BOTH, OWN, LINEAR)
+    laws = tables("planetary_pitting", BOTH, OWN, ROWS, LINEAR)
     paths = ["## The path to a sensor on the ring", "", *tables("planetary_pitting_paths", BOTH_PATHS, *PATHS)]
-    return [*laws, *paths, *centroid.section()]
+    return ["## One line of pits, or rows of five", "", *laws, *section(), *paths, *centroid.section()]
 
 
 BOTH = (
-    "The same quantities under the articles' own law, which is judged above, and with the linear stiffness curves of the pitted "
-    "teeth; the healthy sidebands are what 'pits raise sidebands' compares with"
+    "The articles' formula, L = 2 b - N l, has the N = 5, 10, 15 pits of a level on one line of contact. So they are judged "
+    "above: on the pitch circle, evenly over the width, 1 mm wide, so that 5, 10 and 15 of the 20 mm are lost at once. The "
+    "scene's own cases, which other pages run, have rows of five on one, two and three lines: there a severe fault is longer, "
+    "not deeper. Both under the articles' own law, and one line with the linear stiffness curves of the pitted teeth; the "
+    "healthy sidebands are what 'pits raise sidebands' compares with"
 )
 
 
@@ -244,7 +215,7 @@ def draw(folder):
     columns = np.transpose([phase, *ours.values(), *printed.values()])[::4]
     np.savetxt(folder / "tables" / "planetary_pitting_lines.csv", columns, "%.6g", ",", header=",".join(names), comments="")
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
-    spectra = {case: _spectrum(case, False) for case in ("healthy", *CASES)}
+    spectra = {case: spectrum_of(case, False) for case in ("healthy", *CASES)}
     plot_spectra(
         spectra, lines, folder / "planetary_pitting_spectra.png", 800.0, dpi=60, title=f"{NAME}, force of a sun mesh, impact law"
     )
@@ -265,6 +236,7 @@ SIMULATED = {
     "amplitudes": amplitudes,
     "housing_lines": housing_lines,
     "statements": statements,
+    "further": further,
 }
 RUN_OF = dict.fromkeys(SIMULATED, OWN) | {"housing_lines": OWN + STEADY}
 BESIDE = {
@@ -275,6 +247,8 @@ BESIDE = {
     "shape factor": shape_factor,
     "peak [m/s^2]": amplitudes,
     "sidebands f_m +- 40 Hz [N]": sidebands,
+    "bandwidth of the sidebands [Hz]": spread,
+    "force of the damaged tooth over the others'": strewn,
     "the articles say": statements,
 }
 BY_PATH = {

@@ -1,0 +1,101 @@
+"""What article S3 prints and no simulation is needed for: frequencies, errors, contact ratios, contact lines."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from gearfe.machine.contact_law import hertz_coefficient
+from geometry.pair.lines import total_length
+
+from ..shared.simulated import scene
+
+NAME = "helical_pitting"
+CASES = ("minor", "severe", "multi")
+
+
+def pair():
+    """The pair."""
+    return scene(NAME).pair().pair
+
+
+def frequencies():
+    """Turning frequency of the pinion and mesh frequency [Hz]."""
+    turn = scene(NAME).machine["speed_rpm"] / 60
+    return {"f_r": turn, "f_m": turn * pair().gear_1.z}
+
+
+def theory():
+    """Of the article's table."""
+    return frequencies()
+
+
+def measured():
+    """At 2500 rpm."""
+    return frequencies()
+
+
+def errors_simulated():
+    """Errors [%] of the article's table from its own printed values."""
+    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.62), ("f_m", 708.33, 708.09))}
+
+
+def errors_measured():
+    """The same for its measurement."""
+    return {name: 100 * abs(1 - b / a) for name, a, b in (("f_r", 41.67, 41.23), ("f_m", 708.33, 707.48))}
+
+
+def one_speed():
+    """Pinion speed [rpm] of the printed simulated and measured mesh frequency over that of the turning frequency."""
+    rows = {"simulated": (41.62, 708.09), "measured": (41.23, 707.48)}
+    return {name: mesh / turn / pair().gear_1.z for name, (turn, mesh) in rows.items()}
+
+
+def impact_period():
+    """One turn of the pinion [s]."""
+    return {"severe": 1 / frequencies()["f_r"]}
+
+
+def hertz():
+    """Coefficient of the impact law at the pitch point, with the radii across the contact line."""
+    radii = pair().curvature_radii(pair().pitch_phase) / np.cos(pair().gear_1.beta_b)
+    return {"pitch point": hertz_coefficient(float(radii[0]), float(radii[1]), scene(NAME).pair().materials)}
+
+
+def contact_ratios():
+    """Transverse, overlap and total contact ratio."""
+    over = pair().eps_beta
+    return {"transverse": pair().eps_alpha, "overlap": over, "total": pair().eps_alpha + over}
+
+
+def line_length():
+    """Of all contact lines over a cycle [mm], and the least with pits."""
+    length = total_length(pair(), np.arange(400) / 400)
+    out = {"mean": length.mean(), "least": length.min(), "most": length.max()}
+    phase = np.linspace(-0.1, sum(contact_ratios()[name] for name in ("transverse", "overlap")) + 0.1, 1200)
+    whole = total_length(pair(), phase)
+    for case in CASES:
+        pits = scene(NAME).pair().damage[case]["pinion"]
+        out[f"{case}, most lost"] = (whole - total_length(pair(), phase, pits=(pits, ()))).max()
+    return {name: float(value) for name, value in out.items()}
+
+
+def lines_of_lost_length(teeth):
+    """Amplitudes at f_r and 2 f_r of the contact line [mm] lost to the case `multi` with its pits on these pinion teeth."""
+    count = 64
+    pits = [replace(pit, tooth=tooth) for pit, tooth in zip(scene(NAME).pair().damage["multi"]["pinion"], teeth, strict=True)]
+    phase = np.arange(17 * count) / count
+    lost = total_length(pair(), phase) - total_length(pair(), phase, pits=(pits, ()))
+    return 2 * np.abs(np.fft.rfft(lost))[1:3] / lost.size
+
+
+QUICK = {
+    "theory": theory,
+    "measured": measured,
+    "errors_simulated": errors_simulated,
+    "errors_measured": errors_measured,
+    "one_speed": one_speed,
+    "impact_period": impact_period,
+    "hertz_coefficient": hertz,
+    "contact_ratios": contact_ratios,
+    "line_length": line_length,
+}

@@ -1,0 +1,115 @@
+"""A part of the page `herringbone_machine`: play that is crossed, and the relief groove stiff and flexible."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+import gearfe as gf
+
+from ..shared.laws import beside, tables
+from ..shared.simulated import record, signal
+from .herringbone_numbers import speeds
+from .herringbone_runs import RATE, SECONDS, UNSETTLED, made, record_of, settled
+
+LOADS = (400.0, 100.0, 25.0, 6.0, 0.0)  # N m on the sun; S4 has the first
+GROOVES = {"stiff, 0.2 mm": 100.0, "20 mm": 1.0, "flexible, 2 m": 0.01}  # of the stiffness assumed
+MODES = 3.0  # of f_m: modes below it are counted
+MESH = "sun_planet1L"
+
+
+@cache
+def loaded(case, torque):
+    """Response under another torque of the sun, in balance with the carrier's."""
+    own = made(case)
+    part = torque / LOADS[0]
+    loads = tuple(replace(one, value=part * one.value) for one in own.loads)
+    return record(replace(own, loads=loads), SECONDS, RATE, UNSETTLED)
+
+
+def opened(case):
+    """Parts of the time in which the first sun mesh is open, and in which it touches with the back flank [%], by torque."""
+    out = {}
+    for torque in LOADS:
+        force = np.asarray(loaded(case, torque).raw[f"force {MESH}"])
+        limit = 1e-9 * max(np.abs(force).max(), 1.0)
+        out[f"{torque:g} N m, open"] = 100 * float((np.abs(force) <= limit).mean())
+        out[f"{torque:g} N m, back flank"] = 100 * float((force < -limit).mean())
+    return out
+
+
+def error_of(case):
+    """Range of the transmission error along the first sun mesh [um]."""
+    return 1e6 * float(np.ptp(signal(record_of(case), f"compression {MESH}").values))
+
+
+@cache
+def grooved(factor, halves="LR"):
+    """Response of case 2 with damage in these halves and the groove's shaft so many times as stiff."""
+    own = made("case2")
+    springs = [
+        replace(one, k=factor * one.k, c=np.sqrt(factor) * one.c) if " groove " in one.name else one for one in own.springs
+    ]
+    meshes = [one if one.name[-1] in halves else replace(one, damage=()) for one in own.meshes]
+    return settled(replace(own, springs=tuple(springs), meshes=tuple(meshes)))
+
+
+def apart(factor, halves="LR"):
+    """Sun's halves against each other over their common motion: standard deviations of the angles."""
+    left, right = (signal(grooved(factor, halves), f"sun{half}.theta").values for half in "LR")
+    return float((left - right).std() / ((left + right) / 2).std())
+
+
+def modes(factor):
+    """Natural frequencies below `MODES` f_m."""
+    values, _ = gf.natural_frequencies(grooved(factor).machine)
+    return float((values < MODES * speeds()[2]).sum())
+
+
+def statements():
+    """What S4 says of play and groove."""
+    stiff, _, soft = GROOVES.values()
+    return {
+        "play is crossed, healthy or damaged, at 400 N m": max(
+            opened(case)[f"400 N m, {how}"] for case in (None, "case4") for how in ("open", "back flank")
+        )
+        > 0,
+        "play is crossed under some load": max(opened(None).values()) > 0,
+        "damage raises the transmission error": error_of("case4") > 1.01 * error_of(None),
+        "groove stiff: the halves act nearly as one gear": apart(stiff, "L") < 0.01,
+        "groove flexible: the halves move against each other": apart(soft, "L") > 10 * apart(stiff, "L"),
+        "groove flexible: there are more modes": modes(soft) > modes(stiff),
+        "a fault in one half moves the halves more than one in both": apart(1.0, "L") > 10 * apart(1.0),
+    }
+
+
+def write_play():
+    """Tables of play and groove."""
+    columns = {"healthy": None, "case 4": "case4"}
+    beside("herringbone_machine_play", {"time [%]": lambda name: opened(columns[name])}, *columns)
+    rows = {
+        "fault in one half, halves apart [% of their motion]": lambda name: {"": 100 * apart(GROOVES[name], "L")},
+        "fault in both": lambda name: {"": 100 * apart(GROOVES[name])},
+        f"modes below {MODES:g} f_m": lambda name: {"": modes(GROOVES[name])},
+    }
+    beside("herringbone_machine_groove", rows, *GROOVES)
+
+
+def section():
+    """Lines of the page."""
+    return [
+        "## Play and groove",
+        "",
+        *tables("herringbone_machine_play", PLAY, "healthy", "case 4"),
+        *tables("herringbone_machine_groove", GROOVE, *GROOVES),
+    ]
+
+
+PLAY = (
+    "Time in which the first sun mesh is open, or touches with its back flank, with the errors and the play of 96 um that the "
+    "scene assumes, by the torque of the sun; S4 has 400 N m and prints no play"
+)
+GROOVE = (
+    "The shaft under the relief groove, a hundred times as stiff and as soft as that of 20 mm that is assumed, as long as would "
+    "be 0.2 mm and 2 m; case 2, the damage in one half or in both: the sun's halves against each other over their common motion"
+)

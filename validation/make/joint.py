@@ -1,0 +1,158 @@
+"""The page `joint`: statements of the articles under joint draws of every dynamic input that they do not print."""
+
+import importlib
+
+import numpy as np
+
+import gearfe as gf
+from gearfe.markdown import table_row
+
+from ..shared import joint_inputs, page
+from ..shared.kept_rows import kept, stored
+from ..shared.table_rows import read
+
+NAME = "joint"
+DECIDES = joint_inputs.DRAWS // 4  # draws by which the halves of an input must differ to be called what decides
+HOW = f"""
+`python -m validation joint` makes this page and the sections of the four pages from `tables/joint.jsonl`: a row is one draw;
+`... joint PAGE` computes those of a page anew, `... joint all` every one. The {joint_inputs.DRAWS} draws of a page are a Latin
+hypercube, even in the logarithm of each input; ranges, statements and thresholds were fixed in a commit before the first run
+(`validation/shared/joint_inputs.py`). A number without a unit is a factor of what the scene or its machine assumes. Masses and
+curves of stiffness stay; channel and path are crossed with every draw. Whether a statement holds is decided as on its page.
+"""
+
+
+def home(name):
+    """Module of the page of a machine."""
+    return importlib.import_module(f"validation.make.{name}")
+
+
+def rows_of(name):
+    """Rows on file of a page, in order."""
+    found = stored(NAME)
+    return [found[key] for key in sorted(found) if key.startswith(f"{name} ")]
+
+
+def compute(name, again=()):
+    """Rows of a page, those missing or asked for computed."""
+    for draw in joint_inputs.draws(name):
+        key = f"{name} {draw.number:02d}"
+        kept(NAME, key, lambda draw=draw: {"inputs": dict(draw.values)} | home(name).drawn(draw), again)
+
+
+def said(name):
+    """Draws in which each statement holds, by channel: ``{statement: {channel: array of bool}}``."""
+    rows, out = rows_of(name), {}
+    for statement, channels in rows[0]["holds"].items() if rows else ():
+        out[statement] = {one: np.array([row["holds"][statement][one] for row in rows]) for one in channels}
+    return out
+
+
+def decides(name, held):
+    """The input whose larger and smaller half of draws differ most, in words."""
+    if held.all() or not held.any():
+        return "none of them"
+    best = (0, "")
+    for word in joint_inputs.RANGES[name]:
+        upper = np.argsort([row["inputs"][word] for row in rows_of(name)])[held.size // 2 :]
+        above, below = int(held[upper].sum()), int(held.sum() - held[upper].sum())
+        told = f"{joint_inputs.MEANT[word]}: {above} of {upper.size} above its middle, {below} below"
+        best = max(best, (abs(above - below), told))
+    return best[1] if best[0] >= DECIDES else "no single one"
+
+
+def counts(name):
+    """Statements, on the channel that the page judges, that hold in all draws, in none and in some."""
+    share = [next(iter(channels.values())).mean() for channels in said(name).values()]
+    return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
+
+
+def sentence(name):
+    """Counts in words; empty without rows."""
+    every, none, some = counts(name)
+    return (
+        f"{every} of its {every + none + some} statements hold in all {joint_inputs.DRAWS} draws, {none} in none, {some} in some"
+    )
+
+
+def section(name):
+    """Lines of the page of a machine; none without rows."""
+    if not rows_of(name):
+        return []
+    found = said(name)
+    channels = list(dict.fromkeys(channel for one in found.values() for channel in one))
+    lines = [
+        "## Within which unprinted inputs statements hold",
+        "",
+        f"{sentence(name)[0].upper()}{sentence(name)[1:]} ([joint.md](joint.md)): Latin hypercube over "
+        f"{', '.join(told(name))}. Draws in which a statement holds, by channel, and which input decides it on the first.",
+        "",
+        table_row(["statement", *channels, "what decides it"]),
+        "|---" * (len(channels) + 2) + "|",
+    ]
+    for statement, one in found.items():
+        cells = [f"{one[channel].sum()} of {one[channel].size}" if channel in one else "" for channel in channels]
+        lines.append(table_row([statement, *cells, decides(name, next(iter(one.values())))]))
+    return [*lines, "", *numbers(name)]
+
+
+def told(name):
+    """Inputs with their ranges, in words."""
+    return [f"{joint_inputs.MEANT[word]} {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
+
+
+def numbers(name):
+    """Lines with printed numbers beside the least and largest of the draws; none if the page names none."""
+    named = getattr(home(name), "PRINTED", {})
+    if not named:
+        return []
+    rows, judged = rows_of(name), read(name)
+    scene = {one.id: one for one in gf.load_scene(SCENES.get(name, name)).references}
+    lines = ["| number | case | printed | on this page | least to largest of the draws | draws within the tolerance |"]
+    lines.append("|---|---|---|---|---|---|")
+    for word, reference in named.items():
+        for i, row in enumerate(one for one in judged if one.id == reference):
+            values = [draw["numbers"][word][i] for draw in rows]
+            inside = sum(scene[reference].within(value, row.printed) for value in values)
+            channel = word.partition(", ")[2]
+            quantity = ", ".join(filter(None, (scene[reference].quantity, channel)))
+            cells = [quantity if not i else "", row.case, f"{row.printed:g}", f"{row.ours:.3g}"]
+            lines.append(table_row([*cells, f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"]))
+    return [*lines, ""]
+
+
+SCENES = {"herringbone_machine": "herringbone"}
+
+
+def answer():
+    """The first line."""
+    every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
+    return (
+        f"Of {every + none + some} statements of the articles that a simulation decides, {every} hold in all "
+        f"{joint_inputs.DRAWS} joint draws of load, supports, damping, noise and what else is not printed, {none} in none; the "
+        f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
+    )
+
+
+def ranges():
+    """Lines: inputs and their ranges by page."""
+    names = list(joint_inputs.RANGES)
+    lines = [table_row(["input", *names]), "|---" * (len(names) + 1) + "|"]
+    for word, meant in joint_inputs.MEANT.items():
+        ends = [joint_inputs.RANGES[name].get(word) for name in names]
+        lines.append(table_row([meant, *("" if end is None else f"{end[0]:g} to {end[1]:g}" for end in ends)]))
+    return lines
+
+
+def run(parts=()):
+    """Compute what is missing, or the rows that begin with `parts`, and write this page and those of the machines."""
+    from . import machines
+
+    for name in joint_inputs.RANGES:
+        compute(name, page.anew(parts))
+    small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
+    for name in joint_inputs.RANGES:
+        small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))
+    page.write(NAME, answer(), HOW.strip().splitlines(), small, ranges())
+    for name in joint_inputs.RANGES:
+        machines.write_page(name)

@@ -1,0 +1,142 @@
+"""A part of the page `planetary_pitting`: statements, repeats under other impacts, and what a draw of inputs gives."""
+
+import numpy as np
+
+from ..shared.laws import beside, tables
+from ..shared.simulated import amplitude, scene
+from .planetary_numbers import CASES, speeds
+from .planetary_runs import (
+    FORCE,
+    HOUSING,
+    OWN,
+    SENSOR,
+    bandwidth_of,
+    forget,
+    rises,
+    sidebands_of,
+    signal_of,
+    spectrum_of,
+    standing_out,
+    values_of,
+)  # fmt: skip
+
+IMPACTS = (0.5, 1.0, 2.0)  # of the scene's pulses: the three repeats of each level
+INDICATORS = {"SC by S0's formula [Hz]": "SC (S0)", "SC by S1's formula [mm/s^2]": "SC (S1)", "RMS [m/s^2]": "rms"}
+INDICATORS |= {"kurtosis": "kurtosis", "shape factor": "shape factor"}
+STANDS_OUT = 1.5  # as for article S3
+ROUNDING = 1e-9  # of the mesh force's sidebands [N]
+
+
+def about_spectra(law=OWN, channel=FORCE):
+    """What the articles say of the signal of a channel: statements that hold or not."""
+    side = {case: sidebands_of(case, law, channel) for case in ("healthy", *CASES)}
+    s0, s1 = ([values_of(case, True, channel, law)[name] for case in CASES] for name in ("SC (S0)", "SC (S1)"))
+    calm = [values_of(case, False, channel, law)["SC (S1)"] for case in CASES]
+    return {
+        "pits raise sidebands 40 Hz beside 280 Hz": min(side[case] for case in CASES) > 10 * side["healthy"],
+        "they grow with severity": side["healthy"] < side["mild"] < side["moderate"] < side["severe"],
+        "bandwidth of the sidebands grows with severity": rises(lambda case: bandwidth_of(case, law, channel)),
+        "the fault's impulse stands out from those of the mesh": standing_out("severe", law, channel) > STANDS_OUT,
+        "SC by S0's formula rises with severity": bool((np.diff(s0) > 0.1).all()),
+        "SC by S1's formula rises with severity": bool((np.diff(s1) > 0.01 * s1[0]).all()),
+        "SC by S1's formula is little affected by impacts": max(abs(a / b - 1) for a, b in zip(s1, calm, strict=True)) < 0.1,
+    }
+
+
+def about_impacts(law=OWN):
+    """What they say of impacts, of the force of a sun mesh."""
+    rate, mesh = 1 / scene("planetary_pitting").machine["impact"]["pulse_period_s"], speeds()[2]
+    peak = [np.ptp(signal_of("healthy", impact, law=law).values) for impact in (False, True)]
+    found = [spectrum_of("healthy", impact, law=law) for impact in (False, True)]
+    beside = [amplitude(one, mesh + rate, one.resolution / 2) for one in found]
+    return {
+        "impacts raise the force": peak[1] > 1.1 * peak[0],
+        "impacts bring close sidebands of the mesh line": beside[1] > 10 * beside[0],
+    }
+
+
+def repeated(name, law=OWN):
+    """An indicator of the ring's acceleration by level, three repeats each."""
+    return {case: [values_of(case, impact, SENSOR, law)[name] for impact in IMPACTS] for case in CASES}
+
+
+def apart(found):
+    """Whether the ranges of the levels lie one above the other."""
+    ranges = [(min(found[case]), max(found[case])) for case in CASES]
+    return all(a[1] < b[0] for a, b in zip(ranges, ranges[1:], strict=False))
+
+
+def further():
+    """Statements of `sources/statements.toml`."""
+    peaks = [np.ptp(signal_of("healthy", impact).values) for impact in (False, *IMPACTS)]
+    said = {f"three repeats: {name} tells the levels apart": apart(repeated(INDICATORS[name])) for name in INDICATORS}
+    out = {name.replace(" [Hz]", "").replace(" [mm/s^2]", "").replace(" [m/s^2]", ""): holds for name, holds in said.items()}
+    for name in ("RMS", "kurtosis", "shape factor"):
+        out[f"three repeats: {name} does not tell the levels apart"] = not out.pop(
+            f"three repeats: {name} tells the levels apart"
+        )
+    return about_spectra() | out | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
+
+
+def repeats():
+    """Least and largest of three repeats by indicator and level: a function of the law for each indicator."""
+
+    def ranged(name):
+        def values(which):
+            pick = min if which == "least" else max
+            scale = 1e3 if name == "SC (S1)" else 1.0
+            return {case: scale * pick(found) for case, found in repeated(name).items()}
+
+        return values
+
+    return {title: ranged(name) for title, name in INDICATORS.items()}
+
+
+def spread(law=OWN):
+    """Bandwidth of the sidebands [Hz] by level."""
+    return {case: bandwidth_of(case, law) for case in CASES}
+
+
+def strewn(law=OWN):
+    """How far the damaged tooth's force stands out."""
+    return {case: standing_out(case, law) for case in CASES}
+
+
+def write_repeats():
+    """Table of the repeats."""
+    beside("planetary_pitting_repeats", repeats(), "least", "largest")
+
+
+def section():
+    """Lines of the page."""
+    return ["## Three repeats of each level", "", *tables("planetary_pitting_repeats", TEXT, "least", "largest")]
+
+
+TEXT = (
+    "S1 measured each level three times under impacts of several sizes: SC told the levels apart, RMS, kurtosis and shape factor "
+    "did not. Here pulses of 125, 250 and 500 N m, acceleration of the ring, article's own law; a level is told apart if the "
+    "ranges of its three repeats lie one above the other"
+)
+
+
+def drawn(draw):
+    """Whether statements hold with the inputs of a draw, by statement and channel, and indicators of the ring's acceleration."""
+    holds = {name: {FORCE: bool(found)} for name, found in about_impacts(draw).items()}
+    for channel in (FORCE, SENSOR, HOUSING):
+        for name, found in about_spectra(draw, channel).items():
+            holds.setdefault(name, {})[channel] = bool(found)
+        for word in ("rms", "kurtosis", "shape factor", "peak"):
+            risen = rises(lambda case, word=word, channel=channel: values_of(case, True, channel, draw)[word])
+            holds.setdefault(f"{word} rises with severity", {})[channel] = risen
+    numbers = {word: [values_of(case, True, SENSOR, draw)[word] for case in CASES] for word in PRINTED}
+    forget()
+    return {"holds": holds, "numbers": numbers}
+
+
+PRINTED = {  # numbers of the articles that draws are set beside: by name, the reference
+    "rms": "rms",
+    "kurtosis": "kurtosis",
+    "shape factor": "shape_factor",
+    "peak": "amplitudes",
+    "SC (S0)": "sc_measured",
+}

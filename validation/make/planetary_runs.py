@@ -1,0 +1,129 @@
+"""Records of the stage of S0 and S1 that the parts of the page `planetary_pitting` share, with pits as S0's formula has them."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+import gearfe as gf
+
+from ..shared.joint_inputs import Draw, changed, noise
+from ..shared.simulated import amplitude, knocked, machine, record, scene, signal, spectrum
+from .planetary_numbers import CASES, NAME, lined, speeds
+
+SECONDS, SETTLE = 10.0, 0.25
+DRAWN, DRAWN_SETTLE = 1.0, 0.5  # of a draw of the unprinted inputs
+RATE = 10000.0  # S0: 100 000 steps in 10 s
+OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
+STEADY = ", no pulses"
+FORCE, SENSOR, HOUSING = "force sun_planet1", "ring.y acceleration", "ring's forces through its window"
+BEARING = 1e8  # N/m, of the ring: the default of `gf.pitted_planetary`
+HIGHEST = 6  # of the fault frequency: sidebands that the bandwidth counts
+
+
+@cache
+def _built(case, impact, layout):
+    """Machine under the impact law, its pulses `impact` times those of the scene."""
+    own = scene(NAME) if layout == ROWS else lined()
+    options = own.machine["impact"] | {"pulse_Nm": impact * own.machine["impact"]["pulse_Nm"]}
+    if not impact:
+        options = {key: value for key, value in options.items() if not key.startswith("pulse")}
+    return gf.build_machine(replace(own, machine=own.machine | {"contact": "impact", "impact": options}), case)
+
+
+@cache
+def linear(case):
+    """Machine with linear stiffness curves."""
+    return machine(NAME) if case is None else gf.build_machine(lined(), case, method="ritz3d", phases=64)
+
+
+@cache
+def record_of(case, impact, law=OWN):
+    """Response of a case, its pulses on the carrier so many times those of the scene; of a `Draw` its changed machine's."""
+    name = None if case == "healthy" else case
+    if isinstance(law, Draw):
+        return record(changed(_built(name, float(impact), OWN), law), DRAWN, RATE, DRAWN_SETTLE)
+    if law != LINEAR:
+        return record(_built(name, float(impact), law), SECONDS, RATE, SETTLE)
+    made = linear(name)
+    options = scene(NAME).machine["impact"]
+    made = knocked(made, "carrier torque", options, SECONDS + SETTLE) if impact else made
+    return record(made, SECONDS, RATE, SETTLE)
+
+
+def ring_path(foundation=1.0):
+    """Window of a ring-fixed sensor: the thin ring between root circle and rim of the scene, on its bearing as a foundation."""
+    ring = scene(NAME).pairs["planet_ring"].pair.gear_2
+    thick, radius = 1e-3 * (ring.r_rim - ring.r_f), 5e-4 * (ring.r_rim + ring.r_f)
+    bending = 1e6 * scene(NAME).pairs["planet_ring"].materials[1].E * 1e-3 * ring.b * thick**3 / 12
+    return gf.ring_window(radius, bending, foundation * BEARING / (np.pi * radius))
+
+
+@cache
+def signal_of(case, impact, channel=FORCE, law=OWN):
+    """A channel; of a draw with its noise, a part of the standard deviation of the mild case without pulses."""
+    one = _clean(case, impact, channel, law)
+    if not isinstance(law, Draw):
+        return one
+    size = law["noise"] * _clean("mild", False, channel, law).values.std()
+    return replace(one, values=one.values + size * noise(law, f"{case} {impact} {channel}", one.values.size))
+
+
+@cache
+def _clean(case, impact, channel, law):
+    response = record_of(case, impact, law)
+    if channel == HOUSING:
+        return gf.housing_signal(response, window=ring_path(law["path"] if isinstance(law, Draw) else 1.0))
+    return signal(response, channel)
+
+
+@cache
+def values_of(case, impact, channel=FORCE, law=OWN):
+    """Indicators of a channel."""
+    return signal_of(case, impact, channel, law).indicators(*speeds()[2:])
+
+
+@cache
+def spectrum_of(case, impact, channel=FORCE, law=OWN):
+    """Amplitudes of a channel."""
+    return spectrum(signal_of(case, impact, channel, law))
+
+
+def sidebands_of(case, law=OWN, channel=FORCE):
+    """Mean amplitude at f_m +- f_fault without pulses."""
+    mesh, fault = speeds()[2:]
+    found = spectrum_of(case, False, channel, law)
+    return (amplitude(found, mesh - fault) + amplitude(found, mesh + fault)) / 2
+
+
+def bandwidth_of(case, law=OWN, channel=FORCE):
+    """How far from f_m its sidebands lie, without pulses [Hz]: root of the mean square, lines f_fault apart by their power."""
+    mesh, fault = speeds()[2:]
+    found = spectrum_of(case, False, channel, law)
+    order = np.array([k for k in range(-HIGHEST, HIGHEST + 1) if k])
+    power = np.array([amplitude(found, mesh + k * fault) ** 2 for k in order])
+    return float(fault * np.sqrt((power * order**2).sum() / power.sum()))
+
+
+def standing_out(case, law=OWN, channel=FORCE):
+    """Largest deviation of the damaged tooth's mesh cycle over the median of the others', without pulses: folded by sun tooth."""
+    mesh, fault = speeds()[2:]
+    teeth = scene(NAME).gears["sun"].z
+    period = teeth if channel == FORCE else round(mesh / fault)  # one mesh, or the meshes of all planets
+    x = signal_of(case, False, channel, law).values
+    turn = round(RATE * period / mesh)
+    folded = np.abs(x - x.mean())[: x.size // turn * turn].reshape(-1, turn).mean(axis=0)
+    cycle = [part.max() for part in np.array_split(folded, period)]
+    return float(max(cycle) / np.median(cycle))
+
+
+def rises(quantity):
+    """Whether a quantity of a case rises with the levels, each 0.1 % from the last."""
+    found = [quantity(case) for case in CASES]
+    return all(b > 1.001 * a for a, b in zip(found, found[1:], strict=False))
+
+
+def forget():
+    """Drop what is cached of draws."""
+    for one in (record_of, signal_of, _clean, values_of, spectrum_of):
+        one.cache_clear()
