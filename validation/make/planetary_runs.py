@@ -12,7 +12,7 @@ from ..shared.simulated import amplitude, knocked, machine, record, scene, signa
 from .planetary_numbers import CASES, NAME, lined, speeds
 
 SECONDS, SETTLE = 10.0, 0.25
-DRAWN, DRAWN_SETTLE = 1.0, 0.5  # of a draw of the unprinted inputs
+DRAWN, DRAWN_SETTLE = 1.0, 0.25  # of a draw of the unprinted inputs
 RATE = 10000.0  # S0: 100 000 steps in 10 s
 OWN, ROWS, LINEAR = "impact law", "impact law, rows of five", "linear stiffness"
 STEADY = ", no pulses"
