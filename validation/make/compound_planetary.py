@@ -14,6 +14,7 @@ from gearfe.machine.compound_planetary import compound_planetary
 from gearfe.units import in_newton_per_um
 
 from ..shared.joint_inputs import Draw, changed, noise, through_mode
+from ..shared.laws import beside, tables
 from ..shared.places import TABLES
 from ..shared.simulated import amplitude, machine, noisy, record, scene, signal, spectrum, told
 from .compound_numbers import LEVELS, NAME, QUICK, beams, converged, frequencies  # noqa: F401
@@ -193,6 +194,7 @@ def drawn(draw):
 def write_more():
     """Tables: phases of the meshes, and what each ingredient leaves of the stiffness."""
     made = _made(None)
+    beside("compound_planetary", BESIDE, SENSOR, SUN)
     with written(PHASES) as target, open(target, "w", encoding="utf-8", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(("mesh", "against planet 1", "in its planet's chain"))
@@ -219,10 +221,27 @@ def more():
         "| model | mean k [N/um] | of the first |",
     ]
     lines += ["|---|---|---|", *(f"| {name} | {in_newton_per_um(float(k))} | {float(k) / first:.2f} |" for name, k in parts), ""]
+    lines += tables("compound_planetary", SAID_OF, SENSOR, SUN)
     with open(PHASES, encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
     lines += ["Phases of the meshes in cycles (S2's Table 2 is lost):", "", f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
     return [*lines, *(f"| {name} | {float(a):.4f} | {float(b):.4f} |" for name, a, b in rows), ""]
+
+
+BESIDE = {
+    f"power of the healthy signal below {HIGHEST:g} Hz [%]": lambda channel: {"": 100 * below(channel=channel)},
+    "places of sidebands of sun 2, 500 to 1000 Hz [%]": lambda channel: dict(
+        zip(("3 times the healthy lines", "above the healthy lines"), (100 * x for x in more_lines(channel=channel)), strict=True)
+    ),
+    "kurtosis with noise": lambda channel: {
+        name: _of_second(case, HEARD, channel) for name, case in (("healthy", None), ("sun 1", "sun 1"), ("sun 2", "crack80"))
+    },
+    "the article says": lambda channel: statements(HEARD, channel),
+}
+SAID_OF = (
+    "What is judged, of the ring's angular acceleration, beside the same of the velocity of sun 2, which S2 shows of its "
+    "simulation"
+)
 
 
 def runs():

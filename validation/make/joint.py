@@ -146,10 +146,15 @@ def ranges():
 
 def run(parts=()):
     """Compute what is missing, or the rows that begin with `parts`, and write this page and those of the machines."""
-    from . import machines
-
     for name in joint_inputs.RANGES:
         compute(name, page.anew(parts))
+    tell()
+
+
+def tell():
+    """Write this page and those of the machines."""
+    from . import machines
+
     small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
     for name in joint_inputs.RANGES:
         small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))

@@ -68,6 +68,11 @@ def rms(law=OWN):
     return _measured("rms", law)
 
 
+def rms_without_pulses(law=OWN):
+    """Of the same without impacts."""
+    return {case: values_of(case, False, SENSOR, law)["rms"] for case in CASES}
+
+
 def kurtosis(law=OWN):
     """Of the same."""
     return _measured("kurtosis", law)
@@ -243,6 +248,7 @@ BESIDE = {
     "SC, force [Hz]": sc_simulated,
     "SC, ring acceleration [Hz]": sc_measured,
     "RMS [m/s^2]": rms,
+    "RMS without pulses [m/s^2]": rms_without_pulses,
     "kurtosis": kurtosis,
     "shape factor": shape_factor,
     "peak [m/s^2]": amplitudes,
