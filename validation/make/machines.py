@@ -82,12 +82,13 @@ def text(page):
     scene, home = gf.load_scene(PAGES[page]), module(page)
     rows = table_rows.read(page)
     claim, find, decide = OPENINGS[page](Found(rows))
+    drawn = f" {drawn_jointly(page)}" if joint.rows_of(page) else ""
     lines = [
         f"# {scene.title}: which printed numbers of {ARTICLES[page]} are reproduced?",
         "",
         f"{Found(rows).counted()}.",
         "",
-        f"**The article claims** {claim}. **gearfe finds** {find}. **What decides it**: {decide}.",
+        f"**The article claims** {claim}. **gearfe finds** {find}. **What decides it**: {decide}.{drawn}",
         "",
         f"{scene.source}.",
         "",
@@ -117,6 +118,12 @@ def text(page):
     ]
     lines += [f"| {one['what']} | {one['why']} | {one['depends']} |" for one in scene.assumptions]
     return "\n".join(lines) + "\n"
+
+
+def drawn_jointly(page):
+    """Sentence of the opening: how many statements hang on inputs that the article does not print."""
+    below = "([below](#within-which-unprinted-inputs-statements-hold))"
+    return f"With the inputs that are not printed drawn jointly, {joint.sentence(page)} {below}."
 
 
 class Found:

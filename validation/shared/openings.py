@@ -1,6 +1,6 @@
 """The three sentences that open the page of a machine: what the article claims, what gearfe finds, what decides it."""
 
-from gearfe.scene.verdicts import REPRODUCED
+from gearfe.scene.verdicts import ASSUMED, REPRODUCED, TREND
 from gearfe.units import NEWTON_PER_UM
 
 from .places import TABLES
@@ -9,29 +9,46 @@ from .table_rows import rows_of
 
 def planetary_pitting(found):
     """Articles S0 and S1."""
-    rms, peaks = found.all("rms"), found.all("amplitudes")
-    away = [
-        " to ".join(f"{100 * (f(x / y for x, y in zip(ours, found.printed(name), strict=True)) - 1):+.0f}" for f in (min, max))
-        for name, ours in (("rms", rms), ("amplitudes", peaks))
-    ]
-    many = ", ".join(f"{x:.2g}" for x in rms)
-    high = ", ".join(f"{x:.2g}" for x in peaks)
+    sc = found.all("sc_simulated")
+    same = ", the same for all levels" if max(sc) - min(sc) < 1 else ""
+    ends = [f"{min(values):.0f} to {max(values):.0f}" for values in map(found.printed, ("sc_simulated", "sc_measured"))]
+    beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > WINDOW[1]]
+    repeats = [name for name in ("RMS", "kurtosis", "shape factor") if not found.ours("further", f"three repeats: {name}{APART}")]
+    told = f"of three repeats {' and '.join(repeats)} tell{'' if len(repeats) > 1 else 's'} the levels apart" if repeats else ""
     return (
-        "that the sideband centroid SC grows with the number of pits on a sun tooth, 285 to 350 Hz simulated and 290 to "
-        "353 Hz measured, "
-        "and hardly depends on impacts, while RMS (1.2, 1.3, 1.5 m/s^2), kurtosis and shape factor tell the levels less well",
-        f"under the articles' own contact law RMS {many} and peaks {high} m/s^2, in the printed order, but {away[0]} and "
-        f"{away[1]} % off the printed sizes, and an SC of "
-        f"{', '.join(f'{x:.1f}' for x in found.all('sc_simulated'))} Hz, the same for all levels",
-        "the definition of SC: it averages frequencies from 240 to 320 Hz, so that 349.8 and 352.9 Hz cannot come out "
-        "whatever the "
-        "machine, while levels hang on load, masses and the path to the sensor, which are not printed",
+        f"that the sideband centroid SC grows with the number of pits on a sun tooth, {ends[0]} Hz simulated and {ends[1]} Hz "
+        f"measured, and hardly depends on impacts, while RMS ({_list(found.printed('rms'))} m/s^2), kurtosis and shape factor "
+        "tell the levels less well",
+        f"under the articles' own contact law, their N pits on one line, {_sizes(found, 'rms', 'RMS')} and "
+        f"{_sizes(found, 'amplitudes', 'peaks')}, and an SC of {', '.join(f'{x:.1f}' for x in sc)} Hz{same}"
+        + (f"; {told}" if told else ""),
+        f"the definition of SC: it averages frequencies from {WINDOW[0]:g} to {WINDOW[1]:g} Hz, so that "
+        f"{' and '.join(beyond)} Hz cannot come out whatever the machine, while levels hang on load, masses and the path to the "
+        "sensor, which are not printed",
     )
+
+
+WINDOW = (240.0, 320.0)  # Hz: f_m +- f_fault, over which S0 averages
+APART = " does not tell the levels apart"
+
+
+def _list(values):
+    return ", ".join(f"{x:.2g}" for x in values)
+
+
+def _sizes(found, name, called):
+    """Our values of a reference, whether they have the printed order, and how far they are off."""
+    ours, printed = found.all(name), found.printed(name)
+    off = " to ".join(f"{100 * (f(x / y for x, y in zip(ours, printed, strict=True)) - 1):+.0f}" for f in (min, max))
+    order = (
+        "in the printed order" if {row.verdict for row in found.rows.values() if row.id == name} == {TREND} else "not in order"
+    )
+    return f"{called} {_list(ours)} m/s^2, {order}, {off} % off the printed sizes"
 
 
 def helical_pitting(found):
     """Article S3."""
-    said = [row for row in found.rows.values() if row.id == "statements"]
+    said = [row for row in found.rows.values() if row.id in ("statements", "further") and row.verdict != ASSUMED]
     yes = sum(row.verdict == REPRODUCED for row in said)
     multi = found.ours("statements", "multi: 2 f_r is the largest low line")
     return (
@@ -51,17 +68,20 @@ def herringbone_machine(found):
     span = found.all("displacement_span")
     kurtosis, crest = (max(found.all(f"{name}_most")) for name in ("kurtosis", "crest"))
     bare = [_grown(name) for name in ("its kurtosis", "sun's angular acceleration, crest factor")]
+    wide = found.printed("displacement_span")
+    most = [max(found.printed(f"{name}_most")) for name in ("kurtosis", "crest")]
+    heavy = [a / b for a, b in zip(found.printed("inertias"), found.all("inertias"), strict=True)]
     return (
-        "that a crack and pits in the sun of a herringbone stage widen the sun's motion from 3.56 to 6.66 um, bring lines "
-        "80 Hz about the "
-        "mesh line, and raise the kurtosis (up to 133 %) more than the crest factor (up to 83 %)",
+        f"that a crack and pits in the sun of a herringbone stage widen the sun's motion from {min(wide):g} to {max(wide):g} um, "
+        f"bring lines {found.ours('fault_frequency', 'N f_m / z_s'):g} Hz about the mesh line, and raise the kurtosis (up to "
+        f"{most[0]:.0f} %) more than the crest factor (up to {most[1]:.0f} %)",
         f"the lines and their order, but a range along x of {min(span):.3g} to {max(span):.3g} um that the errors make and "
         "damage hardly "
         f"moves, and increments of at most {kurtosis:.2g} % (kurtosis) and {crest:.2g} % (crest factor) of the sun's "
         f"angular acceleration with the errors assumed, {bare[0]:.2g} and {bare[1]:.2g} % without any "
         "(the stiffness tables are on [their own page](herringbone.md))",
         "sizes of errors, supports and damping, none of them printed: three planets in phase cancel in x, and printed "
-        "inertias 6 to 107 "
+        f"inertias {min(heavy):.0f} to {max(heavy):.0f} "
         "times too large for such gears hold the sun's rotation still",
     )
 
@@ -79,15 +99,17 @@ def compound_planetary(found):
         found.ours(name, "s2_sun_planet", "sun_planet") / NEWTON_PER_UM for name in ("mean_stiffness", "converged_stiffness")
     )
     rings = [found.ours("stiffness_ratio", f"{name}_ring_planet") for name in ("s1", "s2")]
-    heard = found.all("kurtosis")
+    heard, measured = found.all("kurtosis"), found.printed("kurtosis")
+    means, lines = (found.printed(name) for name in ("mean_stiffness", "fault_frequencies"))
+    low, high = (f(means) / NEWTON_PER_UM for f in (min, max))
+    ratios = dict(zip(("b_c", "s1", "s2"), found.printed("stiffness_ratio"), strict=True))
     return (
-        "mean stiffnesses of five meshes near 1600 N/um, and sidebands 16.8 and 18.2 Hz about two mesh lines for cracked "
-        "sun teeth, found in "
-        "measured signals by kurtosis and kurtogram",
+        f"mean stiffnesses of five meshes from {low:.0f} to {high:.0f} N/um, and sidebands {lines[0]:g} and {lines[1]:g} Hz "
+        "about two mesh lines for cracked sun teeth, found in measured signals by kurtosis and kurtogram",
         f"the frequencies and sidebands, and with the article's beams {beams:.0f} N/um for sun and planet, but ring meshes "
-        f"{rings[0]:.2f} and "
-        f"{rings[1]:.2f} times as stiff instead of 1.00 and 0.94, a converged stiffness of the same gears of {true:.0f} N/um, "
-        f"{beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to {max(heard):.3g} instead of 3.01 to 5.24",
+        f"{rings[0]:.2f} and {rings[1]:.2f} times as stiff instead of {ratios['s1']:.2f} and {ratios['s2']:.2f}, a converged "
+        f"stiffness of the same gears of {true:.0f} N/um, {beams / true:.1f} times less, and kurtoses of {min(heard):.3g} to "
+        f"{max(heard):.3g} instead of {min(measured):.3g} to {max(measured):.3g}",
         "the foundation under the teeth, which the article leaves out, its lost table of parameters, and the resonances of "
         "a housing that is "
         "not modelled",
