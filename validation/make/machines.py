@@ -99,10 +99,11 @@ def text(page):
         "which alone",
         "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
         "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
-        "quantity. Kinds: *input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
+        "quantity. Of statements: in how many [joint draws](joint.md) of what is not printed they hold. Kinds: *input*: put in,",
+        "or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
         "could have come out otherwise. Reasons: below.",
         "",
-        verdicts.text(references(page), rows),
+        with_draws(page, verdicts.text(references(page), rows)),
         "",
         *runs_of(page, rows),
         *joint.section(page),
@@ -118,6 +119,18 @@ def text(page):
     ]
     lines += [f"| {one['what']} | {one['why']} | {one['depends']} |" for one in scene.assumptions]
     return "\n".join(lines) + "\n"
+
+
+def with_draws(page, table):
+    """The table with the share of joint draws in which a statement holds beside its verdict."""
+    found = {name: next(iter(channels.values())) for name, channels in joint.said(page).items()}
+    out = []
+    for line in table.splitlines():
+        cells = line.split(" | ")
+        held = found.get(cells[1]) if len(cells) > 3 and cells[2] == "model" else None
+        share = "" if held is None else f"; holds in {held.sum()} of {held.size} draws"
+        out.append(line[:-2] + f"{share} |" if share else line)
+    return "\n".join(out)
 
 
 def drawn_jointly(page):
