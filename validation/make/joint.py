@@ -153,11 +153,9 @@ def run(parts=()):
 
 def tell():
     """Write this page and those of the machines."""
-    from . import machines
-
     small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
     for name in joint_inputs.RANGES:
         small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))
     page.write(NAME, answer(), HOW.strip().splitlines(), small, ranges())
     for name in joint_inputs.RANGES:
-        machines.write_page(name)
+        home("machines").write_page(name)  # which looks in here for its section
