@@ -121,3 +121,16 @@ def test_a_crack_of_60_percent_is_case_3_without_pits():
     assert k[0] < 0, "a crack lowers the stiffness"
     assert k[1] < k[0] < 0.9 * k[1], "the pits of case 3 take a little more"
     assert replace(crack, meshes=()).dofs == healthy.dofs
+
+
+def test_lines_of_drawn_records_do_not_leak():
+    """Records of draws hold whole periods of mesh and fault lines: else a healthy mesh line leaks into a sideband."""
+    from validation.make import compound_planetary, helical_pitting, herringbone_runs, planetary_runs
+
+    mesh, fault = compound_planetary.frequencies()
+    lines = [(compound_planetary.DRAWN, f) for f in (*mesh, *fault)]
+    lines += [(planetary_runs.DRAWN, f) for f in planetary_runs.speeds()[2:]]
+    lines += [(helical_pitting.SECONDS, f) for f in helical_pitting.frequencies().values()]
+    lines += [(herringbone_runs.SECONDS, f) for f in herringbone_runs.speeds()[2:]]
+    for seconds, frequency in lines:
+        assert abs(seconds * frequency - round(seconds * frequency)) < 1e-6, f"{frequency} Hz in {seconds} s"

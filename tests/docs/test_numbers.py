@@ -225,3 +225,20 @@ def test_what_other_pages_say():
     ):
         told = re.search(r"(\d+) results of a model: (\d+) reproduced, (\d+) trend only", words_of(PAGES / f"{page}.md")).groups()
         says("faq.md", sentence, int(told[1]), int(told[0]), int(told[2]))
+
+
+def test_the_frequent_questions_count_the_articles_results():
+    """Results of models, by the rows of the pages."""
+    from gearfe.scene import verdicts
+    from validation.shared import table_rows
+
+    shown = []
+    for name in ("planetary_pitting", "herringbone_machine"):
+        rows = [row for row in table_rows.read(name) if row.kind == "model" and row.verdict != verdicts.FORMULA]
+        shown += [sum(row.verdict == word for row in rows) for word in (verdicts.REPRODUCED, verdicts.TREND)]
+        shown.insert(-1, len(rows))
+    says(
+        "faq.md",
+        "in the articles S0 and S1 {} of {} are reproduced and {} in their order, of S4 {} of {} and {} in their order",
+        *shown,
+    )
