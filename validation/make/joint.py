@@ -62,8 +62,11 @@ def decides(name, held):
 
 
 def counts(name):
-    """Statements, on the channel that the page judges, that hold in all draws, in none and in some."""
-    share = [next(iter(channels.values())).mean() for channels in said(name).values()]
+    """Statements, on the channel that the page judges, that hold in all draws, in none and in some; none that we set."""
+    from gearfe.scene import verdicts
+
+    ours = {row.case for row in read(name) if row.verdict == verdicts.ASSUMED}
+    share = [next(iter(channels.values())).mean() for word, channels in said(name).items() if word not in ours]
     return sum(x == 1 for x in share), sum(x == 0 for x in share), sum(0 < x < 1 for x in share)
 
 
