@@ -131,8 +131,8 @@ def answer():
     """The first line."""
     every, none, some = np.sum([counts(name) for name in joint_inputs.RANGES], axis=0)
     return (
-        f"Of {every + none + some} statements of the articles that a simulation decides, {every} hold in all "
-        f"{joint_inputs.DRAWS} joint draws of load, supports, damping, noise and what else is not printed, {none} in none; the "
+        f"Of {every + none + some} statements of the articles that a simulation decides, {every} hold in all joint draws of "
+        f"load, supports, damping, noise and what else is not printed, {none} in none; the "
         f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
     )
 

@@ -60,21 +60,23 @@ def repeated(name, law=OWN):
     return {case: [values_of(case, impact, SENSOR, law)[name] for impact in IMPACTS] for case in CASES}
 
 
-def apart(found):
-    """Whether the ranges of the levels lie one above the other."""
+def apart(found, *, rising=True):
+    """Whether the ranges of the levels lie one above the other; not `rising`: upwards or downwards."""
     ranges = [(min(found[case]), max(found[case])) for case in CASES]
-    return all(a[1] < b[0] for a, b in zip(ranges, ranges[1:], strict=False))
+    up, down = (all(a[1] < b[0] for a, b in zip(order, order[1:], strict=False)) for order in (ranges, ranges[::-1]))
+    return up or (down and not rising)
 
 
 def further():
     """Statements of `sources/statements.toml`."""
     peaks = [np.ptp(signal_of("healthy", impact).values) for impact in (False, *IMPACTS)]
-    said = {f"three repeats: {name} tells the levels apart": apart(repeated(INDICATORS[name])) for name in INDICATORS}
-    out = {name.replace(" [Hz]", "").replace(" [mm/s^2]", "").replace(" [m/s^2]", ""): holds for name, holds in said.items()}
-    for name in ("RMS", "kurtosis", "shape factor"):
-        out[f"three repeats: {name} does not tell the levels apart"] = not out.pop(
-            f"three repeats: {name} tells the levels apart"
-        )
+    out = {}
+    for title, name in INDICATORS.items():
+        word, found = title.partition(" [")[0], repeated(name)
+        if word.startswith("SC"):
+            out[f"three repeats: {word} tells the levels apart"] = apart(found)
+        else:
+            out[f"three repeats: {word} does not tell the levels apart"] = not apart(found, rising=False)
     return about_spectra() | out | {"the larger the impacts, the larger the force": bool((np.diff(peaks) > 0).all())}
 
 
