@@ -6,7 +6,8 @@ A ring on pads is a ring that nothing holds, under the tractions p of its pads a
 
 so that what pads add to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a pad
 the rim moves as a rigid body moves: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad
-as they do under a stiff one.
+as they do under a stiff one. The mesh of the rim only gets them spread over some edges; what they do more close by is that of
+a half-plane, known exactly.
 
 References
 ----------
@@ -21,10 +22,14 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from ..elements.elasticity import GAUSS_3
+from ..flexibility.hertz import half_plane, hat_logarithm
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-TERMS = 5  # polynomials on a pad, radial and tangential
-POINTS = 32  # of their quadrature
+TERMS = 6  # polynomials on a pad, radial and tangential
+POINTS = 64  # of their quadrature
+FINE = 400  # the same, where a polynomial meets a jump
+SPREAD = 3  # edges of the rim to either side over which the mesh is given a traction as a hat
 SURE = 1e-9  # of the largest singular value of the pads' balance: less, and the ring can move without force
 
 
@@ -141,7 +146,8 @@ class Rim:
 class Pads:
     """Tractions of pads on the rim: nodal forces `load` ``(z, r, p)``, forces x, y and clockwise torque `turns` ``(3, p)``.
 
-    `compliance` ``(p,)`` of their springs [mm per N/mm], `moved` the edge's displacements by harmonic, as of `WholeGear.loose`.
+    `compliance` ``(p, p)`` is added to how the rim's mesh moves under them [mm per N/mm]: of springs, and close to each pad.
+    `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
     """
 
     load: NDArray[np.float64]
@@ -168,11 +174,11 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     more, moved = whole.loose()
     pads = _pads(whole, support, width, moved)
     teeth = between_teeth(more)
-    across, between = _by_teeth(pads, gear.z), _among(pads) + np.diag(pads.compliance)
+    across, between = _by_teeth(pads, gear.z), _among(pads) + pads.compliance
     gives = _moves(gear)
     if support.pushes:
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
-    p, n = pads.compliance.size, gear.z * PLACES
+    p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
     unit = scale * np.array([1.0, 1.0, 1 / gear.r_rim])[:, None]  # so that all of the system is of one size
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
@@ -196,46 +202,77 @@ def _pads(whole, support, width, moved):
             f"ring: {support.count} pads of {support.width:g} mm are longer than its rim, {2 * math.pi * gear.r_rim:.5g} mm: give "
             "ring = 'held'"
         )
-    step = 2 * math.pi / (z * nodes)
-    if support.width < 2 * step * gear.r_rim:
-        raise ValueError(
-            f"ring: pads of {support.width:g} mm are narrower than the model resolves, {2 * step * gear.r_rim:.3g} mm: give wider "
-            "ones, or refine"
-        )
+    step = 4 * math.pi / (z * nodes)  # of an edge of the rim
+    terms = 1 if support.pushes else TERMS
     place = np.cos((np.arange(POINTS) + 0.5) * math.pi / POINTS)
-    shapes = chebyshev.chebvander(place, (1 if support.pushes else TERMS) - 1) / POINTS
-    spring = {0: support.radial, 1: support.tangential}
-    held = [which for which, stiff in spring.items() if stiff > 0]
-    columns, turns, compliance = [], [], []
+    shapes = chebyshev.chebvander(place, terms - 1) / POINTS
+    stiff = (support.radial, support.tangential)
+    held = [which for which in (0, 1) if stiff[which] > 0]
+    hats = [_hat(which, step, z * nodes) for which in (0, 1)]
+    columns, turns, compliance, local = [], [], [], []
     for k in range(support.count):
         angle = support.first + 2 * math.pi * k / support.count + place * support.width / (2 * gear.r_rim)
+        at = (angle + math.pi / z) / step  # in edges from the first corner
+        number = np.arange(math.floor(at.min()), math.floor(at.max()) + 2)
+        weight = np.maximum(1 - np.abs(number[:, None] - at), 0.0) @ shapes
         out, inx = np.sin(angle), np.cos(angle)
-        force = {0: np.array([out, inx, 0 * angle]), 1: np.array([inx, -out, np.full(angle.size, gear.r_rim)])}
+        force = np.array([out, inx, 0 * angle]), np.array([inx, -out, np.full(angle.size, gear.r_rim)])
         for which in held:
-            nodal, resultant = _nodal(angle, which, step, z * nodes, -math.pi / z) @ shapes, force[which] @ shapes
-            columns.append(nodal)
-            turns.append(resultant)
-            own = np.zeros(shapes.shape[1])
-            own[0] = width / spring[which]
-            compliance.append(own)
+            columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in zip(number.tolist(), weight, strict=True)))
+            turns.append(force[which] @ shapes)
+            compliance.append(np.append(width / stiff[which], np.zeros(terms - 1)))
+        local.append(_sharper(whole, support.width, number * step * gear.r_rim, step * gear.r_rim, weight)[np.ix_(held, held)])
+    p = len(held) * terms
+    total = np.zeros((support.count * p,) * 2)
+    for k, own in enumerate(local):
+        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = own.transpose(0, 2, 1, 3).reshape(p, p)
     load = np.concatenate(columns, axis=1).reshape(z, 2 * nodes, -1)
-    return Pads(load, np.concatenate(turns, axis=1), np.concatenate(compliance), moved)
+    return Pads(load, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
 
 
-def _nodal(angle, which, step, count, first):
-    """Forces ``(2 count, n)`` on rim nodes, radial and tangential, of unit forces at `angle`: radial (0) or tangential (1)."""
-    place = (angle - first) / (2 * step)
-    edge = np.floor(place).astype(int)
-    t = 2 * (place - edge) - 1
+def _hat(which, step, count):
+    """Forces ``(2 count,)`` on rim nodes of a unit hat of traction, radial (0) or tangential (1), its top on the first node."""
+    points, weights = GAUSS_3
+    edges = np.arange(-SPREAD, SPREAD)
+    angle = step * (edges[:, None] + (points + 1) / 2)
+    share = (1 - np.abs(angle) / (SPREAD * step)) * weights / (2 * SPREAD)
+    return _nodal(angle.ravel(), which, step / 2, count) @ share.ravel()
+
+
+def _nodal(angle, which, step, count):
+    """Forces ``(2 count, n)`` on rim nodes, radial and tangential, of unit forces at `angle` from the first node."""
+    edge = np.floor(angle / (2 * step)).astype(int)
+    t = angle / step - 2 * edge - 1
     shapes = np.array([t * (t - 1) / 2, 1 - t**2, t * (t + 1) / 2])
     out, column = np.zeros((2 * count, angle.size)), np.arange(angle.size)
     for a, shape in enumerate(shapes):
-        node = 2 * edge + a
-        lean = angle - (first + step * node)
+        lean = angle - step * (2 * edge + a)
         parts = (np.cos(lean), np.sin(lean)) if which == 0 else (-np.sin(lean), np.cos(lean))
         for direction, part in enumerate(parts):
-            np.add.at(out, (2 * (node % count) + direction, column), shape * part)
+            np.add.at(out, (2 * ((2 * edge + a) % count) + direction, column), shape * part)
     return out
+
+
+def _sharper(whole, width, tops, edge, weight):
+    """What a pad's own tractions move it more than those that the hats spread ``(2, 2, terms, terms)`` [mm per N/mm].
+
+    Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
+    along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.
+    """
+    terms, material = weight.shape[1], whole.material
+    knots = tops + SPREAD * edge * np.array([[-1], [0], [1]])
+    along = np.append(math.log(4 / width), 1 / (2 * np.arange(1, terms)))
+    direct = half_plane(material, whole.state) * (np.diag(along) - weight.T @ hat_logarithm(knots, knots) @ weight)
+    modulus = material.plane_modulus(whole.state)
+    ratio = material.nu / (1 - material.nu) if whole.state == "plane strain" else material.nu
+    angle, order = (np.arange(FINE) + 0.5) * math.pi / FINE, np.arange(1, terms)
+    ahead = np.column_stack([1 - 2 * angle / math.pi, -2 * np.sin(angle[:, None] * order) / (math.pi * order)])
+    jump = np.cos(angle[:, None] * np.arange(terms)).T @ ahead / FINE
+    masses = np.array([1.0, -2.0, 1.0]) / (SPREAD * edge) ** 2  # second derivative of a unit hat
+    apart = knots[:, :, None, None] - knots
+    spread = np.einsum("p,pnqm,q->nm", masses, np.sign(apart) * apart**4 / 24, masses)
+    across = -(1 - ratio) / (2 * modulus) * (jump - weight.T @ spread @ weight)
+    return np.array([[direct, across], [across.T, direct]])
 
 
 def _series(load):

@@ -29,6 +29,7 @@ from geometry.tooth.profile import arc_at, flank, flank_normal, roll_at_arc
 from ..elements.elasticity import GAUSS_3, LEAF, Body, edge_nodes, edge_shapes
 from ..flexibility.condense import condense
 from ..flexibility.solved import solved_gears
+from ..material import Material
 
 PLACES = 8  # loads on each flank: what other teeth see of a load changes little along it
 NULL = 1e-9  # of the largest eigenvalue: a smaller one is a motion of the whole gear, which strains nothing
@@ -44,7 +45,8 @@ class WholeGear:
 
     Attributes
     ----------
-    gear : Gear
+    gear, material, state
+        As of `whole_gear`.
     stiffness : ndarray, shape (h, n, n)
         Complex; the unknowns of the held edge come first.
     push : ndarray, shape (h, n, 2 PLACES)
@@ -56,6 +58,8 @@ class WholeGear:
     """
 
     gear: Gear
+    material: Material
+    state: str
     stiffness: NDArray[np.complex128]
     push: NDArray[np.complex128]
     bed: NDArray[np.complex128]
@@ -166,7 +170,7 @@ def _solved(gear, material, state, refine):
     bed[np.ix_(at, at)] = _mass(sector)
     bed = (back @ bed @ spread)[:, : e + 2, : e + 2]
     places = np.append(-math.pi / gear.z, angle[left.size : -left.size])
-    return WholeGear(gear, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
+    return WholeGear(gear, material, state, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
 
 
 def _chain(mesh, vertices):

@@ -12,7 +12,7 @@ from .section_mesh import fill
 
 # longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
 FLANK, FILLET, COARSE, SIDE = 0.2, 0.12, 0.4, 0.4
-RIM = 12
+RIM = 24
 GROWTH = 0.5  # of the edge length per length, away from the rim of a ring
 
 
