@@ -17,7 +17,8 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS = 40  # of Newton and the active set
+STEPS, SINGLE = 40, 400  # of Newton and the active set, changed all at once and one by one
+ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
 SETTLED = 1e-11  # last change of a force, in those of all
 STIFF = 1e6  # of the balance in the start by non-negative least squares
 
@@ -38,14 +39,11 @@ class Problem(NamedTuple):
     load: NDArray[np.float64]
 
 
-def balance(problem: Problem, start: NDArray[np.bool_] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
-    Parameters
-    ----------
-    problem : Problem
-    start : ndarray of bool, shape (n,), optional
-        Contacts that are likely in touch.
+    Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
+    at a time.
 
     Raises
     ------
@@ -53,32 +51,42 @@ def balance(problem: Problem, start: NDArray[np.bool_] | None = None) -> tuple[N
         If no forces that only push are in balance, or none were found.
     """
     unit = np.abs(problem.load).max()
-    for first in (start, None):
-        active = _likely(problem, unit) if first is None else first
-        if first is None and start is not None and (active == start).all():
-            continue
-        found = _settled(problem, active, unit)
+    active = _likely(problem, unit)
+    for most, pick in ((STEPS, np.ones_like), (SINGLE, _worst)):
+        found = _settled(problem, active, unit, most, pick)
         if found is not None:
             return found
     raise RuntimeError("the loads of the set's meshes did not settle: change the load or the position a little")
 
 
-def _settled(problem, active, unit):
-    """Newton on the logarithms with an active set; None if it does not settle."""
+def _worst(off):
+    """The one contact that is furthest off, as a mask."""
+    out = np.zeros(off.shape)
+    out[np.argmax(off)] = 1.0
+    return out
+
+
+def _settled(problem, active, unit, most, pick):
+    """Newton on the logarithms with an active set, of which `pick` says what changes; None if it does not settle."""
     floor = 1e-9 * unit
     force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
-    for _ in range(STEPS):
+    for _ in range(most):
         found = _newton(problem, active, force, floor)
         if found is None:
             return None
         new, motion = found
         free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
-        wanted = np.where(active, new > 0, free < 0)
-        same = (wanted == active).all()
-        if same and np.abs(new - force).max() < SETTLED * unit:
+        pulls, overlaps = np.where(active, np.maximum(-new, 0.0), 0.0), np.where(active, 0.0, np.maximum(-free, 0.0))
+        overlaps[overlaps < ROUNDING * np.abs(free).max()] = 0.0
+        off = pulls / unit if pulls.any() else overlaps
+        if pick is np.ones_like:
+            off = pulls + overlaps
+        if not off.any() and np.abs(new - force).max() < SETTLED * unit:
             return new, motion
-        force = np.where(wanted, np.where(active & (new > 0), new, floor), 0.0)
-        active = wanted
+        flips = (off > 0) & (pick(off) > 0)
+        force = np.where(active & ~flips & (new > 0), new, floor)
+        active = active ^ flips
+        force = np.where(active, force, 0.0)
     return None
 
 

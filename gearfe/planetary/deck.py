@@ -17,7 +17,7 @@ from geometry.mesh.both_flanks import both_flanks
 from geometry.mesh.outline import stations
 from geometry.tooth.profile import arc_at
 
-from ..elements.contact_deck import TIP, read_rows
+from ..elements.contact_deck import TIP
 from ..elements.deck import element_nodes, held_nodes
 from ..elements.elasticity import edge_nodes
 from ..elements.fe import EDGES
@@ -32,19 +32,25 @@ NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed togethe
 
 @dataclass(frozen=True, slots=True)
 class SetDeck:
-    """What is needed to read the result: of sun, planets and ring the held nodes and their places from the gear's centre [mm]."""
+    """What is needed to read the result: of sun, planets and ring the held nodes and their places from the gear's centre [mm].
+
+    `rim` are the nodes of the ring's outer edge, `around` their places [mm], `angle` that of the ring's tooth 0 [rad].
+    """
 
     case: PlanetaryCase
     held: list[NDArray[np.int64]]
     place: list[NDArray[np.float64]]
+    rim: NDArray[np.int64]
+    around: NDArray[np.float64]
+    angle: float
 
     def forces(self, path: str | os.PathLike[str]) -> dict[str, Any]:
         """What CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
 
         ``"sun"``, ``"ring"``: torque over the base radius. ``"outer"``, ``"inner"`` ``(planets,)``: forces of the meshes of each
-        planet, from its pin's force and torque. ``"rim"``: displacements by node are printed, too, see `moved`.
+        planet, from its pin's force and torque.
         """
-        reaction = read_rows(path)
+        reaction = _printed(path, "forces")
         moments, sums = [], []
         for nodes, place in zip(self.held, self.place, strict=True):
             f = np.array([reaction[n] for n in nodes.tolist()])[:, :2].T
@@ -61,6 +67,29 @@ class SetDeck:
             meshes.append(np.linalg.lstsq(rows, right, rcond=None)[0])
         found = np.array(meshes).T
         return {"sun": moments[0] / gears.sun.r_b, "ring": moments[-1] / gears.ring.r_b, "outer": found[0], "inner": found[1]}
+
+    def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad], and displacements outwards and clockwise ``(n, 2)`` [mm]."""
+        found = _printed(path, "displacements")
+        u = np.array([found[n] for n in self.rim.tolist()])[:, :2]
+        angle = np.arctan2(*self.around)
+        sin, cos = np.sin(angle), np.cos(angle)
+        out = np.column_stack([sin * u[:, 0] + cos * u[:, 1], cos * u[:, 0] - sin * u[:, 1]])
+        return (angle - self.angle) % (2 * math.pi), out
+
+
+def _printed(path, what):
+    """Rows of each node from the parts of a ``.dat`` file whose heading begins with `what`."""
+    out, on = {}, False
+    for line in Path(path).read_text(encoding="ascii").splitlines():
+        row = line.split()
+        if row and not row[0].isdigit():
+            on = row[0] == what
+        elif on and len(row) == 4:
+            out[int(row[0])] = tuple(map(float, row[1:]))
+    if not out:
+        raise RuntimeError(f"{path} holds no {what}: CalculiX found no equilibrium; its .sta and .cvg files say how far it came")
+    return out
 
 
 def write_set_inp(
@@ -101,7 +130,7 @@ def write_set_inp(
         marks = _marks(case) if number == len(bodies) - 1 else ()
         edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
         made = both_flanks(
-            gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], marks=marks, mark_size=0.02 / refine
+            gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], marks=marks, mark_size=0.05 / refine
         )
         cos, sin = math.cos(angle), math.sin(angle)
         x, y = made.mesh.doflocs
@@ -130,7 +159,8 @@ def write_set_inp(
             ends += [f"{n}, 1, 1, {ux:.10e}", f"{n}, 2, 2, {uy:.10e}"]
         if number == len(bodies) - 1:
             every = held_nodes(made.mesh)
-            blocks += ["*NSET, NSET=RIM", *(f"{n}," for n in (every + first + 1).tolist())]
+            rim, around = every + first + 1, own[:, every]
+            blocks += ["*NSET, NSET=RIM", *(f"{n}," for n in rim.tolist())]
         first, element = first + x.size, element + nodes.shape[1]
     for one, two in touching:
         pinion, wheel = (surfaces[side["body"], side["tooth"], side["side"]] for side in (one, two))
@@ -139,10 +169,10 @@ def write_set_inp(
     stiff = penalty * max(m.E for m in case.material)
     law = f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiff:.6e}"
     step = ["*STEP, INC=200\n*STATIC\n1., 1.", "*BOUNDARY", *ends]
-    prints = [f"*NODE PRINT, NSET=H{k}\nRF" for k in range(len(bodies))]
+    prints = [*(f"*NODE PRINT, NSET=H{k}\nRF" for k in range(len(bodies))), "*NODE PRINT, NSET=RIM\nU"]
     with written(path) as name:
         Path(name).write_text("\n".join([*lines, *blocks, law, *contact, *step, *prints, "*END STEP\n"]), encoding="ascii")
-    return SetDeck(case, held, place)
+    return SetDeck(case, held, place, rim, around, bodies[-1][3])
 
 
 def _touching(case, stand, curves, at):
