@@ -1,4 +1,4 @@
-"""The section of a whole gear whose teeth may be loaded on either flank, with vertices of the held circle where they are wanted."""
+"""The section of a whole gear whose teeth may be loaded on either flank, with vertices on the held circle where wanted."""
 
 import math
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class BothFlanks:
     flank: dict
 
 
-def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0):
+def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size=0.0, held_size=math.inf):
     """Mesh the whole section of `gear`.
 
     Parameters
@@ -36,7 +36,8 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
     fillet_size, size, far_size : float
         Edge lengths of the loaded teeth's fillets, of the teeth beside them and of all others [mm].
     marks : sequence of float
-        Angles on the held circle where there is to be a vertex [rad], `mark_size` its edges there [mm].
+        Angles on the held circle where there is to be a vertex [rad], with edges of `mark_size` there and of at most `held_size`
+        elsewhere [mm].
 
     Returns
     -------
@@ -61,15 +62,15 @@ def both_flanks(gear, rolls, *, fillet_size, size, far_size, marks=(), mark_size
         flanks[after, 1] = (count - left.flank)[::-1]
     flanks = {key: flanks[key] % count for key in rolls}
     radius, angle = np.concatenate(radii), np.concatenate(angles)
-    held = _marked(gear, marks, mark_size) if len(marks) else held_circle(gear)
+    held = _marked(gear, marks, mark_size, held_size) if len(marks) else held_circle(gear)
     mesh, _ = fill(np.array([radius * np.sin(angle), radius * np.cos(angle)]), held, ring=gear.internal)
     return BothFlanks(gear, mesh, flanks)
 
 
-def _marked(gear, marks, fine):
+def _marked(gear, marks, fine, longest):
     """The held circle with vertices at `marks`, finer next to them; vertices at even places, edge middles at odd."""
     at, out = np.unique(np.asarray(marks) % (2 * math.pi)), []
-    size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
+    size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16, longest)
     for first, last in zip(at, np.append(at[1:], at[0] + 2 * math.pi), strict=True):
         length = (last - first) * gear.held
         place = spaced(0.0, length, min(size, length / 2), [(0.0, 0.0, fine), (length, length, fine)], 1, GROWTH) / gear.held

@@ -97,11 +97,8 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
     """`Bodies` of a case."""
     gears = case.gears.sun, case.gears.planet, case.ring_gear
-    sun, planet, ring = (
-        whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True)
-    )
+    sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     rim = solved_gears(cache).get(("rim", ring.gear, case.material[2], case.ring, case.width, refine),
                                   lambda: ring_on(ring, case.ring, case.width))  # fmt: skip
     both = planet.held()[:, :PLACES, PLACES:]
     return Bodies(between_teeth(sun.held()), both, between_teeth(ring.held()), rim)
-

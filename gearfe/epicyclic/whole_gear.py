@@ -1,12 +1,12 @@
 """A gear as z equal sectors: how loads on any tooth and on the held edge move any other, exactly z-periodic.
 
 A sector keeps as unknowns its left side and its held edge, in polar components, so that all sectors of a gear look alike; its
-right side is the next one's left. With v_j these unknowns of sector j the whole gear is a block-circulant system, which Fourier
-series over the sectors take apart into z small ones::
+right side is the next one's left. With v_j these unknowns of sector j the whole gear is a block-circulant system, which
+Fourier series over the sectors take apart into z small ones::
 
     v_j = 1/z sum_k V_k exp(2 pi i j k / z),    (A + B exp(2 pi i k / z) + B' exp(-2 pi i k / z)) V_k = F_k
 
-Only the far field is asked for: how teeth yield to loads near themselves is the pair's own knowledge (`gearfe.flexibility.plane`).
+Only the far field is asked for: how teeth yield to loads near themselves the pair knows itself (`gearfe.flexibility.plane`).
 
 References
 ----------

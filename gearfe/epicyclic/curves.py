@@ -1,13 +1,18 @@
 """`SetCurves`: what a planetary set does over its positions, in SI units."""
 
+import os
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..pictures.set_plot import draw_curves
 from ..units import NEWTON_PER_UM
 from .rim import RimSupports, rim_angles, rim_moved
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MESHES = ("sun-planet", "planet-ring")
 
@@ -82,9 +87,13 @@ class SetCurves:
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 
+    def plot(self, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
+        """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""
+        return draw_curves(self, path, dpi=dpi)
+
     @classmethod
     def of(cls, of: Any, meshes: Any, position: NDArray[np.float64], found: list[Any], meta: dict[str, Any]) -> "SetCurves":
-        """From solved positions, `gearfe.planetary.assembly.Position`."""
+        """From solved positions, `gearfe.epicyclic.assembly.Position`."""
         case, p = of.case, len(found)
         width, n = case.width, case.planets
         loads, closing, rim = (

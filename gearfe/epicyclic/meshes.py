@@ -1,4 +1,4 @@
-"""What the contact of a pair says of one mesh of a set at one phase: its contacts, their gaps and how they yield among themselves.
+"""What the contact of a pair says of one mesh of a set at one phase: contacts, their gaps, how they yield among themselves.
 
 All of it is the pair's (`gearfe.contact.plane.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at corners and
 kinks, exact gaps, cracks.
@@ -30,8 +30,8 @@ class Contacts(NamedTuple):
 
     `flexibility` ``(n, n)`` of both gears [mm per N/mm], `gap` [mm], `coefficient`, `radius` and `tilt` as of
     `gearfe.contact.sharing.line_contact`; places `roll_1`, `roll_2` [mm] and torques `turn_1`, `turn_2` on both gears as of
-    `gearfe.contact.rows.Row`; `order` of their pairs. `opening` ``(n, m)`` of cracks under unit loads and `faces` ``(m, m)`` under
-    unit forces, None without cracks. `least` is the gap of the first touch.
+    `gearfe.contact.rows.Row`; `order` of their pairs. `opening` ``(n, m)`` of cracks under unit loads and `faces` ``(m, m)``
+    under unit forces, None without cracks. `least` is the gap of the first touch.
     """
 
     flexibility: NDArray[np.float64]

@@ -4,7 +4,7 @@ import math
 from functools import cache
 
 import gearfe as gf
-from gearfe.planetary.case import PlanetaryCase
+from gearfe.epicyclic.case import PlanetaryCase
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}

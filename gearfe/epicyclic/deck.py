@@ -24,7 +24,6 @@ from ..elements.fe import EDGES
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from .case import PlanetaryCase
-from .rim import RimSupports
 from .standing import _turn_1, _turn_2, directions, standing
 
 NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
@@ -69,7 +68,7 @@ class SetDeck:
         return {"sun": moments[0] / gears.sun.r_b, "ring": moments[-1] / gears.ring.r_b, "outer": found[0], "inner": found[1]}
 
     def moved(self, path: str | os.PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad], and displacements outwards and clockwise ``(n, 2)`` [mm]."""
+        """Angles ``(n,)`` of the rim's nodes from the ring's tooth 0 [rad]; how they move outwards, clockwise ``(n, 2)`` [mm]."""
         found = _printed(path, "displacements")
         u = np.array([found[n] for n in self.rim.tolist()])[:, :2]
         angle = np.arctan2(*self.around)
@@ -121,13 +120,14 @@ def write_set_inp(
     case = curves.meta["case"]
     position = curves.position[at]
     stand = standing(case.gears, np.array(case.angles), [position])
-    touching = _touching(case, stand, curves, at)
-    bodies = _bodies(case, stand, curves, at)
-    lines, blocks, ends, contact = ["** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"], [], [], []
+    pressed = touching(case, stand, curves, at)
+    bodies = placed(case, stand, curves, at)
+    lines = ["** gearfe: planetary set, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
+    blocks, ends, contact = [], [], []
     held, place, first, element, surfaces = [], [], 0, 0, {}
     for number, (gear, material, centre, angle, moved) in enumerate(bodies):
-        rolls = _rolls(gear, [one for pair in touching for one in pair if one["body"] == number], per_width, refine)
-        marks = _marks(case) if number == len(bodies) - 1 else ()
+        rolls = _rolls(gear, [one for pair in pressed for one in pair if one["body"] == number], per_width, refine)
+        marks = case.ring.ends(gear) if gear.internal and case.ring != "held" else ()
         edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
         made = both_flanks(
             gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], marks=marks, mark_size=0.05 / refine
@@ -149,7 +149,7 @@ def write_set_inp(
                 blocks += [f"{element + j + 1}, S{face + 1}" for j in np.flatnonzero(np.isin(nodes[3 + face], middles)).tolist()]
         fixed = held_nodes(made.mesh)
         if len(marks):
-            fixed = fixed[_on_pads(case, made.mesh.doflocs[:, fixed])]
+            fixed = fixed[case.ring.covers(gear, made.mesh.doflocs[:, fixed])]
         held.append(fixed + first + 1)
         place.append(own[:, fixed])
         blocks += [f"*NSET, NSET=H{number}", *(f"{n}," for n in held[-1].tolist())]
@@ -162,7 +162,7 @@ def write_set_inp(
             rim, around = every + first + 1, own[:, every]
             blocks += ["*NSET, NSET=RIM", *(f"{n}," for n in rim.tolist())]
         first, element = first + x.size, element + nodes.shape[1]
-    for one, two in touching:
+    for one, two in pressed:
         pinion, wheel = (surfaces[side["body"], side["tooth"], side["side"]] for side in (one, two))
         slave = (wheel, pinion) if two["tip"] else (pinion, wheel)
         contact += ["*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(slave)]
@@ -175,8 +175,11 @@ def write_set_inp(
     return SetDeck(case, held, place, rim, around, bodies[-1][3])
 
 
-def _touching(case, stand, curves, at):
-    """Both sides of all tooth pairs that may touch: body, tooth, side, arc [mm], half width [mm], whether its tip is there."""
+def touching(case, stand, curves, at):
+    """Both sides of all tooth pairs that may touch: body, tooth, side, and where (see the dict).
+
+    `arc`, `roll` and half `width` of the contact [mm], `tip`: whether the tip corner is there, `force` [N/mm].
+    """
     out = []
     for inner, phases, firsts in ((0, stand.outer, stand.planet), (1, stand.inner, stand.ring)):
         pair = case.pairs[inner]
@@ -185,6 +188,7 @@ def _touching(case, stand, curves, at):
             whole = math.floor(phase)
             found = pair.contacts([phase - whole])
             load = curves.force[inner, at, i] / case.width
+            force = Counter(dict(zip(curves.order.tolist(), curves.pair_force[inner, at, i].tolist(), strict=True)))
             approach = curves.force[inner, at, i] / curves.k[inner, at, i] * 1e3
             for k in np.flatnonzero(found.gap[0] < NEAR * approach).tolist():
                 tooth = int(found.order[k]) - whole
@@ -196,6 +200,7 @@ def _touching(case, stand, curves, at):
                     sides.append({
                         "body": body, "tooth": first[which] % gear.z, "side": 1 if inner and not which else 0,
                         "arc": float(arc_at(gear, roll[0, k])), "width": width,
+                        "roll": float(roll[0, k]), "force": float(force[int(found.order[k])]) / case.width,
                         "tip": abs(float(roll[0, k]) - gear.roll_a) < 1e-9 * gear.m_n,
                     })  # fmt: skip
                 out.append(sides)
@@ -205,11 +210,11 @@ def _touching(case, stand, curves, at):
     return out
 
 
-def _bodies(case, stand, curves, at):
+def placed(case, stand, curves, at):
     """Gear, material, centre [mm], angle of tooth 0 [rad], and motion of the held nodes (turn, (x, y)) of sun, planets, ring."""
     one, two = case.pairs
     angles, gears = np.array(case.angles), case.gears
-    outer, inner = directions(gears, angles)
+    _, inner = directions(gears, angles)
     sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[0, 0] * one.p_bt)
     turn, orbit = curves.te[at] * 1e3, curves.orbit[at] * 1e3
     out = [(gears.sun, case.material[0], np.zeros(2), sun, (turn / gears.sun.r_b, orbit))]
@@ -236,19 +241,3 @@ def _rolls(gear, sides, per_width, refine):
         patch = (arc - 3 * a, arc + 3 * a, a / per_width)
         out[one["tooth"], one["side"]] = stations(gear, 2 * edge["flank"], tip=tip, low=edge["flank"], patches=[patch])
     return out
-
-
-def _marks(case):
-    """Ends of the pads, angles from the ring's tooth 0."""
-    if not isinstance(case.ring, RimSupports):
-        return ()
-    middle = case.ring.first + 2 * math.pi / case.ring.count * np.arange(case.ring.count)
-    reach = case.ring.width / (2 * case.ring_gear.r_rim)
-    return np.sort(np.concatenate([middle - reach, middle + reach]) % (2 * math.pi))
-
-
-def _on_pads(case, places):
-    middle = case.ring.first + 2 * math.pi / case.ring.count * np.arange(case.ring.count)
-    away = np.arctan2(*places)[:, None] - middle
-    away = np.abs((away + math.pi) % (2 * math.pi) - math.pi).min(axis=1)
-    return away < case.ring.width / (2 * case.ring_gear.r_rim) + 1e-9

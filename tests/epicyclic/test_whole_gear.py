@@ -1,12 +1,10 @@
-import math
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from sets import STEEL, gears
 
 from gearfe.energy.ritz.plane import flexibility
-from gearfe.planetary.whole_gear import PLACES, carry, motion, whole_gear
+from gearfe.epicyclic.whole_gear import PLACES, carry, motion, whole_gear
 from geometry.tooth.profile import arc_at
 
 
@@ -57,4 +55,3 @@ def test_a_free_ring_is_the_limit_of_a_soft_bed():
         assert_allclose(work(whole.bedded(np.full(2, k))), free, rtol=0.2 * k)
     assert abs(work(whole.bedded(np.full(2, 1e12)))) < 1e-6 * held
     assert free > held
-

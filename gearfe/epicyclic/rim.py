@@ -4,10 +4,10 @@ A ring on pads is a ring that nothing holds, under the tractions p of its pads a
 
     u_teeth = C f + B' p + R q,    u_pads = B f + A p + R_p q = -p / k,    R' f + R_p' p = 0
 
-so that what pads add to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a pad
-the rim moves as a rigid body moves: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad
-as they do under a stiff one. The mesh of the rim only gets them spread over some edges; what they do more close by is that of
-a half-plane, known exactly.
+so that what pads add to the flexibility of the free ring is a small matrix, and one solve of the ring serves all layouts. On a
+pad the rim moves along with it: tractions are Chebyshev polynomials over ``sqrt(1 - s**2)``, which rise at both ends of a pad as
+they do under a stiff one. The mesh of the rim only gets them spread over some edges; what they do more close by is what they do
+to a half-plane, known exactly.
 
 References
 ----------
@@ -22,11 +22,13 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from geometry.tooth.gear import Gear
+
 from ..elements.elasticity import GAUSS_3
 from ..flexibility.hertz import half_plane, hat_logarithm
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
-TERMS = 6  # polynomials on a pad, radial and tangential
+TERMS = 10  # polynomials on a pad, radial and tangential
 POINTS = 64  # of their quadrature
 FINE = 400  # the same, where a polynomial meets a jump
 SPREAD = 3  # edges of the rim to either side over which the mesh is given a traction as a hat
@@ -114,6 +116,22 @@ class RimSupports:
         if self.count < (1 if self.radial and math.isinf(self.radial) else 2 if self.radial else 3):
             raise ValueError(f"rim supports: count = {self.count}, but so few of these do not hold the ring: give 3 or more")
 
+    @property
+    def middles(self) -> NDArray[np.float64]:
+        """Angles of the pads' middles, clockwise from the ring's tooth 0 [rad]."""
+        step = 2 * math.pi / self.count
+        return np.array([self.first + k * step for k in range(self.count)])
+
+    def ends(self, gear: Gear) -> NDArray[np.float64]:
+        """Angles of both ends of all pads on the rim of a ring [rad]."""
+        reach = self.width / (2 * gear.held)
+        return np.concatenate([self.middles - reach, self.middles + reach])
+
+    def covers(self, gear: Gear, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether `places` ``(2, n)`` on the rim lie on a pad, its ends included."""
+        away = np.arctan2(*places)[:, None] - self.middles + math.pi
+        return np.abs(away % (2 * math.pi) - math.pi).min(axis=1) < self.width / (2 * gear.held) + 1e-9
+
 
 def _number(name, value):
     if isinstance(value, bool) or not isinstance(value, Real) or math.isnan(value):
@@ -170,7 +188,9 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
     if isinstance(support, RimBed):
         return Rim(whole, between_teeth(whole.bedded(np.array([support.radial, support.tangential]))))
     if not isinstance(support, RimSupports):
-        raise ValueError(f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away")
+        raise ValueError(
+            f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
+        )
     more, moved = whole.loose()
     pads = _pads(whole, support, width, moved)
     teeth = between_teeth(more)
@@ -180,7 +200,7 @@ def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: floa
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
     p, n = pads.compliance.shape[0], gear.z * PLACES
     scale = np.diag(between).mean()
-    unit = scale * np.array([1.0, 1.0, 1 / gear.r_rim])[:, None]  # so that all of the system is of one size
+    unit = scale * np.array([1.0, 1.0, 1 / gear.held])[:, None]  # so that all of the system is of one size
     system = np.block([[between, (unit * pads.turns).T], [unit * pads.turns, np.zeros((3, 3))]])
     if np.linalg.svd(unit * pads.turns, compute_uv=False)[-1] < SURE * scale:
         raise ValueError("ring: these pads let it move without force: give more of them, or hold both directions")
@@ -199,8 +219,8 @@ def _pads(whole, support, width, moved):
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
     if support.count * support.width > 2 * math.pi * gear.r_rim * (1 - 1e-9):
         raise ValueError(
-            f"ring: {support.count} pads of {support.width:g} mm are longer than its rim, {2 * math.pi * gear.r_rim:.5g} mm: give "
-            "ring = 'held'"
+            f"ring: {support.count} pads of {support.width:g} mm are longer than its rim, {2 * math.pi * gear.r_rim:.5g} mm: "
+            "give ring = 'held'"
         )
     step = 4 * math.pi / (z * nodes)  # of an edge of the rim
     terms = 1 if support.pushes else TERMS
@@ -218,10 +238,12 @@ def _pads(whole, support, width, moved):
         out, inx = np.sin(angle), np.cos(angle)
         force = np.array([out, inx, 0 * angle]), np.array([inx, -out, np.full(angle.size, gear.r_rim)])
         for which in held:
-            columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in zip(number.tolist(), weight, strict=True)))
+            hat = zip(number.tolist(), weight, strict=True)  # of each vertex under the pad: every second node, two unknowns each
+            columns.append(sum(np.roll(hats[which], 4 * n)[:, None] * row for n, row in hat))
             turns.append(force[which] @ shapes)
             compliance.append(np.append(width / stiff[which], np.zeros(terms - 1)))
-        local.append(_sharper(whole, support.width, number * step * gear.r_rim, step * gear.r_rim, weight)[np.ix_(held, held)])
+        edge = step * gear.r_rim
+        local.append(_sharper(whole, support.width, number * edge, edge, weight)[np.ix_(held, held)])
     p = len(held) * terms
     total = np.zeros((support.count * p,) * 2)
     for k, own in enumerate(local):
@@ -335,4 +357,3 @@ def rim_angles(whole: WholeGear) -> NDArray[np.float64]:
     """Angles of all nodes of the rim, clockwise from the centre-line of tooth 0 [rad]."""
     sectors = 2 * math.pi / whole.gear.z * np.arange(whole.gear.z)
     return (sectors[:, None] + whole.angle).ravel()
-

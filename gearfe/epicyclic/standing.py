@@ -1,8 +1,8 @@
 """How the teeth of a set stand at one position: mesh phases, tooth numbers and directions of the forces.
 
 The carrier stands still. Angles count clockwise from +y, the sun turns clockwise and drives; planets turn counter-clockwise, as
-does the torque on the ring. The mesh of sun and planet i is that of `GearPair.turn`, turned by the planet's angle; in the frame of
-planet and ring everything is mirrored, since there the planet is the pinion, and pinions turn clockwise.
+does the torque on the ring. The mesh of sun and planet i is that of `GearPair.turn`, turned by the planet's angle; in the frame
+of planet and ring everything is mirrored, since there the planet is the pinion, and pinions turn clockwise.
 
 Every tooth of a gear is numbered clockwise in this frame, by whole numbers that may leave 0 ... z - 1. With the sun turned by
 `position` pitches sun tooth j is in a pair of phase ``position - z_s (angle_i - angle_0) / 2 pi + j``, with planet tooth
@@ -53,8 +53,9 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
     if (np.abs(away - np.round(away)) > FITS).any():
         fit = np.degrees(given[0] + step * np.round(away)).tolist()
         raise ValueError(
-            f"planets at {', '.join(f'{x:.6g}' for x in np.degrees(given))} degrees cannot be assembled: they stand whole multiples "
-            f"of 360 / (z_s + z_r) = {math.degrees(step):.6g} degrees apart; nearest: {', '.join(f'{x:.6g}' for x in fit)}"
+            f"planets at {', '.join(f'{x:.6g}' for x in np.degrees(given))} degrees cannot be assembled: they stand whole "
+            f"multiples of 360 / (z_s + z_r) = {math.degrees(step):.6g} degrees apart; nearest: "
+            f"{', '.join(f'{x:.6g}' for x in fit)}"
         )
     around = np.sort(given % (2 * math.pi))
     apart = np.diff(np.append(around, around[0] + 2 * math.pi))

@@ -1,10 +1,11 @@
-"""The one contact problem of a whole set at a position: its flexibility between all contacts, gaps, motions, and what it gives."""
+"""The one contact problem of a whole set at a position: flexibility between all contacts, gaps, motions, and what it gives."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..flexibility.hertz import contact_modulus
 from .balance import Problem, balance
 from .case import PlanetaryCase
 from .meshes import Met
@@ -14,7 +15,7 @@ from .whole_gear import PLACES, carry
 
 
 class Bodies(NamedTuple):
-    """How gears yield between meshes [mm per N/mm]: tables of `gearfe.planetary.whole_gear`.
+    """How gears yield between meshes [mm per N/mm]: tables of `gearfe.epicyclic.whole_gear`.
 
     `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
     on a left one so many teeth before it, `rim` what the ring's support adds.
@@ -66,7 +67,7 @@ class Set:
     bodies : Bodies
     stand : Standing
     coupled : bool
-        As of `gearfe.planetary.solve.planetary_stiffness`.
+        As of `gearfe.epicyclic.solve.planetary_stiffness`.
     """
 
     def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
@@ -78,6 +79,7 @@ class Set:
         along = np.array([np.cos(angles), -np.sin(angles)]).T
         error = np.array(case.errors)
         self.behind = np.einsum("kpd,pd->kp", self.push, error[:, :1] * out + error[:, 1:] * along)
+        self._modulus = [contact_modulus(case.material[k : k + 2]) for k in (0, 1)]
         self._spread: dict[int, Any] = {}
 
     def solved(self, i: int, met: list[list[Met]]) -> Position:
@@ -96,12 +98,11 @@ class Set:
         for inner, row in enumerate(met):
             for planet, one in enumerate(row):
                 at = slice(stop, stop := stop + one.contacts.gap.size)
-                pinion, unique = one.contacts.order + one.first, self._slots(one.contacts, inner)
+                slots = self._slots(one.contacts, inner)
                 # teeth, clockwise: sun j, planet C - j; planet -j', ring D - j'
                 first = (self.stand.planet, self.stand.ring)[inner][planet]
-                teeth = unique[0] + one.first
-                out.append(_Block(one, inner, planet, at, ((-1 if inner else 1) * teeth, first - teeth), unique[1]))
-                assert pinion.size == one.contacts.gap.size
+                teeth = slots[0] + one.first
+                out.append(_Block(one, inner, planet, at, ((-1 if inner else 1) * teeth, first - teeth), slots[1]))
         return out
 
     def _slots(self, contacts, inner):
@@ -142,7 +143,7 @@ class Set:
         return rows @ own.reshape(rows.shape[1], columns.shape[1]) @ columns.T
 
     def _problem(self, blocks):
-        """`Problem` of a position; motions: turn of the sun, its x and y if it floats, turns of planets, motions of a loose ring."""
+        """`Problem` of a position; motions: the sun's turn, its x and y if it floats, planets' turns, a loose ring's motions."""
         case, n = self.case, blocks[-1].at.stop
         total, closing = np.zeros((n, n)), np.zeros((n, self._motions))
         give = case.width / case.pin
@@ -177,12 +178,6 @@ class Set:
     def _motions(self):
         return 1 + 2 * self.case.floating + self.case.planets + 3 * bool(self._lugs)
 
-    @property
-    def _modulus(self):
-        from ..flexibility.hertz import contact_modulus
-
-        return [contact_modulus(self.case.material[k : k + 2]) for k in (0, 1)]
-
     def _closing(self, block):
         """How motions of the bodies close a mesh: ``(motions,)``."""
         case, out = self.case, np.zeros(self._motions)
@@ -197,17 +192,17 @@ class Set:
 
     def _with_lugs(self, problem, blocks):
         """The problem with lugs of the ring as contacts, and the ring's motions."""
-        rim, l = self.bodies.rim, self._lugs
+        rim, lugs = self.bodies.rim, self._lugs
         n = problem.gap.size
-        across, moves = np.zeros((l, n)), np.zeros((3, n))
+        across, moves = np.zeros((lugs, n)), np.zeros((3, n))
         for one in blocks:
             if one.inner:
                 teeth = one.teeth[1] % self.case.gears.ring.z
-                across[:, one.at] = rim.across[:, teeth].reshape(l, -1) @ one.spread[1].T
+                across[:, one.at] = rim.across[:, teeth].reshape(lugs, -1) @ one.spread[1].T
                 moves[:, one.at] = rim.gives[:, teeth].reshape(3, -1) @ one.spread[1].T
-        closing = np.vstack([problem.closing, np.zeros((l, problem.closing.shape[1]))])
+        closing = np.vstack([problem.closing, np.zeros((lugs, problem.closing.shape[1]))])
         closing[:, -3:] = -np.concatenate([moves, rim.turns], axis=1).T
-        zero, one_ = np.zeros(l), np.ones(l)
+        zero, one_ = np.zeros(lugs), np.ones(lugs)
         return Problem(
             np.block([[problem.flexibility, across.T], [across, rim.lug]]),
             np.append(problem.gap, zero),
@@ -250,9 +245,10 @@ class Set:
         return Position(loads, closing, rim, float(motion[0]), orbit, pairs, on_ring, lugs, whole)
 
     def _by_lugs(self, one, force):
-        rim, l = self.bodies.rim, self._lugs
+        """What lugs move the ring at the contacts of a mesh."""
+        rim, lugs = self.bodies.rim, self._lugs
         teeth = one.teeth[1] % self.case.gears.ring.z
-        return one.spread[1] @ (rim.across[:, teeth].reshape(l, -1).T @ force[-l:])
+        return one.spread[1] @ (rim.across[:, teeth].reshape(lugs, -1).T @ force[-lugs:])
 
 
 def _with_faces(problem, shut):

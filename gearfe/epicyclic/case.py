@@ -48,7 +48,7 @@ class PlanetaryCase:
     flanks : dict, optional
         Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; those of a
         planet on both its flanks. A pitch deviation of a planet moves the whole tooth, given as of its flank towards the sun.
-        Teeth are counted clockwise from those in mesh at position 0, see `gearfe.planetary.standing`.
+        Teeth are counted clockwise from those in mesh at position 0, see `gearfe.epicyclic.standing`.
     damage : dict, optional
         Cracks through the whole width by gear, with the same names. The sides of a planet's cracks are those of its mesh with the
         sun. A crack changes the mesh that is near it; what it changes between meshes is left out. None in a ring that bends.
@@ -86,7 +86,7 @@ class PlanetaryCase:
         put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
         for name, most in (("force", math.inf), ("pin", math.nan)):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not value > 0 or value == most:
+            if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) != most:
                 raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
             put(self, name, float(value))
         materials = (self.material,) * 3 if isinstance(self.material, Material) else tuple(self.material)
@@ -122,7 +122,9 @@ class PlanetaryCase:
     def _errors(self):
         given = np.zeros((self.planets, 2)) if self.errors is None else np.array(self.errors, dtype=float)
         if given.shape != (self.planets, 2) or not np.isfinite(given).all():
-            raise ValueError(f"errors of shape {given.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]")
+            raise ValueError(
+                f"errors of shape {given.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
+            )
         most = LARGEST * self.gears.sun.m_n
         if np.abs(given).max() > most:
             raise ValueError(
@@ -158,7 +160,7 @@ class PlanetaryCase:
         for name, found in self.damage.items():
             check_through(found, "the section of a planetary set")
             if name == "ring" and found and self.ring != "held":
-                raise ValueError("a crack in a ring that bends: what it adds is not modelled; give ring = 'held', or no crack there")
+                raise ValueError("a crack in a ring that bends is not modelled: give ring = 'held', or no crack there")
 
     def gear_of(self, name: Any) -> Any:
         """Gear by its name."""

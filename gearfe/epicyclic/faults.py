@@ -1,4 +1,4 @@
-"""Flanks and cracks of a set's gears, as the pair of each mesh counts its teeth (`gearfe.planetary.standing`)."""
+"""Flanks and cracks of a set's gears, as the pair of each mesh counts its teeth (`gearfe.epicyclic.standing`)."""
 
 from dataclasses import replace
 from typing import Any

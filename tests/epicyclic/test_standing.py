@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from sets import gears
 
-from gearfe.planetary.standing import _turn_1, _turn_2, assembled, directions, standing
+from gearfe.epicyclic.standing import _turn_1, _turn_2, assembled, directions, standing
 from geometry.tooth.profile import cartesian, flank, flank_normal
 
 ANGLES = 2 * math.pi / 105 * np.array([0, 35, 70, 18])
@@ -18,7 +18,8 @@ def placed(gear, centre, angle, tooth, roll, side=1):
     x, y = flank_normal(gear, roll)
     normal = np.array([side * x, y])
     cos, sin = math.cos(turn), math.sin(turn)
-    return centre + cartesian(radius, turn + side * away), np.array([cos * normal[0] + sin * normal[1], cos * normal[1] - sin * normal[0]])
+    turned = np.array([cos * normal[0] + sin * normal[1], cos * normal[1] - sin * normal[0]])
+    return centre + cartesian(radius, turn + side * away), turned
 
 
 @pytest.mark.parametrize("position", [0.0, 0.37, 12.9])
@@ -54,7 +55,7 @@ def test_flanks_touch_where_the_numbers_say(position):
 
 
 def test_planets_that_do_not_fit_are_refused():
-    with pytest.raises(ValueError, match="nearest: 0, 89.1429, 178.286, 270.857"):
+    with pytest.raises(ValueError, match=r"nearest: 0, 89\.1429, 178\.286, 270\.857"):
         assembled(gears(1), [k * math.pi / 2 for k in range(4)])
     with pytest.raises(ValueError, match="touch each other"):
         assembled(gears(1), 2 * math.pi / 105 * np.array([0, 5]))

@@ -10,13 +10,14 @@ from sets import STEEL, gears
 from skfem import Basis, ElementTriP2, ElementVector, asm
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from gearfe.planetary.rim import Rim, RimBed, RimSupports, rim_angles, rim_moved, ring_on
-from gearfe.planetary.whole_gear import PLACES, between_teeth, carry, whole_gear
+from gearfe.epicyclic.rim import Rim, RimBed, RimSupports, rim_angles, rim_moved, ring_on
+from gearfe.epicyclic.whole_gear import PLACES, between_teeth, carry, whole_gear
 from geometry.mesh.both_flanks import both_flanks
 from geometry.mesh.outline import stations
 from geometry.tooth.profile import cartesian, flank, flank_normal
 
 TEETH = (0, 7, 28, 43)
+NEAR = 1.0  # mm beside a pad, where the picture of the rim is spread over some edges
 
 
 def ring(rim=95.0):
@@ -35,7 +36,14 @@ def direct(gear, support, roll):
     rolls[np.argmin(abs(rolls - roll))] = roll
     ends, middle, reach = pads_ends(gear, support)
     made = both_flanks(
-        gear, {(tooth, 0): rolls for tooth in TEETH}, fillet_size=0.2, size=0.5, far_size=1.0, marks=ends, mark_size=0.001
+        gear,
+        {(tooth, 0): rolls for tooth in TEETH},
+        fillet_size=0.2,
+        size=0.5,
+        far_size=1.0,
+        marks=ends,
+        mark_size=0.001,
+        held_size=0.4,
     )
     basis = Basis(made.mesh, ElementVector(ElementTriP2()), intorder=4)
     stiffness = asm(linear_elasticity(*lame_parameters(STEEL.E, STEEL.nu)), basis).tocsc()
@@ -75,12 +83,15 @@ def test_released_ring_is_that_of_direct_finite_elements(rim, support):
     loads = np.zeros((gear.z, PLACES))
     loads[TEETH[1]] = rows
     tractions, whole = (np.einsum("pta,ta->p", values, loads) for values in (made.reaction, made.moves))
+    _, middle, reach = pads_ends(gear, support)
+    away = np.abs((angle[:, None] - middle + math.pi) % (2 * math.pi) - math.pi).min(axis=1) - reach
+    clear = away > NEAR / gear.r_rim
     own, ours = rim_angles(made.whole) % (2 * math.pi), rim_moved(made, loads, tractions, whole)
     sin, cos = np.sin(angle), np.cos(angle)
     x, y = moved[:, 0, 1], moved[:, 1, 1]
     for values, beside in ((ours[:, 0], sin * x + cos * y), (ours[:, 1], cos * x - sin * y)):
         got = np.interp(angle, own, values, period=2 * math.pi)
-        assert_allclose(got, beside, atol=5e-3 * abs(beside).max())
+        assert_allclose(got[clear], beside[clear], atol=5e-3 * abs(beside).max())
 
 
 def test_pads_carry_what_the_teeth_are_given():
@@ -102,7 +113,7 @@ def test_stiff_springs_hold():
     assert abs(ring_on(whole, RimBed(1e12, 1e12), 20.0).more).max() < 1e-6 * abs(held).max()
     rigid, stiff = (ring_on(whole, RimSupports(6, 4.8, **k), 20.0).more for k in ({}, {"radial": 1e13, "tangential": 1e13}))
     assert_allclose(stiff, rigid, atol=1e-6 * abs(rigid).max())
-    few, many = (abs(ring_on(whole, RimSupports(*n), 20.0).more).max() for n in ((6, 4.8), (84, 7.05)))
+    few, many = (abs(ring_on(whole, RimSupports(*n), 20.0).more).max() for n in ((6, 4.8), (42, 14.1)))
     assert many < 0.02 * few
 
 
