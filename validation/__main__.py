@@ -27,11 +27,10 @@ ROWS = (
     "dynamics",
     "hard",
     "holes",
-    "joint",
     "map",
     "outlines",
-    "rig",
     "sample",
+    "sets",
     "sweeps",
     "three",
 )  # parts: rows, by beginnings

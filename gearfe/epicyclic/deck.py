@@ -24,7 +24,7 @@ from ..elements.fe import EDGES
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from .case import PlanetaryCase
-from .standing import _turn_1, _turn_2, directions, standing
+from .standing import directions, standing, tooth_angles
 
 NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
 
@@ -212,22 +212,18 @@ def touching(case, stand, curves, at):
 
 def placed(case, stand, curves, at):
     """Gear, material, centre [mm], angle of tooth 0 [rad], and motion of the held nodes (turn, (x, y)) of sun, planets, ring."""
-    one, two = case.pairs
     angles, gears = np.array(case.angles), case.gears
+    sun, planets, ring = tooth_angles(gears, angles, stand)
     _, inner = directions(gears, angles)
-    sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[0, 0] * one.p_bt)
     turn, orbit = curves.te[at] * 1e3, curves.orbit[at] * 1e3
     out = [(gears.sun, case.material[0], np.zeros(2), sun, (turn / gears.sun.r_b, orbit))]
     for i, angle in enumerate(angles):
         place = np.array([math.sin(angle), math.cos(angle)])
         along = np.array([math.cos(angle), -math.sin(angle)])
-        tooth = angle + _turn_2(one, one.path[0] + (stand.outer[0, i] + stand.planet[i]) * one.p_bt)
         error = case.errors[i][0] * place + case.errors[i][1] * along
         closed = curves.force[1, at, i] / curves.k[1, at, i] * 1e3  # of the mesh with the ring, by the planet's turn and shift
         turned = closed + inner[:, i] @ error
-        out.append((gears.planet, case.material[1], gears.a * place, tooth, (-turned / gears.planet.r_b, error)))
-    at_ring = angles[0] - _turn_2(two, two.path[0] + stand.inner[0, 0] * two.p_bt)
-    ring = at_ring - 2 * math.pi / gears.ring.z * stand.ring[0]
+        out.append((gears.planet, case.material[1], gears.a * place, planets[i], (-turned / gears.planet.r_b, error)))
     out.append((case.ring_gear, case.material[2], np.zeros(2), ring, (0.0, np.zeros(2))))
     return out
 

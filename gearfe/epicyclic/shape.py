@@ -16,7 +16,7 @@ from ..pictures.set_plot import draw_set
 from .curves import SetCurves
 from .deck import placed, touching
 from .rim import RimSupports
-from .standing import standing
+from .standing import standing, tooth_angles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -135,7 +135,7 @@ def plot_planetary_set(
     shapes, case = bent_shapes(curves, at), curves.meta["case"]
     supports = None
     if isinstance(case.ring, RimSupports):
-        stand = standing(case.gears, np.array(case.angles), [curves.position[at]])
-        angle = case.ring.middles + placed(case, stand, curves, at)[-1][3]
+        angles = np.array(case.angles)
+        angle = case.ring.middles + tooth_angles(case.gears, angles, standing(case.gears, angles, [curves.position[at]]))[2]
         supports = 1.03 * case.ring_gear.r_rim * np.array([np.sin(angle), np.cos(angle)])
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)

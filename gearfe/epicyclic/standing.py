@@ -100,6 +100,17 @@ def _turn_2(pair, nominal):
     return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
 
 
+def tooth_angles(
+    set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing, at: int = 0
+) -> tuple[float, NDArray[np.float64], float]:
+    """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at one of the positions of `stand`."""
+    one, two = set_.sun_planet, set_.planet_ring
+    sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[at, 0] * one.p_bt)
+    planets = angles + _turn_2(one, one.path[0] + (stand.outer[at] + stand.planet) * one.p_bt)
+    at_ring = angles[0] - _turn_2(two, two.path[0] + stand.inner[at, 0] * two.p_bt)
+    return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
+
+
 def directions(set_: "PlanetarySet", angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Unit forces ``(2, planets)`` on the planets, along x and y: of the sun, and of the ring."""
     cos, sin = np.cos(angles), np.sin(angles)
