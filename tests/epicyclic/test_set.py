@@ -133,7 +133,7 @@ def test_stiff_pins_and_beds_are_rigid():
 
 def test_lugs_that_all_push_are_pads_without_radial_force(monkeypatch):
     """The torque presses all of them; what is a contact of its own there is taken into the ring's flexibility here."""
-    monkeypatch.setattr("gearfe.epicyclic.rim.TERMS", 1)
+    monkeypatch.setattr("gearfe.epicyclic.pads.TERMS", 1)
     lugs, pads = (
         planetary_stiffness(case(ring=RimSupports(6, 4.8, radial=0, tangential=1e5, pushes=one)), [0.2, 3.6], cache=False)
         for one in (True, False)
