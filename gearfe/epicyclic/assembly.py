@@ -256,9 +256,11 @@ def _with_faces(problem, shut):
     n, m = problem.gap.size, sum(one.met.contacts.faces.shape[0] for one in shut)
     total = np.zeros((n + m, n + m))
     total[:n, :n], stop = problem.flexibility, n
+    tilt = np.append(problem.tilt, np.zeros(m))
     for one in shut:
         at = slice(stop, stop := stop + one.met.contacts.faces.shape[0])
         total[at, at] = one.met.contacts.faces
+        tilt[one.at] = 0.0  # it is that of open cracks
         total[one.at, at], total[at, one.at] = one.met.contacts.opening, one.met.contacts.opening.T
     zero = np.zeros(m)
     return Problem(
@@ -267,7 +269,7 @@ def _with_faces(problem, shut):
         np.append(problem.coefficient, zero),
         np.append(problem.radius, np.ones(m)),
         np.append(problem.modulus, np.ones(m)),
-        np.append(problem.tilt, zero),
+        tilt,
         np.vstack([problem.closing, np.zeros((m, problem.closing.shape[1]))]),
         problem.load,
     )

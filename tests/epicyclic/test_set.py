@@ -177,6 +177,35 @@ def test_uncoupled_cracks_are_those_of_isolated_pairs():
     assert found.k.shape == (2, 3, 3)
 
 
+@pytest.mark.parametrize("name", [("planet", 0), "ring"])
+def test_cracks_of_planet_and_ring_are_those_of_isolated_pairs(name):
+    """Counted and mirrored as the pair of planet and ring has them: what the sun loads is unloaded there."""
+    plain = planetary_stiffness(unequal(0), [0.2], coupled=False)
+    given = unequal(0)
+    stand = standing(given.gears, np.array(given.angles), [0.2])
+    tooth = int(plain.tooth[1, 0, 0].max())  # of the planet, in mesh with the ring
+    pair = -tooth + given.gears.planet.z * round((tooth - stand.inner[0, 0]) / given.gears.planet.z)
+    pair += given.gears.planet.z * round((-stand.inner[0, 0] + 0.5 - pair) / given.gears.planet.z)
+    if name == "ring":
+        crack, damage = gf.Crack(level=0.5, tooth=int(stand.ring[0]) - pair), {"wheel": [gf.Crack(level=0.5, tooth=pair)]}
+    else:
+        crack, damage = gf.Crack(level=0.5, tooth=tooth), {"pinion": [gf.Crack(level=0.5, tooth=pair, side="unloaded")]}
+    hurt = planetary_stiffness(unequal(0, damage={name: [crack]}), [0.2], coupled=False)
+    want = isolated(given.pairs[1], stand.inner[:, 0], damage=damage)
+    assert_allclose(hurt.k[1, :, 0], want.k, rtol=1e-6)
+    assert abs(hurt.k[1, 0, 0] / plain.k[1, 0, 0] - 1) > 1e-3
+
+
+def test_crack_faces_do_not_pass_through_each_other():
+    """A load on the next tooth closes the crack: the pair says so at some of these phases, and the set has its k."""
+    crack = gf.Crack(level=0.5)
+    at = np.linspace(-1.0, 1.5, 11)
+    want = isolated(case().pairs[0], at, damage={"pinion": [crack]})
+    assert want.meta["crack_closed_phases"]
+    found = planetary_stiffness(unequal(0, damage={"sun": [crack]}), at, coupled=False)
+    assert_allclose(found.k[0, :, 0], want.k, rtol=1e-6)
+
+
 def test_one_planet_has_no_neighbours():
     """What is left is the planet's own: its bore takes no torque; a ring on pads bends."""
     plain = planetary_stiffness(unequal(0), [0.1, 0.6])
