@@ -18,6 +18,7 @@ from scipy.optimize import nnls
 from ..flexibility.hertz import half_width
 
 STEPS, SINGLE = 40, 400  # of Newton and the active set, changed all at once and one by one
+HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
 ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
 SETTLED = 1e-11  # last change of a force, in those of all
 STIFF = 1e6  # of the balance in the start by non-negative least squares
@@ -103,7 +104,7 @@ def _newton(problem, active, force, floor):
     try:
         upper = cholesky(matrix)
         moved = solve_triangular(upper, np.column_stack([closing, offset]), trans="T")
-        normal = moved[:, :-1].T @ moved[:, :-1]
+        normal = moved[:, :-1].T @ moved[:, :-1] + HOLD * np.abs(problem.load).max() * np.eye(problem.load.size)
         motion = np.linalg.solve(normal, problem.load + moved[:, :-1].T @ moved[:, -1])
     except (LinAlgError, np.linalg.LinAlgError):
         return None

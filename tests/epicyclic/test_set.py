@@ -251,3 +251,20 @@ def test_helical_sets_are_refused():
     turned[2] = replace(turned[2], x=float(re.findall(r"x_ring = ([-0-9.]+) \(", str(told.value))[0]))
     with pytest.raises(ValueError, match="spur gears only"):
         PlanetaryCase(gf.PlanetarySet(*turned, 3), FORCE, STEEL)
+
+
+def test_planets_out_of_mesh_carry_nothing_and_the_others_all():
+    """Errors so large for the load that planets leave their meshes, with hats at corners open and closed."""
+    rng = np.random.default_rng(5)
+    for _ in range(6):
+        given = unequal(0, 26, 53, 79, errors=rng.normal(0, 0.02, (4, 2))).with_(force=150.0)
+        found = planetary_stiffness(given, rng.uniform(0, 20, 2))
+        assert (found.force == 0).any() or found.force.min() < 1.0
+        assert_allclose(found.force[0].sum(axis=1), 4 * 150.0, rtol=1e-10)
+        assert_allclose(found.force[0], found.force[1], atol=1e-9 * 150)
+        assert (found.pair_force >= 0).all()
+
+
+def test_lugs_do_not_hold_a_ring_that_one_planet_pushes_away():
+    with pytest.raises(RuntimeError, match="no forces that only push"):
+        planetary_stiffness(unequal(0, ring=RimSupports(6, 4.8, radial=0, pushes=True)), [0.2])
