@@ -240,5 +240,5 @@ def run(parts=()):
 
 
 def _thin():
-    made = small().gears
+    made = small(0.0).gears
     return gf.PlanetarySet(made.sun, made.planet, gf.Gear(z=84, r_rim=91.0, x=-0.4617, addendum=0.85, tip_radius=0.3, **RACK), 3)
