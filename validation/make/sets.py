@@ -39,7 +39,7 @@ a set in one contact problem, in plane strain.
 ## Planets and supports
 
 A set of 45/30/105 teeth, m_n 2 mm, {FORCE:g} N a mesh on 20 mm, sun held but for its turn. The ring is held on pads of
-{PAD:g} mm, rigid, or all around; its rim is so thick below the root circle. Four planets do not fit equally spaced: they stand
+{PAD:g} mm, rigid, or all around; rim: its thickness outside of the root circle. Four planets do not fit equally spaced: they stand
 at 0, 91.2, 180 and 271.2 degrees. k: mean over {SAMPLES} positions of a pitch of the supports; of planet and ring least and
 largest, too. Isolated pairs: see the first line. TE: transmission error under load, peak to peak.
 
@@ -53,7 +53,7 @@ forces and transmission error, too; only its abstract was at hand, so that wheth
 OUTSIDE = f"""
 ## CalculiX
 
-The set of 21/31/84 teeth, N = 3, six rigid pads of 4.8 mm on a rim of 7.6 mm, planet 0 ahead by {1e3 * ERROR:g} um so that
+The set of 21/31/84 teeth, N = 3, six rigid pads of 4.8 mm on a rim of 9.4 mm, planet 0 ahead by {1e3 * ERROR:g} um so that
 loads differ: all gears with all teeth in second-order triangles (CPE6), frictionless surface-to-surface contact of all flanks,
 small displacements (`gearfe.write_set_inp`). Sun and planets are turned by what was found here. Reactions of sun, ring and pins
 then give the force of every mesh; as they are turned alike, forces differ as k does. Both share the gears' outlines, where they
@@ -232,7 +232,7 @@ def run(parts=()):
         "",
         f"![A set of 21/31/84 teeth on six pads, bent by its load]({PICTURE.name})",
         "",
-        "21/31/84 teeth, rim of 3.6 mm, planets between the pads (triangles).",
+        "21/31/84 teeth, rim of 5.4 mm, planets between the pads (triangles).",
     ]
     page.write(
         "sets", answer, [*INTRO.splitlines(), "", *lines, *drawn], outsider(), PROOF.splitlines(), cost(), HOW.splitlines()
