@@ -39,7 +39,7 @@ a set in one contact problem, in plane strain.
 ## Planets and supports
 
 A set of 45/30/105 teeth, m_n 2 mm, {FORCE:g} N a mesh on 20 mm, sun held but for its turn. The ring is held on pads of
-{PAD:g} mm, rigid, or all around; rim: its thickness outside of the root circle. Four planets do not fit equally spaced: they stand
+{PAD:g} mm, rigid, or all around; rim: its thickness outside of the root circle. Four do not fit equally spaced: they stand
 at 0, 91.2, 180 and 271.2 degrees. k: mean over {SAMPLES} positions of a pitch of the supports; of planet and ring least and
 largest, too. Isolated pairs: see the first line. TE: transmission error under load, peak to peak.
 
