@@ -27,10 +27,11 @@ ROWS = (
     "dynamics",
     "hard",
     "holes",
+    "joint",
     "map",
     "outlines",
+    "rig",
     "sample",
-    "sets",
     "sweeps",
     "three",
 )  # parts: rows, by beginnings
