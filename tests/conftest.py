@@ -15,7 +15,6 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "geometry": ("geometry/tooth/test_gear.py", "geometry/pair/test_pair.py", "geometry/damage/test_pit.py"),
     "flexibility": ("flexibility/test_condense.py", "flexibility/test_hertz.py", "flexibility/test_halfspace.py"),
     "supports": ("supports/test_beam.py",),
-    "epicyclic": ("epicyclic/test_standing.py", "epicyclic/test_whole_gear.py"),
     "elements": ("elements/test_elasticity.py", "elements/test_fe3d.py::test_plane_strain_is_the_two_dimensional_fe"),
     "energy": (
         "energy/test_energy.py",

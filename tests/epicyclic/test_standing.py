@@ -23,6 +23,7 @@ def placed(gear, centre, angle, tooth, roll, side=1):
 
 
 @pytest.mark.parametrize("position", [0.0, 0.37, 12.9])
+@pytest.mark.quick
 def test_flanks_touch_where_the_numbers_say(position):
     """Sun, planets and ring, each turned rigidly by one angle, touch with the teeth and at the places that `standing` names."""
     set_ = gears(1)
