@@ -164,7 +164,7 @@ def test_what_holds_no_ring_is_refused(build, message):
 
 @pytest.mark.parametrize("z", [4, 5])
 def test_harmonics_of_sectors_add_up_to_the_sum_over_sectors(z):
-    """Compliance of pads, from harmonics, beside the double sum over a real block-circulant matrix; even z has a last harmonic."""
+    """Compliance of pads, from harmonics, beside the double sum of a block-circulant matrix; even z has a last harmonic."""
     rng = np.random.default_rng(z)
     block = rng.standard_normal((z, 3, 3))
     block = block + np.roll(block[::-1], 1, axis=0).transpose(0, 2, 1)  # C(-k) is the transpose of C(k)
