@@ -47,8 +47,8 @@ class Campbell:
 def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders: Mapping[str, float] | None = None) -> Campbell:
     """Campbell diagram of a machine.
 
-    The natural frequencies are those of the mean mesh stiffnesses; of a machine with a `spin`, that of its carrier, they depend
-    on the speed. Straight lines are laid between the speeds given.
+    The natural frequencies are those of the mean mesh stiffnesses; of a machine with a `spin`, that of its carrier, or with
+    `rotors` they depend on the speed. Straight lines are laid between the speeds given.
 
     Parameters
     ----------
@@ -97,11 +97,17 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     for name, value in named.items():
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"order {name} = {value} Hz, but it must be positive")
-    if machine.spin:
-        natural = np.array([natural_frequencies(replace(machine, spin=machine.spin * one))[0] for one in speed])
+    if machine.spin or machine.rotors:
+        natural = np.array([natural_frequencies(_at_speed(machine, one))[0] for one in speed])
     else:
         natural = np.tile(natural_frequencies(machine)[0], (speed.size, 1))
     return Campbell(speed, natural, named, tuple(sorted(_crossings(speed, natural, named))))
+
+
+def _at_speed(machine, speed):
+    """The machine with the gyroscopic terms of a speed over its own."""
+    rotors = {name: speed * one for name, one in machine.rotors.items()}
+    return replace(machine, spin=speed * machine.spin, rotors=rotors)
 
 
 def _orders(machine, harmonics):

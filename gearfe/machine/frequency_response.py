@@ -23,8 +23,8 @@ def frequency_response(
 
         H(f) = (i w)**p  heard @ inv(K + i w C - w**2 M) @ driven,   w = 2 pi f,  p = 0, 1, 2
 
-    The varying part of the stiffness, which couples frequencies a mesh frequency apart, is left out. Without the spin of a frame
-    and friction it is the same with both coordinates exchanged.
+    The varying part of the stiffness, which couples frequencies a mesh frequency apart, is left out. Without the spin of a frame,
+    rotors that tilt and friction it is the same with both coordinates exchanged.
 
     Parameters
     ----------

@@ -190,6 +190,7 @@ class GearMesh:
     cycle: Table = field(init=False)
     changes: tuple[tuple[float, float, Table], ...] = field(init=False)
     laws: tuple[Secant, ...] = field(init=False)
+    average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
         """Make the tables; refuse what cannot be."""
@@ -206,7 +207,9 @@ class GearMesh:
                 raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "cycle", cycle_table(self.stiffness))
-        object.__setattr__(self, "laws", self._laws())
+        laws = self._laws()
+        object.__setattr__(self, "laws", laws)
+        object.__setattr__(self, "average", laws[0].mean if laws else None)
         changes = []
         for hurt in self.damage:
             z = self.teeth[hurt.body]

@@ -37,6 +37,7 @@ def herringbone_planetary(
     zeta: float = 0.02,
     mesh_zeta: float = 0.05,
     density: float = 7800.0,
+    gyroscopic: bool = False,
     **mesh: Any,
 ) -> Machine:
     """Herringbone planetary stage: 6 degrees of freedom for each half of sun and planets and for the ring, one for the carrier.
@@ -73,6 +74,8 @@ def herringbone_planetary(
         Damping ratios of supports and meshes, assumed 0.02 and 0.05.
     density : float
         [kg/m3], assumed 7800.
+    gyroscopic : bool
+        Take in the gyroscopic moments of sun, planets and ring, which tilt; not what else the turning of the carrier does.
     **mesh
         Further fields of every `GearMesh` (``backlash``: half of the article's dead zone lies on either side of 0 there).
     """
@@ -111,7 +114,19 @@ def herringbone_planetary(
     }
     driver, first = tuple(f"sun{half}" for half in HALVES), tuple(f"planet1{half}" for half in HALVES)
     whole = Stage("stage", driver, first, frequency, frequency / sun.z, n * frequency / sun.z, notes["carrier frequency [Hz]"])
-    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,))
+    rotors = _rotors(layout, stage, speed) if gyroscopic else {}
+    return Machine(layout.dofs, layout.mass, tuple(springs), tuple(meshes), tuple(loads), notes, (whole,), rotors=rotors)
+
+
+def _rotors(layout, stage, speed):
+    """Angular velocities of the bodies that tilt, against the carrier [rad/s].
+
+    A frame that turns at W takes ``2 J_t W`` from the ``J_p w`` of a body that turns at w against the ground, and ``J_p`` is
+    ``2 J_t`` here: what is left is ``J_p (w - W)``.
+    """
+    turn = speed / (1 + stage.ring.z / stage.sun.z)
+    own = {"sun": speed - turn, "planet": -(speed - turn) * stage.sun.z / stage.planet.z, "ring": -turn}
+    return {body: own[body.rstrip("LR0123456789")] for body in layout.bodies if body != "carrier"}
 
 
 def scene_herringbone(scene, case, **options):

@@ -56,7 +56,7 @@ def modal_energy(machine: Machine, *, x: ArrayLike | None = None) -> ModalEnergy
     Parameters
     ----------
     machine : Machine
-        Of a machine with a `spin` the modes are complex and the energies their means over a cycle.
+        Of a machine with a `spin` or `rotors` the modes are complex and the energies their means over a cycle.
     x : ndarray, shape (m,), optional
         As of `gearfe.natural_frequencies`.
 

@@ -26,19 +26,19 @@ def natural_frequencies(machine: Machine, *, x: ArrayLike | None = None) -> tupl
     frequencies : ndarray, shape (n,)
         [Hz], rising; 0 for rigid-body modes.
     modes : ndarray, shape (n, n)
-        In columns, ``modes.T @ diag(mass) @ modes = 1``. Of a machine with a `spin` they are complex, of modal mass 1.
+        In columns, ``modes.T @ diag(mass) @ modes = 1``. With a `spin` or `rotors` they are complex, of modal mass 1.
     """
     K = machine.linear(machine.working() if x is None else x)[0] - machine.frame
-    if machine.spin:
+    if machine.spin or machine.rotors:
         return _whirling(machine, K)
     squared, modes = modal(K, machine.mass)
     return np.sqrt(squared) / (2 * math.pi), modes
 
 
 def _whirling(machine, K):
-    """Natural frequencies and complex modes of an undamped machine in a frame that turns."""
+    """Natural frequencies and complex modes of an undamped machine in a frame that turns, or with bodies that turn and tilt."""
     n, mass = len(machine.mass), machine.mass
-    gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin)
+    gyroscopic, centripetal, _ = frame_terms(machine.dofs, mass, machine.springs, machine.spin, machine.rotors)
     inner = np.block([[np.zeros((n, n)), np.eye(n)], [-(K + centripetal) / mass[:, None], -gyroscopic / mass[:, None]]])
     values, vectors = np.linalg.eig(inner)
     order = np.argsort(values.imag)[n:]  # of each pair the one that turns forward

@@ -153,13 +153,15 @@ class Machine:
     spin : float
         Angular velocity of the frame, that of the carrier, counter-clockwise [rad/s]: with gyroscopic and centripetal terms. 0:
         without them.
+    rotors : dict of str to float
+        Angular velocities of bodies that tilt, against the ground, counter-clockwise [rad/s]: with their gyroscopic moments.
 
     Attributes
     ----------
     K, C : ndarray, shape (n, n)
-        Stiffness and damping matrices of the springs alone, without the meshes; with a `spin` its terms, too.
+        Stiffness and damping matrices of the springs alone, without the meshes; with a `spin` or `rotors` their terms, too.
     frame : ndarray, shape (n, n)
-        What of K is due to the spin (`gearfe.machine.turning_frame.frame_terms`).
+        What of K is due to them (`gearfe.machine.turning_frame.frame_terms`).
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
@@ -175,6 +177,7 @@ class Machine:
     stages: tuple[Stage, ...] = ()
     speed: Speed | None = None
     spin: float = 0.0
+    rotors: dict[str, float] = field(default_factory=dict)
     K: NDArray[np.float64] = field(init=False)
     C: NDArray[np.float64] = field(init=False)
     G: NDArray[np.float64] = field(init=False)
@@ -197,8 +200,8 @@ class Machine:
         object.__setattr__(self, "mass", mass)
         K, C = (R.T @ (np.array([getattr(s, key) for s in self.springs])[:, None] * R) for key in "kc")
         frame = np.zeros((n, n))
-        if self.spin:
-            gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin)
+        if self.spin or self.rotors:
+            gyroscopic, centripetal, circulatory = frame_terms(self.dofs, mass, self.springs, self.spin, self.rotors)
             frame, C = centripetal + circulatory, C + gyroscopic
         object.__setattr__(self, "K", K + frame)
         object.__setattr__(self, "C", C)
@@ -271,8 +274,8 @@ class Machine:
         """`mean_stiffness` at compressions `x` (m,), which matter to a `ForceLaw`, and its derivative by the depth."""
         mean, bend = self.mean_stiffness(), np.zeros(len(self.meshes))
         for i, mesh in enumerate(self.meshes):
-            if mesh.laws:
-                mean[i], bend[i] = mesh.laws[0].mean(0.0, depth(x, self.law)[i])
+            if mesh.average is not None:
+                mean[i], bend[i] = mesh.average(0.0, depth(x, self.law)[i])
         return mean, bend
 
     @property

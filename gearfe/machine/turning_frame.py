@@ -1,14 +1,17 @@
-"""What a frame that turns with the carrier adds to the equations of motion: gyroscopic, centripetal and circulatory terms."""
+"""What turning adds to the equations of motion: of the frame, that of the carrier, and of bodies whose axes tilt."""
+
+import math
 
 import numpy as np
 
 
-def frame_terms(dofs, mass, springs, spin):
-    """Terms of bodies seen from a frame that turns at `spin` about z.
+def frame_terms(dofs, mass, springs, spin, rotors=None):
+    """Terms of bodies seen from a frame that turns at `spin` about z, and of bodies that turn themselves and tilt.
 
     A velocity seen in the frame lacks ``spin J r``, J the turn by 90 degrees in the plane, so that a mass has
     ``m (a + 2 spin J v - spin**2 r)``; a damper to the ground feels ``c (v + spin J r)``. Springs to the ground seem to turn, and
-    must be alike in x and y.
+    must be alike in x and y. So it is with the tilts p of a body, a vector of the plane as well, and its moment of inertia across
+    the axis; that about it, ``J_p``, turning at W against the ground, adds ``J_p W (spin p - J p')``.
 
     Parameters
     ----------
@@ -17,6 +20,8 @@ def frame_terms(dofs, mass, springs, spin):
     springs : tuple of Spring
     spin : float
         [rad/s], counter-clockwise.
+    rotors : dict of str to float, optional
+        Angular velocities of bodies that tilt, against the ground [rad/s].
 
     Returns
     -------
@@ -26,32 +31,58 @@ def frame_terms(dofs, mass, springs, spin):
     Raises
     ------
     ValueError
-        If a body tilts, or is held to the ground otherwise in x than in y.
+        If a body tilts in a frame that turns and its own speed is not given, or if a body is held to the ground otherwise in x
+        than in y.
 
     References
     ----------
     J. Lin, R. G. Parker, J. Vib. Acoust. 121 (1999) 316-321, eq. 1 (their G and K_Omega); the dampers by the same kinematics.
+    G. Genta, Dynamics of Rotating Systems (2005), section 2.6: tilting rotors.
     """
-    n, bodies = len(dofs), [name.partition(".")[0] for name in dofs]
-    tilting = [name for name in dofs if name.partition(".")[2].startswith("tilt")]
-    if tilting:
-        raise ValueError(
-            f"spin = {spin} rad/s: gyroscopic moments of bodies that tilt are not modelled ({tilting[0]}); leave it 0"
-        )
-    turn, plane = np.zeros((n, n)), np.zeros(n)
+    n, bodies, rotors = len(dofs), [name.partition(".")[0] for name in dofs], rotors or {}
+    turn, plane, own = np.zeros((n, n)), np.zeros(n), np.zeros(n)  # `own`: angular momenta of bodies that tilt
     for body in dict.fromkeys(bodies):
-        x, y = (dofs.index(f"{body}.{axis}") if f"{body}.{axis}" in dofs else None for axis in "xy")
-        if (x is None) != (y is None):
-            raise ValueError(f"spin = {spin} rad/s: {body} moves in one direction of the plane only; give it x and y")
-        if x is not None:
-            turn[x, y], turn[y, x], plane[x], plane[y] = -1.0, 1.0, 1.0, 1.0
+        for one in ("", "tilt_"):
+            x, y = (dofs.index(f"{body}.{one}{axis}") if f"{body}.{one}{axis}" in dofs else None for axis in "xy")
+            if spin and (x is None) != (y is None):
+                raise ValueError(
+                    f"spin = {spin} rad/s: {body} moves in one direction of the plane only; give it {one}x and {one}y"
+                )
+            if x is not None and y is not None:
+                turn[x, y], turn[y, x], plane[x], plane[y] = -1.0, 1.0, 1.0, 1.0
+                if one:
+                    own[[x, y]] = _momentum(dofs, mass, body, rotors, spin)
+    unknown = sorted(set(rotors) - {name.partition(".")[0] for name, one in zip(dofs, plane, strict=True) if one})
+    if unknown:
+        raise ValueError(
+            f"rotors: {unknown[0]} is no body that moves in two directions; there are {', '.join(dict.fromkeys(bodies))}"
+        )
+    gyroscopic = (2 * spin * mass - own)[:, None] * turn
+    centripetal = np.diag(spin * own - spin**2 * mass * plane)
+    if not spin:
+        return gyroscopic, centripetal, np.zeros((n, n))
     held = [s for s in springs if len({bodies[i] for i in np.flatnonzero(s.row)}) == 1]
     for name in ("k", "c"):
-        own = sum((getattr(s, name) * np.outer(s.row * plane, s.row * plane) for s in held), np.zeros((n, n)))
-        uneven = np.abs(own @ turn - turn @ own).max(axis=1)
-        if (uneven > 1e-9 * np.abs(own).max()).any():
+        held_by = sum((getattr(s, name) * np.outer(s.row * plane, s.row * plane) for s in held), np.zeros((n, n)))
+        uneven = np.abs(held_by @ turn - turn @ held_by).max(axis=1)
+        if (uneven > 1e-9 * np.abs(held_by).max()).any():
             which = bodies[int(np.argmax(uneven))]
             raise ValueError(
                 f"spin = {spin} rad/s: {which} is held to the ground otherwise in x than in y, which would turn; leave it 0"
             )
-    return 2 * spin * mass[:, None] * turn, -(spin**2) * np.diag(mass * plane), spin * own @ turn
+    return gyroscopic, centripetal, spin * held_by @ turn
+
+
+def _momentum(dofs, mass, body, rotors, spin):
+    """Angular momentum of a body that tilts about its axis [kg m2/s]; 0 where no frame turns and its speed is not given."""
+    if body not in rotors and spin:
+        raise ValueError(
+            f"spin = {spin} rad/s: {body} tilts, so that its own speed counts; give it by rotors, or leave the spin 0"
+        )
+    if body not in rotors:
+        return 0.0
+    if not math.isfinite(rotors[body]):
+        raise ValueError(f"rotors: {body} turns at {rotors[body]} rad/s, but that must be finite")
+    if f"{body}.theta" not in dofs:
+        raise ValueError(f"rotors: {body} has no moment of inertia about its axis; give it theta")
+    return rotors[body] * mass[dofs.index(f"{body}.theta")]

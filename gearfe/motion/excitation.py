@@ -94,7 +94,7 @@ def _laid_out(laws):
             continue
         if id(one.k) not in places:
             places[id(one.k)] = end
-            parts.append(one.k.ravel())
+            parts.append(one.k.T.ravel())
             end += one.k.size
         shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
     return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)
@@ -161,6 +161,15 @@ def stiffness_at(machine, flat, t, x):
             k[..., i] += np.where(inside, more[0], 0.0)
             bend[..., i] += np.where(inside, more[1], 0.0)
     return np.maximum(k, 0.0), np.where(k > 0, bend, 0.0), phase
+
+
+def changing(machine, flat):
+    """Which of the forces of meshes, friction rows and loads change, and the values of those that do not (0 for the others)."""
+    count = np.diff(flat.knot_place)
+    other = len(machine.meshes) + len(flat.rub_mesh)
+    kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
+    still = np.where(count > 1, 0.0, flat.knots[flat.knot_place[:-1], 1][: count.size])
+    return kept, np.concatenate([np.zeros(other), still])
 
 
 def _paced(flat, t):

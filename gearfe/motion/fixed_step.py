@@ -7,8 +7,8 @@ from functools import partial
 import numpy as np
 
 from . import excitation, propagator
-from .response import Response, all_channels
-from .thinned import thinned
+from .response import Response
+from .thinned import thinned_pieces
 
 PIECE = 4096  # steps of a run whose channels are in memory at once
 
@@ -48,7 +48,8 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     started, h = time.perf_counter(), duration / steps
     x = machine.working()
     plan = propagator.plan(machine, h, x, adapt)
-    flat = excitation.flatten(machine, start + np.linspace(0.0, duration, 4 * steps + 1))
+    looks = 4 * steps + 1 if any(callable(one.value) for one in machine.loads) else 1
+    flat = excitation.flatten(machine, start + np.linspace(0.0, duration, looks))
     breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
     run = partial(run, plan, machine, flat, breaks=breaks)
     z = plan.inverse @ state
@@ -65,19 +66,50 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
 
 def _filtered(run, machine, flat, plan, z, steps, start, counts):
     """States kept, statistics, and channels filtered, piece by piece: of the whole run only what is kept stays in memory."""
-    kept, total, every = [], {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts)
+    total, every, n, m = {"steps": 0, "rejected": 0, "losses": 0}, math.prod(counts), len(machine.dofs), len(machine.meshes)
+    kept, channels = np.empty((1 + steps // every, 2 * n)), np.empty((1 + steps // every, 3 * n + 3 * m))
+    width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error_mesh.size else m)
 
     def pieces():
         now = z
         for first in range(0, steps, PIECE):
-            begin = start + plan.h * first
-            states, stats = run(now, min(PIECE, steps - first), 1, start=begin)
-            now, new = states[-1], slice(1 if first else 0, None)
+            count = min(PIECE, steps - first)
+            acting = np.empty((count + 1, width))
+            states, stats = run(now, count, 1, start=start + plan.h * first, acting=acting)
+            now, new = states[-1].copy(), slice(1 if first else 0, None)
             for name in total:
                 total[name] += stats[name]
-            kept.append(states[new][-(first + new.start) % every :: every].copy())
-            t = begin + plan.h * np.arange(len(states))[new]
-            yield all_channels(Response(machine, t, states[new], plan.basis), flat)
+            some = states[-first % every :: every]
+            at = -(-first // every)
+            kept[at : at + len(some)] = some
+            yield np.concatenate([states[new], acting[new]], axis=1)
 
-    channels = thinned(pieces(), counts)
-    return np.concatenate(kept), total, channels
+    done, whole = 0, _channels(machine, flat, plan)
+    for told in thinned_pieces(pieces(), counts):
+        channels[done : done + len(told)] = whole(told)
+        done += len(told)
+    return kept, total, channels
+
+
+def _channels(machine, flat, plan):
+    """Function that makes `Response.filtered` of filtered states and what acts (`gearfe.motion.loop.run`).
+
+    All channels are a linear part of these, so that fewer numbers are filtered than there are channels, and only such as the
+    loop computes in any case.
+    """
+    n, m = len(machine.dofs), len(machine.meshes)
+    kept, still = excitation.changing(machine, flat)
+    ends = np.cumsum([2 * n, kept.size, m])
+    K, C, _, _ = machine.linear(machine.working())
+
+    def whole(told):
+        states, acting, k, e = np.split(told, ends, axis=1)
+        forces = np.tile(still, (len(states), 1))
+        forces[:, kept] = acting
+        q, v = states @ plan.basis[:n].T, states @ plan.basis[n:].T
+        x, rate = q @ machine.G.T, v @ machine.G.T
+        a = (forces @ plan.rows - q @ K.T - v @ C.T) / machine.mass
+        force = forces[:, :m] + plan.k * x + plan.c * rate
+        return np.concatenate([states, a, x - e if e.size else x, k, force], axis=1)
+
+    return whole

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..machine.contact_law import LAW, branches, contact_force
+from .excitation import changing
 from .exponential import UNSTABLE
 from .loop_parts import compiled, lookup, secant, stage
 
@@ -38,8 +39,14 @@ class Matrices(NamedTuple):
     P: np.ndarray
 
 
-def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
+def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     """Integrate `steps` steps from `z` at time `start`; states after each `every` steps, and counts.
+
+    Parameters
+    ----------
+    acting : ndarray, shape (1 + steps, f + m or f + 2m), optional
+        Filled with what acts before each step and after the last: the f forces that change
+        (`gearfe.motion.excitation.changing`), the stiffnesses of the meshes, and their errors if there is room.
 
     Returns
     -------
@@ -47,24 +54,17 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0):
     stats : dict
         ``steps`` done, ``rejected`` for a change of contact, ``losses`` of contact.
     """
-    count = np.diff(flat.knot_place)
-    other = len(machine.meshes) + len(flat.rub_mesh)
-    kept = np.concatenate([np.arange(other), other + np.flatnonzero(count > 1)]).astype(int)
-    still = np.concatenate([np.zeros(other), np.where(count > 1, 0.0, flat.knots[flat.knot_place[:-1], 1][: count.size])])
-    matrices = _matrices(plan, kept, still)
-    changing = [
-        flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1
-    ]
-    flat = flat._replace(
-        knots=np.concatenate(changing) if changing else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, changing)])
-    )
+    matrices = _matrices(plan, *changing(machine, flat))
+    bends = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
+    flat = flat._replace(knots=np.concatenate(bends) if bends else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, bends)]))
     laws = np.array([machine.law[key].astype(float) for key in LAW]).T.copy()
     kind = plan.affine, len(plan.P) > len(machine.meshes), *branches(machine.law)
     linear = np.stack([plan.k, plan.c])
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
     local = plan.allowed, plan.scale
-    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, local)
+    acting = np.zeros((0, 0)) if acting is None else acting
+    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, local, acting)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
@@ -89,34 +89,51 @@ def _matrices(plan, kept, still):
 
 
 @compiled
-def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, table, shape, change_mesh):
-    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``."""
+def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, table, shape, change_mesh):
+    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``.
+
+    Whole forces and stiffnesses of the meshes go into `total` (where it is needed) and `stiff`.
+    """
     affine, rates, bent, stepped, pushing = kind
     m, rub, lawful = total.size, rub_mesh.size, table.size > 0
-    at = now.shape[1] - (shape.shape[0] if lawful else 0)
+    at = now.shape[1] - (2 * shape.shape[0] if lawful else 0)
     for j in range(at - 3 * m - rub):
         g[first + m + rub + j] = now[row, 3 * m + rub + j]
     if affine:  # every mesh stays closed: the same, without asking where it is
         for i in range(m):
             k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
             g[first + i] = (k - linear[0, i]) * x[i] - k * e - (laws[i, 1] + laws[i, 2] * k) * rate
+            stiff[i] = k
         return
     for i in range(m):
         v = x[m + i] if rates else 0.0
         k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
-        if lawful and now[row, at + i] >= 0:
+        if lawful and now[row, at + 2 * i] >= 0:
             deep = max(x[i] - e, 0.0) + max(-laws[i, 4] - (x[i] - e), 0.0)
-            k = secant(table, shape, i, now[row, at + i], deep)
+            k = secant(table, shape, i, now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
             for j in range(change_mesh.size):
-                if change_mesh[j] == i and now[row, at + m + j] >= 0:
-                    k += secant(table, shape, m + j, now[row, at + m + j], deep)
+                own = at + 2 * (m + j)
+                if change_mesh[j] == i and now[row, own] >= 0:
+                    k += secant(table, shape, m + j, now[row, own], now[row, own + 1], deep)
             k = max(k, 0.0)
         law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
         whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
         g[first + i] = whole - linear[0, i] * x[i] - linear[1, i] * v
-        total[i] = whole
+        total[i], stiff[i] = whole, k
     for j in range(rub):
         g[first + m + j] = now[row, 3 * m + j] * total[rub_mesh[j]]
+
+
+@compiled
+def _note(acting, step, g, stiff, now, row, f):
+    """Write the forces that change, the stiffnesses, and the errors if there is room, into a row of `acting`."""
+    m = stiff.size
+    for i in range(f):
+        acting[step, i] = g[i]
+    for i in range(m):
+        acting[step, f + i] = stiff[i]
+    for i in range(acting.shape[1] - f - m):
+        acting[step, f + m + i] = now[row, m + i]
 
 
 @compiled
@@ -167,17 +184,17 @@ def _propagate(new, E, level, z):
 
 
 @compiled
-def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local):
+def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local, acting):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, W, P = matrices
     m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
     table, shape, change_mesh = flat.secant, flat.shape, flat.change_mesh
     whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
-    now = np.zeros((own + 3, 3 * m + f - m + (len(shape) if table.size > 0 else 0)))
+    now = np.zeros((own + 3, 3 * m + f - m + (2 * len(shape) if table.size > 0 else 0)))
     g, last_g, apart = np.zeros(4 * f), np.zeros(f), np.zeros(f)  # forces of the stages 1, 3, 4, 2; at the end; it less stage 4
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
-    total, side, edge, level = np.zeros(m), np.zeros(m), 0, 0
+    total, stiff, side, edge, level, silent = np.zeros(m), np.zeros(m), np.zeros(m), 0, 0, len(acting) == 0
     nil, one = np.int64(0), np.int64(1)  # numba compiles a function anew for every number written out
     allowed, scale = local
     held = allowed < np.inf
@@ -194,6 +211,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
         at, known = 0, -1  # `known`: the part whose end stands in the last row
         if not held:
             level = 0
+        noted = silent
         while at < whole:
             while at & ((whole >> level) - 1):
                 level += 1
@@ -220,17 +238,20 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 for j in range(m + rub.size, f):  # a load may jump here
                     g[j] = now[row, 2 * m + j]
             else:
-                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total, table, shape, change_mesh)
+                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
             fresh = True
+            if not noted:
+                _note(acting, step, g, stiff, now, row, f)
+                noted = True
             stage(x, y, nil, S, level, g, nil)
             change = opens and _changed(side, x, now, row + 1, laws)
-            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total, table, shape, change_mesh)
+            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
             stage(x, y, nil, S, level, g, 3 * f)
             change = change or (opens and _changed(side, x, now, row + 1, laws))
-            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total, table, shape, change_mesh)
+            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
             stage(x, y, p, T, level, g, nil)
             change = change or (opens and _changed(side, x, now, row + 2, laws))
-            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total, table, shape, change_mesh)
+            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
             for i in range(f):
                 g[f + i] += g[3 * f + i]
             stage(new, push, (n + p) * level, PF, level, g, nil)
@@ -238,7 +259,7 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
                 end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
             away = 0.0
             if held:
-                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total, table, shape, change_mesh)
+                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
                 for i in range(f):
                     apart[i] = last_g[i] - g[2 * f + i]
                 stage(doubt, none, nil, W, level, apart, nil)
@@ -274,4 +295,8 @@ def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, 
         if (step + 1) % every == 0:
             for i in range(n):
                 states[(step + 1) // every, i] = z[i]
+    if not silent:
+        lookup(flat, now, nil, one, start, h, float(steps), 0.0)
+        _forces(g, nil, x0, now, nil, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
+        _note(acting, steps, g, stiff, now, nil, f)
     return steps if np.isfinite(np.sum(z)) else steps - 1

@@ -82,16 +82,26 @@ def _paced(pace, t):
 
 
 @compiled
-def secant(table, shape, which, row, depth):
-    """Stiffness from the table `which` at a row, and at a depth [m]; as `gearfe.machine.force_law.Secant`."""
-    columns, last = int(shape[which, 2]), int(shape[which, 2]) - 1
-    over = depth * shape[which, 3]  # of the deepest
-    i, at = min(max(int(row + 0.5), 1), int(shape[which, 1]) - 2), last * np.sqrt(over)
-    j, u = min(int(at), last - 1), row + 0.5 - i
-    here = int(shape[which, 0]) + i * columns + j
-    a, b, c, low, high = (1 - u) * (1 - u) / 2, 0.5 + u * (1 - u), u * u / 2, here - columns, here + columns
-    left = a * table[low] + b * table[here] + c * table[high]
-    right = a * table[low + 1] + b * table[here + 1] + c * table[high + 1]
+def _row(now, row, at, shape, which, place):
+    """Write into two places from `at` on where the row `place` of the table `which` is, and how far beyond its middle."""
+    i = min(max(int(place + 0.5), 1), int(shape[which, 1]) - 2)
+    now[row, at], now[row, at + 1] = shape[which, 0] + i, place + 0.5 - i
+
+
+@compiled
+def secant(table, shape, which, place, u, depth):
+    """Stiffness from the table `which` at a place that `_row` gives, and a depth [m]; as `gearfe.machine.force_law.Secant`.
+
+    The rows of a column lie one after the other, so that what the next step asks for is near at hand.
+    """
+    last, over = shape[which, 2] - 1, depth * shape[which, 3]  # of the deepest
+    at = last * np.sqrt(over)
+    j = int(min(at, last - 1))
+    here = int(place + j * shape[which, 1])
+    there = here + int(shape[which, 1])
+    a, b, c = (1 - u) * (1 - u) / 2, 0.5 + u * (1 - u), u * u / 2
+    left = a * table[here - 1] + b * table[here] + c * table[here + 1]
+    right = a * table[there - 1] + b * table[there] + c * table[there + 1]
     if at > last:
         before = (1 - 1 / last) ** 2
         slope = (right - left * before) / (1 - before)
@@ -104,8 +114,8 @@ def lookup(flat, now, first, last, origin, h, low, share):
     """Fill in rows ``first <= i < last`` of `now`: what acts at the times ``origin + h (low + share (i - first))``.
 
     A row holds the stiffnesses, errors and rates of the errors of the meshes, then the weights of the friction rows, then the
-    loads, then, of machines with laws of force, the rows of the meshes' and damaged teeth's tables, -1 where there is none or the
-    tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
+    loads, then, of machines with laws of force, the places in the meshes' and damaged teeth's tables by `_row`, -1 where there is
+    none or the tooth is out of mesh. Many times at once, for a compiled function takes its time to find the tables.
     """
     cells, frequency, phases, place, count = flat.cells, flat.frequency, flat.phase, flat.place, flat.count
     change_mesh, change, change_place, change_count = flat.change_mesh, flat.change, flat.change_place, flat.change_count
@@ -124,7 +134,9 @@ def lookup(flat, now, first, last, origin, h, low, share):
                 phase = phases[i] + frequency[i] * turned
                 now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
                 if lawful:
-                    now[row, at + i] = 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3) if shape[i, 1] > 0 else -1.0
+                    now[row, at + 2 * i] = -1.0
+                    if shape[i, 1] > 0:
+                        _row(now, row, at + 2 * i, shape, i, 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3))
         for j in range(changes):
             i = change_mesh[j]
             if twin[i] == i:
@@ -135,11 +147,13 @@ def lookup(flat, now, first, last, origin, h, low, share):
             if lawful:
                 z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
                 own = (own - z * np.floor(own / z)) / change[j, 3]
-                now[row, at + m + j] = own + 1 if own < shape[m + j, 1] - 3 else -1.0
+                now[row, at + 2 * (m + j)] = -1.0
+                if own < shape[m + j, 1] - 3:
+                    _row(now, row, at + 2 * (m + j), shape, m + j, own + 1)
         for i in range(m):
             now[row, i] = now[row, twin[i]]
             if lawful:
-                now[row, at + i] = now[row, at + twin[i]]
+                now[row, at + 2 * i], now[row, at + 2 * i + 1] = now[row, at + 2 * twin[i]], now[row, at + 2 * twin[i] + 1]
             if changes:
                 now[row, i] = max(now[row, i], 0.0)
         for j in range(error_mesh.size):

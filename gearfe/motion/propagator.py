@@ -28,6 +28,8 @@ class Plan:
         affine ``x + beta v`` alone.
     affine : bool
         Whether they are: ``f = (k - plan.k) P z + shift(t)``.
+    rows : ndarray, shape (width, n)
+        Of what acts: meshes and friction rows, both against it, then loads.
     k, c : ndarray, shape (m,)
         Mesh stiffness and damping in the linear part.
     h : float
@@ -50,6 +52,7 @@ class Plan:
     inverse: np.ndarray
     P: np.ndarray
     affine: bool
+    rows: np.ndarray
     k: np.ndarray
     c: np.ndarray
     h: float
@@ -98,7 +101,7 @@ def plan(machine, h, x=None, adapt=False):
     told = [_told(P, F[:, 2 * B.shape[1] :], k, c) for *_, F in levels]
     allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf
     scale = float(np.abs(k * pressed).max()) if local and pressed is not None else 0.0
-    return Plan(basis, inverse, P, affine, k, c, h, levels, told, allowed, scale)
+    return Plan(basis, inverse, P, affine, rows, k, c, h, levels, told, allowed, scale)
 
 
 def _told(P, end, k, c):

@@ -16,6 +16,7 @@ from ..threads import single
 from . import excitation
 from .fixed_step import fixed_steps
 from .law_range import compared
+from .propagator import is_bent
 from .reference import SOLVERS, reference
 from .response import Response, all_channels
 from .step_control import (
@@ -26,6 +27,7 @@ from .step_control import (
     default_step,
     difference,
     estimate,
+    estimate_along,
     longest_seen,
     unseen,
 )
@@ -37,7 +39,7 @@ DEEPEST, FASTEST = 1.0, 1e3  # of flanks along a line of action [m], [m/s]: no t
 ALLOWED = 2 * WANTED_OPEN  # of the range, with contact loss
 WHOLE = 1e-3  # of the range, of a whole run whose error is asked for
 COARSE = 0.1  # of the range: an estimate of a given step above which is warned of
-SLOW = 5.0  # s: above it the seconds expected are told
+SLOW, ENDLESS = 5.0, 7200.0  # s of computing expected of a whole run: above these it is told, and refused
 NUDGE, GROWN = 1e-9, 1e-2  # a disturbance of the start, of the state; what it may grow to, of the range
 
 
@@ -117,7 +119,7 @@ def simulate(
     Raises
     ------
     ValueError
-        If an input is impossible.
+        If an input is impossible, or a run whose step is left open would take hours (`ENDLESS`).
     RuntimeError
         If the response grows beyond all bounds, or the reference gives up.
 
@@ -198,8 +200,13 @@ class _Runs:
         self.tell = progress or (lambda line: None)
 
     def _watch(self, cost):
-        """Tell how long a run takes, from the seconds that one simulated second takes."""
+        """Tell how long the whole run takes, from the seconds that one simulated second takes; refuse one that takes hours."""
         seconds = cost * self.duration
+        if seconds > ENDLESS:
+            raise ValueError(
+                f"duration = {self.duration:g} s: about {seconds / 3600:.2g} hours of computing at the step that this machine "
+                f"needs, {cost:.2g} s for each second of motion: give a shorter duration, or state step= and it is run"
+            )
         if seconds > SLOW:
             self.tell(f"{self.duration:.3g} s of motion at this step: about {seconds:.2g} s")
 
@@ -252,6 +259,8 @@ class _Runs:
         every = self.steps(math.ceil(self.duration / self.count / dt * (1 - 1e-9)))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
+            if is_bent(self.machine):
+                found = estimate_along(out, found)
             return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
         length = float(self.duration)
         for _ in range(FINER):

@@ -11,10 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from .fixed_step import fixed_steps
-from .propagator import default_step, is_bent
+from .propagator import default_step, is_bent, plan
 
 WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
+SPREAD = 4  # stretches of a run under a law of contact that is not linear; a run as short as they are is told on whole
 HALVINGS = 6
 SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
@@ -179,22 +180,56 @@ class Estimate(NamedTuple):
     acceleration: float
 
 
-def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False):
-    """`Estimate` of the step `h` on a `stretch`.
+def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=None):
+    """`Estimate` of the step `h` on a `stretch`, or where ``at``, its start and length, says.
 
     Where local halving rules, the error is small or large by where the steps happen to lie, and a shorter one can be the worse:
     the run is then compared with a third of the step, and so is that of half the step.
     """
-    start, length = stretch(machine, duration, begin)
+    start, length = at or stretch(machine, duration, begin)
     if initial is None:
         initial = np.concatenate([machine.rest(start), np.zeros(len(machine.dofs))])
     steps = math.ceil(length / h * (1 - 1e-12))
     options = {"start": start, "adapt": adapt}
     rough = adapt and is_bent(machine)
     runs = [fixed_steps(machine, length, c * steps, initial, every=c, **options) for c in ((1, 2, 3) if rough else (1, 2))]
-    cost = max(runs[1].stats["seconds"] - runs[0].stats["seconds"], 0.0) / length
+    one, two = (run.stats["seconds"] for run in runs[:2])
+    if one >= two:  # the first waited for the compiler, or for the processor
+        one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
+    cost = max(two - one, 0.0) / length
     *coarse, fine = runs
     more = ROUGH if rough else SMOOTH
     error = more * max(max(difference(one, fine)) for one in coarse)
     acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
     return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)
+
+
+def estimate_along(response, found):
+    """`Estimate` of a run whose flanks meet under a law of contact that is not linear, from what it went through.
+
+    Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
+    a run as short as `SPREAD` stretches is run again, of a longer one so many stretches spread over it, each from the state
+    that the run had there. What those cannot know is what was wrong before: errors of stretches one after the other add up
+    as independent ones do, until the least damped vibration forgets them.
+
+    Parameters
+    ----------
+    response : Response
+        Of `gearfe.motion.fixed_step.fixed_steps`, ``adapt=True``.
+    found : Estimate
+        Of its step on one stretch.
+    """
+    machine, time, h, length = response.machine, response.time, response.stats["dt"], found.length
+    begin, duration, grown = float(time[0]), float(time[-1] - time[0]), 1.0
+    places = [(0, duration)]
+    if duration > SPREAD * length:
+        index = np.searchsorted(time, begin + np.linspace(0.0, duration - length, SPREAD) * (1 - 1e-12)) - 1
+        places = [(i, length) for i in np.unique(np.maximum(index, 0))]
+        values = np.linalg.eigvals(plan(machine, h, machine.working()).levels[0][0])
+        left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
+        grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
+    state = np.concatenate([response.q, response.v], axis=1)
+    told = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), one)) for i, one in places]
+    error, acceleration = (max(getattr(one, key) for one in (found, *told)) * grown for key in ("error", "acceleration"))
+    lost = any(one.lost for one in (found, *told))
+    return Estimate(error, lost, sum(one.length for one in told), found.cost, acceleration)

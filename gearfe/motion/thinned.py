@@ -15,6 +15,7 @@ SHORT_PASSED = 1 / 14  # of the lower rate of filters before the last one, which
 REACH, SHORT = 26, 3  # samples a filter looks at on either side, at its own lower rate: of the last filter, of those before
 LEAST, MOST = 2, 16  # steps for each sample kept, at least; samples that one filter makes one of at most
 WIDTH = 7.857  # of Kaiser's window, for 80 dB
+TOGETHER = 16  # samples kept that one product makes
 STEEP = 2.509  # samples on either side times the width from what stays to what is left out, of the rate; for 80 dB
 
 
@@ -50,9 +51,14 @@ def thinned(pieces, counts):
     -------
     ndarray, shape (kept + 1, c)
     """
+    return np.concatenate(list(thinned_pieces(pieces, counts)))
+
+
+def thinned_pieces(pieces, counts):
+    """As `thinned`, piece by piece."""
     for count in counts[:-1]:
         pieces = _filtered(pieces, count, SHORT, SHORT_PASSED)
-    return np.concatenate(list(_filtered(pieces, counts[-1], REACH, PASSED)))
+    return _filtered(pieces, counts[-1], REACH, PASSED)
 
 
 @cache
@@ -69,9 +75,9 @@ def _weights(count, reach, passed):
 
 @cache
 def _matrix(count, reach, passed):
-    """`_weights` in ``2 reach`` rows, each moved on by `count`, so that as many samples are one product."""
+    """`_weights` in `TOGETHER` rows, each moved on by `count`, so that as many samples are one product."""
     weights = _weights(count, reach, passed)
-    rows = np.zeros((2 * reach, (2 * reach - 1) * count + weights.size))
+    rows = np.zeros((TOGETHER, (TOGETHER - 1) * count + weights.size))
     for i, row in enumerate(rows):
         row[i * count : i * count + weights.size] = weights
     return rows

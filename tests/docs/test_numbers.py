@@ -151,6 +151,7 @@ def test_load_and_tangent(pair):
     says("faq.md", "the slope of force over deflection, {} % more here", 100 * (curve.k_tangent.mean() / curve.k.mean() - 1))
 
 
+@pytest.mark.slow
 def test_width_and_helix(pair):
     def changed(**options):
         beta = options.pop("beta", 0.0)

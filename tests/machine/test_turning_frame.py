@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machines import SHAPE
+from machines import SHAPE, herringbone
 from numpy.testing import assert_allclose
 
 import gearfe as gf
@@ -72,9 +72,87 @@ def test_fast_path_and_reference_agree_on_a_turning_stage(spur_stage):
     assert max(difference(plain, want)) > 5e-3
 
 
+ACROSS, ABOUT, STIFF_TILT, TURNS = 3e-3, 5e-3, 4e4, 2500.0
+
+
+def rotor(spin=0.0, turns=TURNS, zeta=0.0):
+    """A disc on a bearing that holds its tilt; it turns at `turns` against the ground."""
+    layout = gf.Layout([gf.Body("disc", MASS, ABOUT, "x y tilt_x tilt_y theta", ACROSS)])
+    held = {"x": STIFF, "y": STIFF, "tilt_x": STIFF_TILT, "tilt_y": STIFF_TILT, "theta": 1e4}
+    springs = layout.springs("disc", None, held, zeta)
+    loads = (gf.Load("none", layout.unit("disc", "x"), 0.0),)
+    return gf.Machine(layout.dofs, layout.mass, tuple(springs), (), loads, spin=spin, rotors={"disc": turns})
+
+
+def whirls():
+    """Forward and backward whirl of a tilting disc: ``J_t w**2 -+ J_p W w - k = 0`` (G. Genta, 2005, eq. 2.79)."""
+    half = ABOUT * TURNS / (2 * ACROSS)
+    root = np.sqrt(half**2 + STIFF_TILT / ACROSS)
+    return root + half, root - half
+
+
+@pytest.mark.parametrize("spin", [0.0, SPIN])
+def test_a_tilting_disc_whirls_forward_and_backward(spin):
+    """Seen from a frame that turns the forward whirl is slower by it, the backward one faster."""
+    forward, backward = whirls()
+    assert forward > 1.5 * np.sqrt(STIFF_TILT / ACROSS) > 2 * backward
+    frequencies, modes = gf.natural_frequencies(rotor(spin))
+    for want, sense in ((forward - spin, 1), (backward + spin, -1)):
+        place = int(np.argmin(np.abs(2 * np.pi * frequencies - want)))
+        assert_allclose(2 * np.pi * frequencies[place], want, rtol=1e-10)
+        assert_allclose(modes[3, place] / modes[2, place], -1j * sense, atol=1e-9)  # a quarter of a turn after tilt_x
+
+
+def test_a_top_without_a_bearing_keeps_its_angular_momentum():
+    """Free, it nutates about a line that stands still at ``J_p W / J_t``; in a frame that turns as on the ground."""
+    layout = gf.Layout([gf.Body("disc", MASS, ABOUT, "tilt_x tilt_y theta", ACROSS)])
+    loads = (gf.Load("none", layout.unit("disc", "theta"), 0.0),)
+    for spin in (0.0, SPIN):
+        top = gf.Machine(layout.dofs, layout.mass, (), (), loads, spin=spin, rotors={"disc": TURNS})
+        start = (0.0, 0.0, 0.0), (0.2, 0.0, 0.0)
+        got = gf.simulate(top, 0.01, step=1e-6, rate=1e5, initial=start, error=False).raw
+        turn = np.exp(1j * spin * got.time)
+        tilt = (got["disc.tilt_x"] + 1j * got["disc.tilt_y"]) * turn  # against the ground
+        fast = ABOUT * TURNS / ACROSS
+        assert_allclose(tilt, 0.2 / (1j * fast) * (np.exp(1j * fast * got.time) - 1), atol=1e-6 * 0.2 / fast)
+
+
+def test_tilting_halves_of_a_herringbone_stage_have_their_gyroscopic_moments(herringbone_stage):
+    still, moving = (herringbone(herringbone_stage, gyroscopic=turns) for turns in (False, True))
+    driven, meshes = moving.stages[0], herringbone_stage
+    assert_allclose(moving.rotors["sunL"], 2 * np.pi * driven.turning, rtol=1e-12)
+    assert_allclose(moving.rotors["planet2R"], -2 * np.pi * driven.mesh / meshes.planet.z, rtol=1e-12)
+    assert_allclose(moving.rotors["ring"], -2 * np.pi * driven.mesh / meshes.ring.z, rtol=1e-12)
+    coupling, place = moving.C - still.C, moving.dofs.index("sunL.tilt_x")
+    assert_allclose(coupling, -coupling.T, atol=1e-12)
+    about = moving.mass[moving.dofs.index("sunL.theta")]
+    assert_allclose(coupling[place, place + 1], about * moving.rotors["sunL"], rtol=1e-12)
+    turn = 2 * np.pi * driven.carrier  # against the ground, in a frame that turns
+    assert_allclose(
+        about * (moving.rotors["sunL"] + turn) - 2 * moving.mass[place] * turn, coupling[place, place + 1], rtol=1e-12
+    )
+    slow, fast = (gf.natural_frequencies(one)[0] for one in (still, moving))
+    assert 0 < np.abs(fast - slow).max() < 0.1 * slow.max()
+
+
+def test_the_campbell_diagram_parts_the_whirls():
+    found = gf.campbell(rotor(), [0.0, 0.5, 1.0], orders={"turn": TURNS / (2 * np.pi)})
+    still = np.sqrt(STIFF_TILT / ACROSS) / (2 * np.pi)
+    assert_allclose(np.sort(np.abs(found.natural[0] - still))[:2], 0, atol=1e-6 * still)
+    for want in whirls():
+        assert np.abs(2 * np.pi * found.natural[2] - want).min() < 1e-6 * want
+
+
 def test_what_a_turning_frame_cannot_hold_is_refused(herringbone_stage):
     with pytest.raises(ValueError, match="otherwise in x than in y"):
         body(x=2 * STIFF)
     layout = gf.Layout([gf.Body("one", 1.0, 1.0, "x y z tilt_x tilt_y theta", 1.0)])
-    with pytest.raises(ValueError, match="tilt"):
+    with pytest.raises(ValueError, match="one tilts, so that its own speed counts; give it by rotors"):
         gf.Machine(layout.dofs, layout.mass, (), (), (), spin=1.0)
+    with pytest.raises(ValueError, match="rotors: two is no body that moves in two directions; there are one"):
+        gf.Machine(layout.dofs, layout.mass, (), (), (), rotors={"two": 1.0})
+    bare = gf.Layout([gf.Body("one", 1.0, 1.0, "tilt_x tilt_y", 1.0)])
+    with pytest.raises(ValueError, match="one has no moment of inertia about its axis"):
+        gf.Machine(bare.dofs, bare.mass, (), (), (), rotors={"one": 1.0})
+    with pytest.raises(ValueError, match="rotors: one turns at nan rad/s"):
+        gf.Machine(layout.dofs, layout.mass, (), (), (), rotors={"one": float("nan")})

@@ -120,6 +120,16 @@ def test_the_fast_path_is_the_reference(frequency):
     assert worst(got, want) < 2e-3
 
 
+def test_flanks_that_only_push_and_damp_by_depth_meet_under_a_law_as_the_reference_has_them():
+    """Impact damping and loss of contact with the force of the law: both halve their steps about the same places."""
+    impact = {"damping": 2e3, "depth": 1e-5, "push": True, "backlash": 1e-4, "error": ((40e-6, 1130.0, 0.0),)}
+    machine = mass(law(), 2500.0, 800.0, **impact)
+    got = gf.simulate(machine, 0.0025, rate=2e4)
+    want = gf.simulate(machine, 0.0025, rate=2e4, method="DOP853", rtol=1e-7)
+    assert got.stats["losses"] == want.stats["losses"] > 0
+    assert worst(got, want) < got.stats["error"] < 1e-2
+
+
 @pytest.mark.parametrize("load", [150.0, 1600.0])
 def test_standing_still_small_vibration_has_the_frequency_of_the_tangent_at_its_load(load):
     at_load = gf.mesh_stiffness(PAIR, load, STEEL, phases=[0.4])

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,6 +18,21 @@ from validation.shared import decks, places, renew, state
 @pytest.fixture
 def project(tmp_path):
     return trial(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def once(tmp_path_factory):
+    """A project whose page was computed."""
+    project = trial(tmp_path_factory.mktemp("computed"))
+    told(project, "cracks")
+    assert old(project) == 0
+    assert first_line(project) == "2 of 2 rows on the present code"
+    return project
+
+
+@pytest.fixture
+def computed(once, tmp_path):
+    return shutil.copytree(once, tmp_path / "project")
 
 
 REWORDED = (
@@ -38,16 +54,13 @@ REWORDED = (
         pytest.param("validation/shared/renew.py", [("import os", "import math, os")], 0, id="what only keeps and writes"),
     ],
 )
-def test_rows_are_old_when_what_they_used_means_something_else(project, file, changes, rows):
-    told(project, "cracks")
-    assert old(project) == 0
-    assert first_line(project) == "2 of 2 rows on the present code"
+def test_rows_are_old_when_what_they_used_means_something_else(computed, file, changes, rows):
     for was, now in changes:
-        text = (project / file).read_text()
+        text = (computed / file).read_text()
         assert was in text
-        (project / file).write_text(text.replace(was, now))
-    assert old(project) == rows
-    assert first_line(project) == f"{2 - rows} of 2 rows on the present code"
+        (computed / file).write_text(text.replace(was, now))
+    assert old(computed) == rows
+    assert first_line(computed) == f"{2 - rows} of 2 rows on the present code"
 
 
 def test_a_module_that_changes_while_a_job_runs_makes_it_fail(project):
@@ -92,18 +105,17 @@ def test_age_counts_only_what_is_old(project):
 
 
 @pytest.mark.parametrize("killed", [None, signal.SIGTERM, signal.SIGKILL], ids=["time is over", "stopped", "killed"])
-def test_renewing_that_is_stopped_leaves_whole_files(project, killed):
-    told(project, "cracks")
-    folder = project / "validation" / "pages"
+def test_renewing_that_is_stopped_leaves_whole_files(computed, killed):
+    folder = computed / "validation" / "pages"
     kept = {path: path.read_text() for path in folder.rglob("*") if path.is_file()}
-    (project / "gearfe/data.csv").write_text("30\n")  # seconds that it waits with half a table written
+    (computed / "gearfe/data.csv").write_text("30\n")  # seconds that it waits with half a table written
     command = [sys.executable, "-m", "validation", "renew", "--minutes", "5" if killed else "0.05"]
     started = time.monotonic()
     with subprocess.Popen(
-        command, cwd=project, env=os.environ | {"PYTHONPATH": ""}, stdout=subprocess.PIPE, text=True
+        command, cwd=computed, env=os.environ | {"PYTHONPATH": ""}, stdout=subprocess.PIPE, text=True
     ) as process:
         if killed:
-            while not [path for path in half_written(project) if path.read_text().endswith("first,")]:
+            while not [path for path in half_written(computed) if path.read_text().endswith("first,")]:
                 assert time.monotonic() - started < 200
                 time.sleep(0.05)
             process.send_signal(killed)
@@ -113,7 +125,7 @@ def test_renewing_that_is_stopped_leaves_whole_files(project, killed):
     if not killed:
         kept[folder / "cracks.md"] = kept[folder / "cracks.md"].replace("2 of 2", "0 of 2")
     assert {path: path.read_text() for path in kept} == kept
-    assert killed == signal.SIGKILL or not half_written(project)
+    assert killed == signal.SIGKILL or not half_written(computed)
 
 
 def half_written(project):
@@ -144,12 +156,11 @@ def test_jobs_of_a_page_wait_for_each_other_and_those_that_time_for_all():
     assert renew._next(jobs, ["map", "hard"], ("speed",)) is None
 
 
-def test_renew_computes_what_is_old(project):
-    told(project, "cracks")
-    (project / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
-    assert "cracks: computed again" in told(project, "renew", "--minutes", "1")
-    assert "first,5" in (project / "validation/pages/tables/cracks.csv").read_text()
-    assert old(project) == 0
+def test_renew_computes_what_is_old(computed):
+    (computed / "gearfe/used.py").write_text(MODULE.replace("return 1", "return 5"))
+    assert "cracks: computed again" in told(computed, "renew", "--minutes", "1")
+    assert "first,5" in (computed / "validation/pages/tables/cracks.csv").read_text()
+    assert old(computed) == 0
 
 
 def test_slow_tests_that_are_skipped_are_neither_done_nor_failed(project, monkeypatch):

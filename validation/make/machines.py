@@ -33,9 +33,6 @@ ELSEWHERE = {  # references of a scene that another page computes
     "stiffness_reduction": "herringbone",
 }
 GOLDEN_RTOL = 1e-4
-SOON = {  # references whose simulation takes seconds: the ordinary tests compute them again, too
-    "compound_planetary": {"kurtosis", "kurtogram_level", "kurtogram_centre"},
-}
 
 
 def module(page):
@@ -64,11 +61,6 @@ def computed(page, names):
             if one.id in names:
                 out += verdicts.judge(one, found[one.id](), runs.get(one.id, ""))
     return out
-
-
-def ordinary(page):
-    """Ids of references whose rows the ordinary tests compute again: all without simulation, and some with."""
-    return set(functions(page, quick=True)) | SOON.get(page, set())
 
 
 @cache
