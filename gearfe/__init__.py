@@ -2,8 +2,8 @@
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
 `material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
-`energy`; `contact`; `stiffness`; `machine`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`; `reports`;
-`app`; `cli`.
+`energy`; `contact`; `stiffness`; `machine`, `epicyclic`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`;
+`reports`; `app`; `cli`.
 """
 
 import importlib
@@ -27,7 +27,10 @@ _HOME = {
     "OwnFlexibility": "gearfe.stiffness.own_flexibility",
     "PairModel": "gearfe.studies.own_model",
     "Pit": "geometry.damage.pit",
+    "PlanetaryCase": "gearfe.epicyclic.case",
     "PlanetarySet": "geometry.pair.planetary",
+    "RimBed": "gearfe.epicyclic.rim",
+    "RimSupports": "gearfe.epicyclic.rim",
     "Response": "gearfe.motion.response",
     "RootStress": "gearfe.elements.root_stress",
     "Samples": "gearfe.machine.gear_mesh",
@@ -65,6 +68,10 @@ _HOME = {
     "LawError": "gearfe.machine.law_error",
     "law_error": "gearfe.machine.law_error",
     "stage_phases": "gearfe.machine.planetary",
+    "planetary_stiffness": "gearfe.epicyclic.solve",
+    "plot_planetary_set": "gearfe.epicyclic.shape",
+    "SetCurves": "gearfe.epicyclic.curves",
+    "write_set_inp": "gearfe.epicyclic.deck",
     "steady_state": "gearfe.motion.steady",
     "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",

@@ -23,6 +23,13 @@ from .elements.loaded_tooth import tooth_flexibility as tooth_flexibility
 from .elements.mesh_file import export_mesh as export_mesh
 from .elements.root_stress import RootStress as RootStress
 from .elements.root_stress import root_stress_along_width as root_stress_along_width
+from .epicyclic.case import PlanetaryCase as PlanetaryCase
+from .epicyclic.curves import SetCurves as SetCurves
+from .epicyclic.deck import write_set_inp as write_set_inp
+from .epicyclic.rim import RimBed as RimBed
+from .epicyclic.rim import RimSupports as RimSupports
+from .epicyclic.shape import plot_planetary_set as plot_planetary_set
+from .epicyclic.solve import planetary_stiffness as planetary_stiffness
 from .machine.campbell import Campbell as Campbell
 from .machine.campbell import campbell as campbell
 from .machine.compound_planetary import compound_planetary as compound_planetary

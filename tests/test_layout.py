@@ -25,7 +25,7 @@ FLOORS = (  # from the ground: a room imports only from floors below its own
     ("gearfe/elements", "gearfe/energy"),
     ("gearfe/contact",),
     ("gearfe/stiffness",),
-    ("gearfe/machine",),
+    ("gearfe/machine", "gearfe/epicyclic"),
     ("gearfe/motion", "gearfe/stress"),
     ("gearfe/studies",),
     ("gearfe/surrogates", "gearfe/sweeps"),

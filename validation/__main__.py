@@ -32,6 +32,7 @@ ROWS = (
     "outlines",
     "rig",
     "sample",
+    "sets",
     "sweeps",
     "three",
 )  # parts: rows, by beginnings

@@ -14,6 +14,7 @@ QUESTIONS = {  # by page, as they stand in the list of pages
     "outlines": "Is the contact of teeth right, beside whole outlines pressed together?",
     "sample": "Do the error estimates cover, on pairs that nobody chose?",
     "three": "Is the stiffness in three dimensions right?",
+    "sets": "What does a whole planetary set do to the stiffness of its meshes?",
     "flanks": "Are modified flanks right?",
     "holes": "What do pits change beyond the contact they take away?",
     "hard": "What happens in extreme cases?",

@@ -1,0 +1,131 @@
+"""Who carries how much in a set: contacts that push but do not pull, on bodies that turn and float.
+
+With forces f of all contacts and motions q of the bodies::
+
+    A f + gap = G q  where f > 0,    A f + gap >= G q  where f = 0,    G' f = load
+
+A holds the flexibility of everything that is not a body's motion, with the logarithm of each line contact on its diagonal, taken
+at the forces themselves.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.optimize import nnls
+
+from ..flexibility.hertz import half_width
+
+STEPS, SINGLE = 40, 400  # of Newton and the active set, changed all at once and one by one
+HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
+ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
+SETTLED = 1e-11  # last change of a force, in those of all
+STIFF = 1e6  # of the balance in the start by non-negative least squares
+
+
+class Problem(NamedTuple):
+    """Contacts ``(n,)`` of a whole set: `flexibility` ``(n, n)``, `closing` G ``(n, motions)``, `load` ``(motions,)`` [N/mm].
+
+    `gap`, `coefficient`, `radius`, `modulus` and `tilt` ``(n,)`` as of `gearfe.contact.sharing.line_contact`.
+    """
+
+    flexibility: NDArray[np.float64]
+    gap: NDArray[np.float64]
+    coefficient: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    modulus: NDArray[np.float64]
+    tilt: NDArray[np.float64]
+    closing: NDArray[np.float64]
+    load: NDArray[np.float64]
+
+
+def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
+
+    Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
+    at a time.
+
+    Raises
+    ------
+    RuntimeError
+        If no forces that only push are in balance, or none were found.
+    """
+    unit = np.abs(problem.load).max()
+    active = _likely(problem, unit)
+    for most, pick in ((STEPS, np.ones_like), (SINGLE, _worst)):
+        found = _settled(problem, active, unit, most, pick)
+        if found is not None:
+            return found
+    raise RuntimeError("the loads of the set's meshes did not settle: change the load or the position a little")
+
+
+def _worst(off):
+    """The one contact that is furthest off, as a mask."""
+    out = np.zeros(off.shape)
+    out[np.argmax(off)] = 1.0
+    return out
+
+
+def _settled(problem, active, unit, most, pick):
+    """Newton on the logarithms with an active set, of which `pick` says what changes; None if it does not settle."""
+    floor = 1e-9 * unit
+    force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
+    for _ in range(most):
+        found = _newton(problem, active, force, floor)
+        if found is None:
+            return None
+        new, motion = found
+        free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
+        pulls, overlaps = np.where(active, np.maximum(-new, 0.0), 0.0), np.where(active, 0.0, np.maximum(-free, 0.0))
+        overlaps[overlaps < ROUNDING * np.abs(free).max()] = 0.0
+        off = pulls / unit if pulls.any() else overlaps
+        if pick is np.ones_like:
+            off = pulls + overlaps
+        if not off.any() and np.abs(new - force).max() < SETTLED * unit:
+            return new, motion
+        flips = (off > 0) & (pick(off) > 0)
+        force = np.where(active & ~flips & (new > 0), new, floor)
+        active = active ^ flips
+        force = np.where(active, force, 0.0)
+    return None
+
+
+def _newton(problem, active, force, floor):
+    """Forces and motions with the `active` contacts, the logarithms taken at `force`."""
+    at = np.flatnonzero(active)
+    carried = np.maximum(force[at], floor)
+    tilt, coefficient = problem.tilt[at], problem.coefficient[at]
+    width = half_width(carried, problem.radius[at], problem.modulus[at])
+    matrix = problem.flexibility[np.ix_(at, at)].copy()
+    matrix[np.arange(at.size), np.arange(at.size)] += coefficient * np.log(2 / width) - 2 * tilt * carried
+    offset = problem.gap[at] + (coefficient / 2 + tilt * carried) * carried
+    closing = problem.closing[at]
+    try:
+        upper = cholesky(matrix)
+        moved = solve_triangular(upper, np.column_stack([closing, offset]), trans="T")
+        normal = moved[:, :-1].T @ moved[:, :-1] + HOLD * np.abs(problem.load).max() * np.eye(problem.load.size)
+        motion = np.linalg.solve(normal, problem.load + moved[:, :-1].T @ moved[:, -1])
+    except (LinAlgError, np.linalg.LinAlgError):
+        return None
+    out = np.zeros(force.size)
+    out[at] = solve_triangular(upper, moved[:, :-1] @ motion - moved[:, -1])
+    return out, motion
+
+
+def _likely(problem, unit):
+    """Contacts in touch if each had the stiffness it has under an even share of the load, by non-negative least squares."""
+    n = problem.gap.size
+    even = np.full(n, unit / max(n, 1))
+    width = half_width(even, problem.radius, problem.modulus)
+    matrix = problem.flexibility + np.diag(problem.coefficient * np.log(2 / width))
+    upper = cholesky(matrix)
+    push = solve_triangular(upper, problem.gap + problem.coefficient / 2 * even, trans="T")
+    # lift the gaps by some motion: the balance makes any constant of G q free of work
+    scale = STIFF * np.abs(upper).max()
+    system, right = np.vstack([upper, scale * problem.closing.T]), np.append(-push, scale * problem.load)
+    force, _ = nnls(system, right, maxiter=50 * n)
+    rest = problem.closing.T @ force - problem.load
+    if np.abs(rest).max() > 1e-3 * unit:
+        raise RuntimeError("no forces that only push hold this set in balance: a body has no mesh left that holds it")
+    return force > 1e-9 * unit

@@ -1,0 +1,171 @@
+"""`PlanetaryCase`: a planetary set with what holds it, what is wrong with it, and its load, checked once."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from geometry.damage.crack import Crack, check_through
+from geometry.pair.gear_pair import GearPair
+from geometry.pair.planetary import PlanetarySet
+from geometry.tooth.modified import Flank
+
+from ..material import Material
+from .rim import RimBed, RimSupports
+from .standing import assembled
+
+GEARS = ("sun", "planet", "ring")
+LARGEST = 0.1  # modules: position errors beyond are no errors of a gear that runs
+
+
+@dataclass(frozen=True, slots=True)
+class PlanetaryCase:
+    """A planetary set in plane strain, its carrier held: what is turned by the sun, and against which the ring is held.
+
+    Parameters
+    ----------
+    gears : PlanetarySet
+        Spur gears. With `angles` its own number of planets does not count.
+    force : float
+        Mean force of the sun's meshes along the line of action [N]: the sun's torque is `force` times the planets times r_b.
+    material : Material or (Material, Material, Material)
+        Of all gears, or of sun, planets and ring.
+    angles : sequence of float, optional
+        Of the planets, clockwise [rad]; default: equally spaced. Teeth fit where they are whole multiples of
+        ``2 pi / (z_s + z_r)`` apart.
+    ring : "held", RimBed or RimSupports
+        What holds the ring's outer edge.
+    floating : bool
+        The sun moves freely across its axis; needs three planets. Otherwise its bore is held, but for the turn.
+    pin : float
+        Stiffness of each planet's pin with its bearing across the axis, over the whole width [N/mm]; default rigid. Planets turn
+        on them without friction; the carrier is rigid.
+    errors : sequence of (float, float), optional
+        For each planet how far its pin stands off its place [mm]: outwards, and clockwise, the way the sun drives it.
+    flanks : dict, optional
+        Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; those of a
+        planet on both its flanks. A pitch deviation of a planet moves the whole tooth, given as of its flank towards the sun.
+        Teeth are counted clockwise from those in mesh at position 0, see `gearfe.epicyclic.standing`.
+    damage : dict, optional
+        Cracks through the whole width by gear, with the same names. The sides of a planet's cracks are those of its mesh with the
+        sun. A crack changes the mesh that is near it; what it changes between meshes is left out. None in a ring that bends.
+
+    Raises
+    ------
+    ValueError
+        If the set cannot be; the message says what to change.
+    """
+
+    gears: PlanetarySet
+    force: float
+    material: Any
+    angles: Any = None
+    ring: Any = "held"
+    floating: bool = False
+    pin: float = math.inf
+    errors: Any = None
+    flanks: Any = None
+    damage: Any = None
+    pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Bring all into one form, and refuse what cannot be."""
+        if not isinstance(self.gears, PlanetarySet):
+            raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
+        put = object.__setattr__
+        put(self, "pairs", (self.gears.sun_planet, self.gears.planet_ring))
+        if self.gears.sun.beta:
+            raise ValueError(
+                f"beta = {math.degrees(self.gears.sun.beta):.4g} degrees, but a section knows spur gears only: give beta = 0"
+            )
+        n = self.gears.n_planets
+        even = 2 * math.pi / n * np.arange(n)
+        put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
+        for name, most in (("force", math.inf), ("pin", math.nan)):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) != most:
+                raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
+            put(self, name, float(value))
+        materials = (self.material,) * 3 if isinstance(self.material, Material) else tuple(self.material)
+        if len(materials) != 3 or not all(isinstance(one, Material) for one in materials):
+            raise ValueError(f"material = {self.material!r}, but give one Material or three: of sun, planets and ring")
+        put(self, "material", materials)
+        if not (self.ring == "held" or isinstance(self.ring, (RimBed, RimSupports))):
+            raise ValueError(
+                f"ring = {self.ring!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
+            )
+        if self.floating and self.planets < 3:
+            raise ValueError(f"{self.planets} planets do not hold a floating sun: give floating = False, or at least 3 planets")
+        put(self, "errors", self._errors())
+        put(self, "flanks", self._by_gear("flanks", self.flanks, Flank, single=True))
+        put(self, "damage", self._by_gear("damage", self.damage, Crack, single=False))
+        self._check_faults()
+
+    @property
+    def planets(self) -> int:
+        """Number of planets."""
+        return len(self.angles)
+
+    @property
+    def width(self) -> float:
+        """Face width that all gears have in common [mm]."""
+        return float(min(one.b for one in (self.gears.sun, self.gears.planet, self.gears.ring)))
+
+    @property
+    def ring_gear(self) -> Any:
+        """The ring as it meshes: its tip may have been trimmed."""
+        return self.pairs[1].gear_2
+
+    def _errors(self):
+        given = np.zeros((self.planets, 2)) if self.errors is None else np.array(self.errors, dtype=float)
+        if given.shape != (self.planets, 2) or not np.isfinite(given).all():
+            raise ValueError(
+                f"errors of shape {given.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
+            )
+        most = LARGEST * self.gears.sun.m_n
+        if np.abs(given).max() > most:
+            raise ValueError(
+                f"errors up to {np.abs(given).max():g} mm, more than a tenth of the module: amounts are in mm (20 um are 0.02)"
+            )
+        return tuple(map(tuple, given.tolist()))
+
+    def _by_gear(self, what, given, kind, *, single):
+        """By gear, planets one by one: ``{"sun": ..., ("planet", i): ..., "ring": ...}``, those given only."""
+        if given is None:
+            return {}
+        if not isinstance(given, Mapping):
+            raise ValueError(f"{what} = {given!r}, but give them by gear: {{'sun': ..., 'planet': ..., 'ring': ...}}")
+        names = {"sun", "ring", *(("planet", i) for i in range(self.planets))}
+        out: dict[Any, Any] = {}
+        for name in sorted(given, key=lambda one: one != "planet"):
+            if name not in names and name != "planet":
+                raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
+            value = given[name] if single else tuple(given[name])
+            for one in (value,) if single else value:
+                if not isinstance(one, kind):
+                    raise ValueError(f"{what} of {name!r}: {one!r} is no {kind.__name__}; the section has no other")
+            out |= {("planet", i): value for i in range(self.planets)} if name == "planet" else {name: value}
+        return out
+
+    def _check_faults(self):
+        for name, one in self.flanks.items():
+            if one.wide:
+                raise ValueError(f"flanks of {name!r} change along the width, but a section knows none: leave that out")
+            if one.eccentricity and name not in ("sun", "ring"):
+                raise ValueError(f"eccentricity of {name!r}: give that of a planet as pitch deviations")
+            one.on(self.gear_of(name))
+        for name, found in self.damage.items():
+            check_through(found, "the section of a planetary set")
+            if name == "ring" and found and self.ring != "held":
+                raise ValueError("a crack in a ring that bends is not modelled: give ring = 'held', or no crack there")
+
+    def gear_of(self, name: Any) -> Any:
+        """Gear by its name."""
+        return {"sun": self.gears.sun, "ring": self.ring_gear}.get(name, self.gears.planet)
+
+    def with_(self, **changed: Any) -> "PlanetaryCase":
+        """The same with other values; flanks and damage are given anew as a whole."""
+        return replace(self, **changed)

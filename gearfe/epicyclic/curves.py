@@ -1,0 +1,133 @@
+"""`SetCurves`: what a planetary set does over its positions, in SI units."""
+
+import os
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..pictures.set_plot import draw_curves
+from ..units import NEWTON_PER_UM
+from .rim import RimSupports, rim_angles, rim_moved
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MESHES = ("sun-planet", "planet-ring")
+
+
+@dataclass(frozen=True, slots=True)
+class SetCurves:
+    """A planetary set over its positions (p of them); arrays of meshes have the axes (2, positions, planets): sun's, ring's.
+
+    Attributes
+    ----------
+    position : ndarray, shape (p,)
+        By how many of its pitches the sun is turned.
+    force : ndarray, shape (2, p, planets)
+        Of the meshes [N].
+    k : ndarray, shape (2, p, planets)
+        Stiffness of each mesh in the set: its force over how far it closes [N/m]; 0 where a mesh carries nothing. In it is the
+        motion of the ring on its supports, `rim`.
+    k_alone : ndarray, shape (2, p, planets)
+        Of the isolated pair with both gears held, under the mean force [N/m].
+    rim : ndarray, shape (2, p, planets)
+        How far the ring's rim gives way in each mesh [m]; 0 of the sun's.
+    te : ndarray, shape (p,)
+        Transmission error of the set under load: turn of the sun against carrier and ring times its base radius [m].
+    orbit : ndarray, shape (p, 2)
+        Where the sun's axis is [m]; 0 of a sun that is held.
+    pair_force : ndarray, shape (2, p, planets, pairs)
+        Of each tooth pair [N], by its number `order`: that many base pitches ahead of the newest.
+    tooth : ndarray of int, shape (2, p, planets, pairs)
+        The tooth of sun (sun's meshes) or planet (ring's) in that pair, counted clockwise; -1 where none is.
+    order : ndarray of int, shape (pairs,)
+    ring_angle : ndarray, shape (n,)
+        Of the rim's nodes, clockwise from the ring's tooth 0 [rad]; empty unless the ring is on supports.
+    ring_moved : ndarray, shape (p, n, 2)
+        Their displacements, outwards and clockwise [m].
+    meta : dict
+        The case, seconds.
+    """
+
+    position: NDArray[np.float64]
+    force: NDArray[np.float64]
+    k: NDArray[np.float64]
+    k_alone: NDArray[np.float64]
+    rim: NDArray[np.float64]
+    te: NDArray[np.float64]
+    orbit: NDArray[np.float64]
+    pair_force: NDArray[np.float64]
+    tooth: NDArray[np.int64]
+    order: NDArray[np.int64]
+    ring_angle: NDArray[np.float64]
+    ring_moved: NDArray[np.float64]
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def __repr__(self):
+        """One line: planets, positions, stiffness of both kinds of mesh, load factor."""
+        mean = [one[one > 0].mean() / NEWTON_PER_UM for one in self.k]
+        told = ", ".join(f"k {name} {value:.4g} N/um" for name, value in zip(MESHES, mean, strict=True))
+        return f"<SetCurves: {self.force.shape[2]} planets, {self.position.size} positions, {told}, K_gamma {self.K_gamma:.4g}>"
+
+    @property
+    def share(self) -> NDArray[np.float64]:
+        """Share of each mesh in the load of its kind ``(2, p, planets)``, times the planets: 1 where all carry the same."""
+        return self.force / self.force.mean(axis=2, keepdims=True)
+
+    @property
+    def K_gamma(self) -> float:  # noqa: N802  # the symbol of ISO 6336-1
+        """Mesh load factor K_gamma of ISO 6336-1: the largest share of any mesh at any position."""
+        return float(self.share.max())
+
+    @property
+    def k_without_rim(self) -> NDArray[np.float64]:
+        """`k` without what the ring's rim gives way [N/m]: for models in which the ring is a body on springs of its own."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
+
+    def plot(self, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
+        """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""
+        return draw_curves(self, path, dpi=dpi)
+
+    @classmethod
+    def of(cls, of: Any, meshes: Any, position: NDArray[np.float64], found: list[Any], meta: dict[str, Any]) -> "SetCurves":
+        """From solved positions, `gearfe.epicyclic.assembly.Position`."""
+        case, p = of.case, len(found)
+        width, n = case.width, case.planets
+        loads, closing, rim = (
+            np.array([getattr(one, name) for one in found]).transpose(1, 0, 2) for name in ("loads", "closing", "rim")
+        )
+        even = case.force / width
+        alone = np.array([[[meshes.alone(i, k, j, even) for j in range(n)] for i in range(p)] for k in (0, 1)])
+        orders = np.array(sorted({pair[2] for one in found for pair in one.pairs}))
+        pair_force, tooth = np.zeros((2, p, n, orders.size)), np.full((2, p, n, orders.size), -1)
+        teeth = case.gears.sun.z, case.gears.planet.z
+        for i, one in enumerate(found):
+            for inner, planet, order, number, load in one.pairs:
+                at = inner, i, planet, int(np.searchsorted(orders, order))
+                pair_force[at], tooth[at] = load * width, number % teeth[inner]
+        carries = loads > 0
+        k = np.where(carries, loads * width / np.where(carries, closing * 1e-3, 1.0), 0.0)
+        angle, moved = _rim_of(of, found)
+        return cls(
+            position, loads * width, k, even * width / (alone * 1e-3), rim * 1e-3,
+            np.array([one.turn for one in found]) * 1e-3, np.array([one.orbit for one in found]) * 1e-3,
+            pair_force, tooth, orders, angle, moved * 1e-3, {"case": case} | meta,
+        )  # fmt: skip
+
+
+def _rim_of(of, found):
+    """Angles and displacements [mm] of the rim of a ring on supports."""
+    rim = of.bodies.rim
+    if not (of.coupled and isinstance(of.case.ring, RimSupports)):
+        return np.zeros(0), np.zeros((len(found), 0, 2))
+    moved = []
+    for one in found:
+        if of.case.ring.pushes:
+            tractions, whole = one.lugs, one.whole
+        else:
+            tractions, whole = (np.einsum("pta,ta->p", values, one.on_ring) for values in (rim.reaction, rim.moves))
+        moved.append(rim_moved(rim, one.on_ring, tractions, whole))
+    return rim_angles(rim.whole), np.array(moved)

@@ -1,0 +1,103 @@
+"""Pictures (matplotlib) of a planetary set: bent under its load, and loads and stiffness of its meshes over the positions."""
+
+import math
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..files import save_figure
+from ..units import NEWTON_PER_UM
+from .look import COLOURS, DASHES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+LARGEST = 0.03  # of the set's radius: the largest displacement as drawn, unless it is asked otherwise
+BRIGHT = 99.5  # per cent of the nodes that the colours tell apart: point loads have no largest stress
+
+
+def draw_set(
+    shapes: list[Any],
+    supports: NDArray[np.float64] | None,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    magnified: float | None = None,
+    dpi: int = 150,
+) -> "Figure":
+    """Draw the loaded gears of a set, bent, coloured by von Mises stress; save to `path` if given.
+
+    Parameters
+    ----------
+    shapes : list of gearfe.epicyclic.shape.Shape
+    supports : ndarray, shape (2, n), optional
+        Places [mm] where the ring is held.
+    path : path, optional
+    magnified : float, optional
+        How many times displacements are drawn; default: so that the largest is seen.
+    dpi : int
+        Dots per inch.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+    from matplotlib.tri import Triangulation
+
+    radius = max(float(np.abs(one.place).max()) for one in shapes)
+    largest = max(float(np.hypot(*one.moved).max()) for one in shapes)
+    times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
+    figure = Figure(figsize=(8, 8), layout="constrained")
+    axes = figure.subplots()
+    top = max(float(np.percentile(one.stress, BRIGHT)) for one in shapes)
+    for one in shapes:
+        x, y = one.place + times * one.moved
+        corners = np.concatenate([one.triangles[[0, 3, 5]], one.triangles[[3, 1, 4]], one.triangles[[5, 4, 2]],
+                                  one.triangles[[3, 4, 5]]], axis=1)  # fmt: skip
+        mesh = Triangulation(x, y, corners.T)
+        drawn = axes.tripcolor(mesh, one.stress, cmap="viridis", vmin=0, vmax=top, shading="gouraud", rasterized=True)
+    if supports is not None:
+        axes.plot(*supports, "^", color=COLOURS[1], markersize=9, label="held")
+        axes.legend(loc="upper right", fontsize=9)
+    figure.colorbar(drawn, ax=axes, label="von Mises stress [MPa]", shrink=0.7)
+    axes.set(aspect="equal", title=f"displacements {times:g} times as large, at most {1e3 * largest:.3g} um")
+    axes.set_axis_off()
+    return save_figure(figure, path, dpi)
+
+
+def draw_curves(curves: Any, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
+    """Draw stiffness and load of every mesh and the transmission error over the positions; save to `path` if given.
+
+    Parameters
+    ----------
+    curves : gearfe.epicyclic.curves.SetCurves
+    path : path, optional
+    dpi : int
+        Dots per inch.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 8), layout="constrained")
+    above, middle, below = figure.subplots(3, sharex=True)
+    for planet in range(curves.force.shape[2]):
+        for inner, name in enumerate(("sun", "ring")):
+            label = f"planet {planet}, {name}"
+            line = {"color": COLOURS[planet % len(COLOURS)], "linestyle": DASHES[inner]}
+            above.plot(curves.position, curves.k[inner, :, planet] / NEWTON_PER_UM, label=label, **line)
+            if not inner:
+                middle.plot(curves.position, curves.share[inner, :, planet], label=f"planet {planet}", **line)
+    for inner in (0, 1):
+        above.plot(curves.position, curves.k_alone[inner, :, 0] / NEWTON_PER_UM, color="gray", linestyle=DASHES[inner],
+                   label=f"alone, {('sun', 'ring')[inner]}")  # fmt: skip
+    below.plot(curves.position, 1e6 * curves.te, color=COLOURS[0])
+    above.set(ylabel="k [N/um]")
+    middle.set(ylabel="share of the load, times planets")
+    below.set(ylabel="transmission error [um]", xlabel="turn of the sun [pitches]")
+    figure.legend(*above.get_legend_handles_labels(), fontsize=8, ncols=4, loc="outside upper center")
+    return save_figure(figure, path, dpi)
