@@ -89,6 +89,7 @@ def test_pages_say_what_the_draws_found(page):
     assert sum(joint.counts(page)) == len(set(joint.said(page)) - assumed)
 
 
+@pytest.mark.slow
 def test_a_draw_is_computed_again():
     """The cheapest page's first draw gives the row on file."""
     draw = joint_inputs.draws("helical_pitting")[0]
@@ -128,6 +129,7 @@ def test_the_table_of_repeats_bears_what_is_said_of_them():
             assert said[f"three repeats: {word} does not tell the levels apart"] != planetary_repeats.apart(found, rising=False)
 
 
+@pytest.mark.slow
 def test_a_crack_of_60_percent_is_case_3_without_pits():
     from validation.make import herringbone_runs
 

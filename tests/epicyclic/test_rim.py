@@ -1,6 +1,7 @@
 """The ring on what holds its rim, beside finite elements of the whole ring (scikit-fem's own forms, pads' nodes fixed)."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from sets import STEEL, gears
 from skfem import Basis, ElementTriP2, ElementVector, asm
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
+from gearfe.epicyclic.pads import among
 from gearfe.epicyclic.rim import Rim, RimBed, RimSupports, rim_angles, rim_moved, ring_on
 from gearfe.epicyclic.whole_gear import PLACES, between_teeth, carry, whole_gear
 from geometry.mesh.both_flanks import both_flanks
@@ -158,3 +160,16 @@ def test_all_kinds_are_symmetric_and_add():
 def test_what_holds_no_ring_is_refused(build, message):
     with pytest.raises(ValueError, match=message):
         build()
+
+
+@pytest.mark.parametrize("z", [4, 5])
+def test_harmonics_of_sectors_add_up_to_the_sum_over_sectors(z):
+    """Compliance of pads, from harmonics, beside the double sum over a real block-circulant matrix; even z has a last harmonic."""
+    rng = np.random.default_rng(z)
+    block = rng.standard_normal((z, 3, 3))
+    block = block + np.roll(block[::-1], 1, axis=0).transpose(0, 2, 1)  # C(-k) is the transpose of C(k)
+    load = rng.standard_normal((z, 3, 2))
+    moved = np.concatenate([np.zeros((z // 2 + 1, 3, PLACES)), np.fft.rfft(block, axis=0)], axis=2)
+    found = among(SimpleNamespace(load=load, moved=moved))
+    want = sum(load[i].T @ block[(i - j) % z] @ load[j] for i in range(z) for j in range(z))
+    assert_allclose(found, want, rtol=1e-12, atol=1e-12)
