@@ -154,15 +154,21 @@ def speeds():
         ("helical_pitting, 8, impact law", lambda: helical(True), 1.0),
         ("planetary_pitting, 18, impact law, friction, pulses", article, 1.0),
     )
-    return [{"name": name} | speed(build(), duration) for name, build, duration in jobs]
+    found = [{"name": name} | speed(build(), duration) for name, build, duration in jobs]
+    for name in ("planetary_pitting", "compound_planetary"):
+        scene = gf.load_scene(name)
+        one, several = gf.build_machine(scene), gf.build_machine(scene, loads=(1 / 16, 1 / 4, 1 / 2, 1, 2))
+        kinds = (("not filtered", one, {"filtered": False}), ("one curve", one, {}), ("laws of five loads", several, {}))
+        found += [{"name": f"{name}, healthy, {kind}"} | speed(made, 2.0, **options) for kind, made, options in kinds]
+    return found
 
 
-def speed(made, duration):
-    """Seconds of the processor per simulated second of a machine, best of three."""
+def speed(made, duration, **options):
+    """Seconds of the processor per simulated second of a machine, best of three; `options` of `simulate`."""
     taken = []
     for _ in range(4):  # the first run compiles
         started = time.process_time()
-        got = simulate(made, duration)
+        got = simulate(made, duration, **options)
         taken.append((time.process_time() - started) / duration)
     return {"seconds": float(f"{min(taken):.3g}"), "step": 1e6 * got.stats["dt"], "estimate": got.stats["error"]}
 
