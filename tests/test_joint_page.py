@@ -1,5 +1,6 @@
 """Joint draws of inputs that articles do not print: the draws, the machine that one changes, and what the page says of them."""
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -68,18 +69,31 @@ def test_what_decides_a_statement(monkeypatch):
     monkeypatch.setattr(joint, "rows_of", lambda _: rows)
     load = np.array([row["inputs"]["load"] for row in rows])
     half = joint_inputs.DRAWS // 2
-    assert joint.decides("helical_pitting", load > np.median(load)) == f"torque: {half} of {half} above its middle, 0 below"
+    chance = 1 - (1 - 2 / math.comb(2 * half, half)) ** len(joint_inputs.RANGES["helical_pitting"])
+    said = f"torque: {half} of {half} above its middle, 0 below (by chance {chance:.2g})"
+    assert joint.decides("helical_pitting", load > np.median(load)) == said
     assert joint.decides("helical_pitting", np.ones(joint_inputs.DRAWS, bool)) == "none of them"
     lone = np.zeros(joint_inputs.DRAWS, bool)
     lone[0] = True
     assert joint.decides("helical_pitting", lone) == "no single one"
 
 
+@pytest.mark.parametrize("yes", range(1, 8))
+def test_what_chance_makes_of_halves(yes):
+    """All ways to place so many draws that hold among eight, counted one by one."""
+    ways = [sum(2 * (place > 3) - 1 for place in one) for one in itertools.combinations(range(8), yes)]
+    held = np.arange(8) < yes
+    for apart in range(5):
+        alone = float((np.abs(ways) >= apart).mean())
+        assert_allclose(joint.by_chance(apart, held, 1), alone, atol=1e-12)
+        assert_allclose(joint.by_chance(apart, held, 3), 1 - (1 - alone) ** 3, atol=1e-12)
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_pages_say_what_the_draws_found(page):
     rows = [row for key, row in stored("joint").items() if key.startswith(f"{page} ")]
-    assert joint_inputs.DRAWS // 2 <= len(rows) <= joint_inputs.DRAWS, "run python -m validation joint"
-    for row, draw in zip(joint.rows_of(page), joint_inputs.draws(page), strict=False):
+    assert len(rows) == joint_inputs.DRAWS, "run python -m validation joint"
+    for row, draw in zip(joint.rows_of(page), joint_inputs.draws(page), strict=True):
         assert_allclose(list(row["inputs"].values()), [value for _, value in draw.values])
     text = state.without_first_line(page)
     assert machines.drawn_jointly(page) in text

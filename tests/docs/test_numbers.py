@@ -209,6 +209,15 @@ def test_what_other_pages_say():
     says("faq.md", "Over random pairs the mean is between {} and {} % too high in nine cases of ten", low, high)
     low, _, high = shares("map.md", "coupled")[8:11]
     says("faq.md", "`coupled` is the best of them, {} to {} % low in nine cases of ten", -high, -low)
+    sets = (PAGES / "sets.md").read_text(encoding="utf-8")
+    alone = [float(x) for x in re.search(r"k of sun and planet (\d+), of planet and ring (\d+) N/um", sets).groups()]
+    rows = re.findall(r"\| (\d) \| (\d+) \| held all around \| (\d+) \| (\d+) \|", sets)
+    below = [100 * (1 - float(sun) / alone[0]) for planets, rim, sun, _ in rows if rim == "5" and planets in "35"]
+    above = [100 * (float(ring) / alone[1] - 1) for *_, ring in rows]
+    says("faq.md", "below that of the isolated pair with three planets and {} % with five", below[1])
+    says("faq.md", "k of sun and planet is {} % below", below[0])
+    says("faq.md", "k of planet and ring is {} to {} % above it", min(above), max(above))
+    says("faq.md", "and {} to {} times it on supports", *map(float, re.search(r"is ([\d.]+) to ([\d.]+) times", sets).groups()))
     (covered, of) = re.search(
         r"In the section in (\d+) of (\d+) pairs for `ritz` and \1 of \2", words_of(PAGES / "sample.md")
     ).groups()

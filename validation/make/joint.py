@@ -57,8 +57,20 @@ def decides(name, held):
         upper = np.argsort([row["inputs"][word] for row in rows_of(name)])[held.size // 2 :]
         above, below = int(held[upper].sum()), int(held.sum() - held[upper].sum())
         told = f"{joint_inputs.MEANT[word]}: {above} of {upper.size} above its middle, {below} below"
+        told += f" (by chance {by_chance(abs(above - below), held, len(joint_inputs.RANGES[name])):.2g})"
         best = max(best, (abs(above - below), told))
     return best[1] if best[0] >= DECIDES else "no single one"
+
+
+def by_chance(apart, held, inputs):
+    """Probability that halves of the draws differ by as many or more for one of so many inputs if none plays a part."""
+    from math import comb
+
+    half, yes = held.size // 2, int(held.sum())
+    ways = sum(
+        comb(half, a) * comb(half, yes - a) for a in range(max(0, yes - half), min(half, yes) + 1) if abs(2 * a - yes) >= apart
+    )
+    return 1 - (1 - ways / comb(held.size, yes)) ** inputs
 
 
 def counts(name):
@@ -74,7 +86,8 @@ def sentence(name):
     """Counts in words; empty without rows."""
     every, none, some = counts(name)
     return (
-        f"{every} of its {every + none + some} statements hold in all {joint_inputs.DRAWS} draws, {none} in none, {some} in some"
+        f"of its {every + none + some} statements {every} {'holds' if every == 1 else 'hold'} in all {joint_inputs.DRAWS} draws, "
+        f"{none} in none, {some} in some"
     )
 
 
@@ -87,10 +100,11 @@ def section(name):
     lines = [
         "## Within which unprinted inputs statements hold",
         "",
-        f"{sentence(name)[0].upper()}{sentence(name)[1:]} ([joint.md](joint.md)): Latin hypercube over "
-        f"{', '.join(told(name))}. Draws in which a statement holds, by channel, and which input decides it on the first.",
+        f"{sentence(name)[0].upper()}{sentence(name)[1:]}; what the scene's assumptions set is not counted. How they are "
+        f"drawn: [joint.md](joint.md). The inputs, without a unit as factors of what is assumed: {'; '.join(told(name))}. Below, "
+        "in how many draws a statement holds, by channel, and for the first channel the input that goes with it most.",
         "",
-        table_row(["statement", *channels, "what decides it"]),
+        table_row(["statement", *channels, "input that goes with it"]),
         "|---" * (len(channels) + 2) + "|",
     ]
     for statement, one in found.items():
@@ -101,7 +115,7 @@ def section(name):
 
 def told(name):
     """Inputs with their ranges, in words."""
-    return [f"{joint_inputs.MEANT[word]} {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
+    return [f"{joint_inputs.MEANT[word]}: {low:g} to {high:g}" for word, (low, high) in joint_inputs.RANGES[name].items()]
 
 
 def numbers(name):
@@ -118,7 +132,8 @@ def numbers(name):
             values = [draw["numbers"][word][i] for draw in rows]
             inside = sum(scene[reference].within(value, row.printed) for value in values)
             channel = word.partition(", ")[2]
-            quantity = ", ".join(filter(None, (scene[reference].quantity, channel)))
+            meant = scene[reference].quantity.replace("its centre", "centre of the band of largest spectral kurtosis")
+            quantity = ", ".join(filter(None, (meant, channel)))
             cells = [quantity if not i else "", row.case, f"{row.printed:g}", f"{row.ours:.3g}"]
             lines.append(table_row([*cells, f"{min(values):.3g} to {max(values):.3g}", f"{inside} of {len(values)}"]))
     return [*lines, ""]
@@ -135,6 +150,15 @@ def answer():
         f"load, supports, damping, noise and what else is not printed, {none} in none; the "
         f"other {some} hold or not by inputs that the articles leave out, so that neither verdict on them is evidence."
     )
+
+
+def notes():
+    """Lines: what is not counted, and what the tables of the four pages can tell of single inputs."""
+    return [
+        "Not counted are statements that an assumption of the scene sets. So few draws hardly tell which input decides: the four "
+        f"pages name the one whose larger and smaller half of draws differ most, from {DECIDES} draws on, and say how often "
+        "chance would name one were all inputs without effect (by chance 0.5: every second time)."
+    ]
 
 
 def ranges():
@@ -159,6 +183,6 @@ def tell():
     small = ["| page | statements | hold in all draws | in none | in some |", "|---|---|---|---|---|"]
     for name in joint_inputs.RANGES:
         small.append(table_row([f"[{name}.md]({name}.md)", str(sum(counts(name))), *map(str, counts(name))]))
-    page.write(NAME, answer(), HOW.strip().splitlines(), small, ranges())
+    page.write(NAME, answer(), HOW.strip().splitlines(), small, notes(), ranges())
     for name in joint_inputs.RANGES:
         home("machines").write_page(name)  # which looks in here for its section

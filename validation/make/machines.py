@@ -99,8 +99,8 @@ def text(page):
         "which alone",
         "counts where there is one; *trend only*: all cases have the printed order, each 0.1 % from the next; *not reproduced*;",
         "*set by an assumption*: agrees, by a value that the scene assumes; *not reproducible*: nothing computed is that",
-        "quantity. Of statements: in how many [joint draws](joint.md) of what is not printed they hold. Kinds: *input*: put in,",
-        "or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
+        "quantity. Beside statements: in how many [draws](joint.md) of all inputs that are not printed they hold. Kinds:",
+        "*input*: put in, or found from this very value; *arithmetic*: follows from printed numbers; *model*:",
         "could have come out otherwise. Reasons: below.",
         "",
         with_draws(page, verdicts.text(references(page), rows)),
@@ -136,7 +136,7 @@ def with_draws(page, table):
 def drawn_jointly(page):
     """Sentence of the opening: how many statements hang on inputs that the article does not print."""
     below = "([below](#within-which-unprinted-inputs-statements-hold))"
-    return f"With the inputs that are not printed drawn jointly, {joint.sentence(page)} {below}."
+    return f"With all inputs that are not printed drawn at random together, {joint.sentence(page)} {below}."
 
 
 class Found:

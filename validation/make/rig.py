@@ -127,14 +127,14 @@ def twofold(row):
 
 def section(rows):
     """Lines: a row per case."""
-    head = "| case | resonances, of the natural frequency | RMS there [um] | two motions between | contact open at most |"
+    head = "| case (natural frequency) | resonances, over it | RMS there [um] | two motions at | contact open at most |"
     lines = [head, "|---|---|---|---|---|"]
     for name, row in rows.items():
         places, sizes = zip(*peaks(row), strict=True)
         both = twofold(row)
         cells = [", ".join(f"{one:.3g}" for one in places), ", ".join(f"{1e6 * one:.2f}" for one in sizes)]
         cells += [
-            "; ".join(f"{low:.3g} and {high:.3g}" for low, high in both) or "none",
+            "; ".join(f"{low:.3g}" + (f" to {high:.3g}" if high > low else "") for low, high in both) or "none",
             f"{100 * row['open']:.0f} % of the time",
         ]
         lines.append(f"| {name} ({row['natural']:.0f} Hz) | {' | '.join(cells)} |")
@@ -145,7 +145,8 @@ def inputs():
     """Lines: what is known of the rig and from where."""
     told = tomllib.loads((SOURCES / "rig.toml").read_text(encoding="utf-8"))
     lines = [f"- {one['cited']}. At hand: {one['at_hand']}." for one in told["source"]]
-    lines += ["", "| input | value | from |", "|---|---|---|"]
+    lines += ["", "*Recalled*: from memory, confirmed by no document. *Missing*: not even that; the value is a choice.", ""]
+    lines += ["| input | value | from |", "|---|---|---|"]
     lines += [f"| {one['what']} | {one['value']} | {one['from']} |" for one in told["input"]]
     return [*lines, "", *(f"Recalled: {one['what']} ({one['judged']})." for one in told["recalled"])]
 
@@ -172,13 +173,15 @@ def answer(rows):
     row, relieved = rows["340 N m"], rows["340 N m, relief 10 um, long"]
     place, size = max(peaks(row), key=lambda one: one[1])
     low, high = twofold(row)[-1]
+    others = [max(peaks(rows[f"340 N m, relief {name}"]), key=lambda one: one[1])[1] for name in ("20 um, long", "10 um, short")]
     after, damped = max([*relieved["up"], *relieved["down"]]), twofold(rows["340 N m, damping 5 %"])
     return (
         f"The phenomena do: at 340 N m and 2 % of damping the primary resonance softens to {place:.2f} of the natural frequency, "
         f"between {low:.2f} and {high:.2f} of it two motions stand side by side"
         + ("" if damped else ", with 5 % of damping none do")
         + f", and 10 um of long tip relief take the largest RMS of the transmission error from {1e6 * size:.1f} to "
-        f"{1e6 * after:.1f} um. The rig's printed numbers could not be had: none is compared."
+        f"{1e6 * after:.1f} um, while twice as much makes it {1e6 * others[0]:.1f} and as much of a short one "
+        f"{1e6 * others[1]:.1f} um. The rig's printed numbers could not be had: none is compared."
     )
 
 

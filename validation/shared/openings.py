@@ -10,9 +10,11 @@ from .table_rows import rows_of
 def planetary_pitting(found):
     """Articles S0 and S1."""
     sc = found.all("sc_simulated")
-    same = ", the same for all levels" if max(sc) - min(sc) < 1 else ""
+    same = ", all levels within 1 Hz" if max(sc) - min(sc) < 1 else ""
+    mesh, fault = (found.ours(f"{name}_frequency", "simulated") for name in ("mesh", "fault"))
+    low, high = mesh - fault, mesh + fault  # over which S0 averages
     ends = [f"{min(values):.0f} to {max(values):.0f}" for values in map(found.printed, ("sc_simulated", "sc_measured"))]
-    beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > WINDOW[1]]
+    beyond = [f"{x:g}" for x in (*found.printed("sc_simulated"), *found.printed("sc_measured")) if x > high]
     repeats = [name for name in ("RMS", "kurtosis", "shape factor") if not found.ours("further", f"three repeats: {name}{APART}")]
     told = f"of three repeats {' and '.join(repeats)} tell{'' if len(repeats) > 1 else 's'} the levels apart" if repeats else ""
     return (
@@ -22,13 +24,12 @@ def planetary_pitting(found):
         f"under the articles' own contact law, their N pits on one line, {_sizes(found, 'rms', 'RMS')} and "
         f"{_sizes(found, 'amplitudes', 'peaks')}, and an SC of {', '.join(f'{x:.1f}' for x in sc)} Hz{same}"
         + (f"; {told}" if told else ""),
-        f"the definition of SC: it averages frequencies from {WINDOW[0]:g} to {WINDOW[1]:g} Hz, so that "
+        f"the definition of SC: it averages frequencies from {low:g} to {high:g} Hz, so that "
         f"{' and '.join(beyond)} Hz cannot come out whatever the machine, while levels hang on load, masses and the path to the "
         "sensor, which are not printed",
     )
 
 
-WINDOW = (240.0, 320.0)  # Hz: f_m +- f_fault, over which S0 averages
 APART = " does not tell the levels apart"
 
 
@@ -55,7 +56,8 @@ def helical_pitting(found):
         "that pits raise lines at multiples of the pinion's turning frequency f_r and sidebands about the mesh frequency "
         "which grow with "
         "the pit, and that several pits are known by 2 f_r, one large one by f_r",
-        f"under the article's own law {yes} of its {len(said)} statements, beside what the places assumed for the pits set; "
+        f"that under the article's own law {yes} of its {len(said)} statements hold, not counting what follows from the "
+        "places assumed for the pits; "
         f"2 f_r is {'' if multi else 'not '}the largest low line of the three pits",
         "where the pits lie, which S3 does not print: pits on one tooth repeat once a turn and give most at f_r in the "
         "lost contact "
