@@ -126,7 +126,7 @@ class Set:
         """Flexibility between the contacts of two meshes that share a gear; None if they share none or nothing is added."""
         gears, bodies = self.case.gears, self.bodies
         if a.inner and b.inner:
-            table = self.bodies.rim.more if a is b else bodies.ring + bodies.rim.more
+            table = bodies.rim.more if a is b else bodies.ring + bodies.rim.more
             rows, columns, side = a.teeth[1] % gears.ring.z, b.teeth[1] % gears.ring.z, (1, 1)
             own = table[np.ix_(rows, range(PLACES), columns, range(PLACES))]
         elif a is b:
@@ -202,17 +202,7 @@ class Set:
                 moves[:, one.at] = rim.gives[:, teeth].reshape(3, -1) @ one.spread[1].T
         closing = np.vstack([problem.closing, np.zeros((lugs, problem.closing.shape[1]))])
         closing[:, -3:] = -np.concatenate([moves, rim.turns], axis=1).T
-        zero, one_ = np.zeros(lugs), np.ones(lugs)
-        return Problem(
-            np.block([[problem.flexibility, across.T], [across, rim.lug]]),
-            np.append(problem.gap, zero),
-            np.append(problem.coefficient, zero),
-            np.append(problem.radius, one_),
-            np.append(problem.modulus, one_),
-            np.append(problem.tilt, zero),
-            closing,
-            problem.load,
-        )
+        return problem.with_more(np.block([[problem.flexibility, across.T], [across, rim.lug]]), closing)
 
     def _read(self, blocks, force, motion, problem):
         """`Position` from forces and motions."""
@@ -256,20 +246,11 @@ def _with_faces(problem, shut):
     n, m = problem.gap.size, sum(one.met.contacts.faces.shape[0] for one in shut)
     total = np.zeros((n + m, n + m))
     total[:n, :n], stop = problem.flexibility, n
-    tilt = np.append(problem.tilt, np.zeros(m))
+    tilt = problem.tilt.copy()
     for one in shut:
         at = slice(stop, stop := stop + one.met.contacts.faces.shape[0])
         total[at, at] = one.met.contacts.faces
         tilt[one.at] = 0.0  # it is that of open cracks
         total[one.at, at], total[at, one.at] = one.met.contacts.opening, one.met.contacts.opening.T
-    zero = np.zeros(m)
-    return Problem(
-        total,
-        np.append(problem.gap, zero),
-        np.append(problem.coefficient, zero),
-        np.append(problem.radius, np.ones(m)),
-        np.append(problem.modulus, np.ones(m)),
-        tilt,
-        np.vstack([problem.closing, np.zeros((m, problem.closing.shape[1]))]),
-        problem.load,
-    )
+    closing = np.vstack([problem.closing, np.zeros((m, problem.closing.shape[1]))])
+    return problem._replace(tilt=tilt).with_more(total, closing)

@@ -39,6 +39,24 @@ class Problem(NamedTuple):
     closing: NDArray[np.float64]
     load: NDArray[np.float64]
 
+    def with_more(self, flexibility: NDArray[np.float64], closing: NDArray[np.float64]) -> "Problem":
+        """The same with m more contacts, without gaps and logarithms: `flexibility` ``(n + m, n + m)`` is all that they yield.
+
+        `closing` ``(n + m, motions)``.
+        """
+        more = flexibility.shape[0] - self.gap.size
+        zero, one = np.zeros(more), np.ones(more)
+        return Problem(
+            flexibility,
+            np.append(self.gap, zero),
+            np.append(self.coefficient, zero),
+            np.append(self.radius, one),
+            np.append(self.modulus, one),
+            np.append(self.tilt, zero),
+            closing,
+            self.load,
+        )
+
 
 def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
@@ -53,22 +71,15 @@ def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     """
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)
-    for most, pick in ((STEPS, np.ones_like), (SINGLE, _worst)):
-        found = _settled(problem, active, unit, most, pick)
+    for most, at_once in ((STEPS, True), (SINGLE, False)):
+        found = _settled(problem, active, unit, most, at_once)
         if found is not None:
             return found
     raise RuntimeError("the loads of the set's meshes did not settle: change the load or the position a little")
 
 
-def _worst(off):
-    """The one contact that is furthest off, as a mask."""
-    out = np.zeros(off.shape)
-    out[np.argmax(off)] = 1.0
-    return out
-
-
-def _settled(problem, active, unit, most, pick):
-    """Newton on the logarithms with an active set, of which `pick` says what changes; None if it does not settle."""
+def _settled(problem, active, unit, most, at_once):
+    """Newton on the logarithms with an active set, changed `at_once` or by the worst contact; None if it does not settle."""
     floor = 1e-9 * unit
     force = np.where(active, unit / max(np.count_nonzero(active), 1), 0.0)
     for _ in range(most):
@@ -77,14 +88,12 @@ def _settled(problem, active, unit, most, pick):
             return None
         new, motion = found
         free = problem.flexibility @ np.maximum(new, 0.0) + problem.gap - problem.closing @ motion
-        pulls, overlaps = np.where(active, np.maximum(-new, 0.0), 0.0), np.where(active, 0.0, np.maximum(-free, 0.0))
-        overlaps[overlaps < ROUNDING * np.abs(free).max()] = 0.0
-        off = pulls / unit if pulls.any() else overlaps
-        if pick is np.ones_like:
-            off = pulls + overlaps
-        if not off.any() and np.abs(new - force).max() < SETTLED * unit:
+        pulls, overlaps = active & (new < 0), ~active & (free < -ROUNDING * np.abs(free).max())
+        flips = pulls | overlaps
+        if not flips.any() and np.abs(new - force).max() < SETTLED * unit:
             return new, motion
-        flips = (off > 0) & (pick(off) > 0)
+        if not at_once:  # first what pulls, then what overlaps
+            flips &= np.arange(new.size) == np.argmin(np.where(pulls, new, 0.0) if pulls.any() else np.where(overlaps, free, 0.0))
         force = np.where(active & ~flips & (new > 0), new, floor)
         active = active ^ flips
         force = np.where(active, force, 0.0)
@@ -119,7 +128,12 @@ def _likely(problem, unit):
     even = np.full(n, unit / max(n, 1))
     width = half_width(even, problem.radius, problem.modulus)
     matrix = problem.flexibility + np.diag(problem.coefficient * np.log(2 / width))
-    upper = cholesky(matrix)
+    try:
+        upper = cholesky(matrix)
+    except LinAlgError as error:
+        raise RuntimeError(
+            "the flexibility between the contacts of the set is not positive definite: refine the meshes, or give wider pads"
+        ) from error
     push = solve_triangular(upper, problem.gap + problem.coefficient / 2 * even, trans="T")
     # lift the gaps by some motion: the balance makes any constant of G q free of work
     scale = STIFF * np.abs(upper).max()

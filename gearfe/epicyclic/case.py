@@ -14,7 +14,9 @@ from geometry.pair.planetary import PlanetarySet
 from geometry.tooth.modified import Flank
 
 from ..material import Material
-from .rim import RimBed, RimSupports
+from ..stiffness.limits import numbers, truth
+from ..stiffness.plausible import check_load
+from .rim import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")
@@ -23,35 +25,38 @@ LARGEST = 0.1  # modules: position errors beyond are no errors of a gear that ru
 
 @dataclass(frozen=True, slots=True)
 class PlanetaryCase:
-    """A planetary set in plane strain, its carrier held: what is turned by the sun, and against which the ring is held.
+    """A planetary set in plane strain with its load: the carrier is held, the sun drives clockwise, the ring takes the torque.
 
     Parameters
     ----------
     gears : PlanetarySet
-        Spur gears. With `angles` its own number of planets does not count.
+        Spur gears. Its number of planets does not count where `angles` are given.
     force : float
-        Mean force of the sun's meshes along the line of action [N]: the sun's torque is `force` times the planets times r_b.
+        Mean over the planets of the force between sun and planet, along the line of action [N]: the sun's torque is `force` times
+        the number of planets times the sun's r_b.
     material : Material or (Material, Material, Material)
         Of all gears, or of sun, planets and ring.
     angles : sequence of float, optional
-        Of the planets, clockwise [rad]; default: equally spaced. Teeth fit where they are whole multiples of
-        ``2 pi / (z_s + z_r)`` apart.
+        Where the planets stand, clockwise from +y [rad]; default: equally spaced from 0 on. Teeth fit only where planets are
+        whole multiples of ``2 pi / (z_s + z_r)`` apart.
     ring : "held", RimBed or RimSupports
-        What holds the ring's outer edge.
+        What holds the ring's outer edge: ``"held"`` is rigidly all around.
     floating : bool
-        The sun moves freely across its axis; needs three planets. Otherwise its bore is held, but for the turn.
+        Whether the sun's axis may move freely in the plane of the section; needs three planets. Otherwise it stays where it is.
     pin : float
-        Stiffness of each planet's pin with its bearing across the axis, over the whole width [N/mm]; default rigid. Planets turn
-        on them without friction; the carrier is rigid.
+        Radial stiffness of each planet's pin and bearing together, over the whole width [N/mm]; default rigid. Planets turn on
+        their pins without friction; the carrier is rigid.
     errors : sequence of (float, float), optional
         For each planet how far its pin stands off its place [mm]: outwards, and clockwise, the way the sun drives it.
     flanks : dict, optional
-        Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; those of a
-        planet on both its flanks. A pitch deviation of a planet moves the whole tooth, given as of its flank towards the sun.
-        Teeth are counted clockwise from those in mesh at position 0, see `gearfe.epicyclic.standing`.
+        Modifications ``{"sun": Flank(...), "planet": Flank(...), ("planet", 1): Flank(...), "ring": Flank(...)}``; ``"planet"``
+        is every planet for which ``("planet", number)`` is not given. Both flanks of a planet have them. A pitch deviation of a
+        planet moves the whole tooth; its sign is that of the flank towards the sun. Teeth are counted clockwise: at position 0
+        tooth 0 of the sun meets tooth 0 of planet 0, see `gearfe.epicyclic.standing`.
     damage : dict, optional
-        Cracks through the whole width by gear, with the same names. The sides of a planet's cracks are those of its mesh with the
-        sun. A crack changes the mesh that is near it; what it changes between meshes is left out. None in a ring that bends.
+        Lists of cracks through the whole width ``{"sun": [Crack(...)], ...}``, by the same names. The loaded side of a planet's
+        tooth is the one that the sun loads. A crack changes how the meshes near it yield to their own loads; that it also changes
+        how they feel the loads of other meshes is left out. A ring that bends may have none.
 
     Raises
     ------
@@ -89,14 +94,14 @@ class PlanetaryCase:
             if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) != most:
                 raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
             put(self, name, float(value))
-        materials = (self.material,) * 3 if isinstance(self.material, Material) else tuple(self.material)
+        materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3
         if len(materials) != 3 or not all(isinstance(one, Material) for one in materials):
             raise ValueError(f"material = {self.material!r}, but give one Material or three: of sun, planets and ring")
         put(self, "material", materials)
-        if not (self.ring == "held" or isinstance(self.ring, (RimBed, RimSupports))):
-            raise ValueError(
-                f"ring = {self.ring!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
-            )
+        for k, pair in enumerate(self.pairs):
+            check_load(pair, self.force, materials[k : k + 2])
+        check_support(self.ring, self.ring_gear)
+        put(self, "floating", truth("floating", self.floating))
         if self.floating and self.planets < 3:
             raise ValueError(f"{self.planets} planets do not hold a floating sun: give floating = False, or at least 3 planets")
         put(self, "errors", self._errors())
@@ -120,7 +125,7 @@ class PlanetaryCase:
         return self.pairs[1].gear_2
 
     def _errors(self):
-        given = np.zeros((self.planets, 2)) if self.errors is None else np.array(self.errors, dtype=float)
+        given = np.zeros((self.planets, 2)) if self.errors is None else numbers("errors", self.errors, " [mm]")
         if given.shape != (self.planets, 2) or not np.isfinite(given).all():
             raise ValueError(
                 f"errors of shape {given.shape}, but give (outwards, clockwise) for each of {self.planets} planets [mm]"
@@ -143,7 +148,11 @@ class PlanetaryCase:
         for name in sorted(given, key=lambda one: one != "planet"):
             if name not in names and name != "planet":
                 raise ValueError(f"{what} of {name!r}, but give 'sun', 'planet', 'ring' or ('planet', 0 ... {self.planets - 1})")
-            value = given[name] if single else tuple(given[name])
+            value = given[name]
+            if not single:
+                if not isinstance(value, (list, tuple)):
+                    raise ValueError(f"{what} of {name!r} = {value!r}, but give a list of {kind.__name__}, even of one")
+                value = tuple(value)
             for one in (value,) if single else value:
                 if not isinstance(one, kind):
                     raise ValueError(f"{what} of {name!r}: {one!r} is no {kind.__name__}; the section has no other")

@@ -19,36 +19,40 @@ MESHES = ("sun-planet", "planet-ring")
 
 @dataclass(frozen=True, slots=True)
 class SetCurves:
-    """A planetary set over its positions (p of them); arrays of meshes have the axes (2, positions, planets): sun's, ring's.
+    """What `planetary_stiffness` gives: a planetary set over p positions.
+
+    The first axis of length 2 is the kind of mesh: 0 sun and planet, 1 planet and ring.
 
     Attributes
     ----------
     position : ndarray, shape (p,)
         By how many of its pitches the sun is turned.
     force : ndarray, shape (2, p, planets)
-        Of the meshes [N].
+        Load of each mesh along its line of action [N].
     k : ndarray, shape (2, p, planets)
-        Stiffness of each mesh in the set: its force over how far it closes [N/m]; 0 where a mesh carries nothing. In it is the
-        motion of the ring on its supports, `rim`.
+        Stiffness of each mesh in the set: its force over how far the turns and shifts of its two gears close it after the first
+        touch [N/m]; 0 where it carries nothing. That the ring bends and moves on its supports, `rim`, makes it softer.
     k_alone : ndarray, shape (2, p, planets)
-        Of the isolated pair with both gears held, under the mean force [N/m].
+        Stiffness of the isolated pair under the mean force, both gears held at their bore or rim [N/m].
     rim : ndarray, shape (2, p, planets)
-        How far the ring's rim gives way in each mesh [m]; 0 of the sun's.
+        How far a ring that is not held all around gives way in each mesh, along the line of action [m]; 0 in meshes of the sun.
     te : ndarray, shape (p,)
-        Transmission error of the set under load: turn of the sun against carrier and ring times its base radius [m].
+        Transmission error of the set under load: how far the sun turns ahead while carrier and ring are held, times its base
+        radius [m].
     orbit : ndarray, shape (p, 2)
-        Where the sun's axis is [m]; 0 of a sun that is held.
+        Displacement x, y of the sun's axis [m]; 0 of a sun that is held.
     pair_force : ndarray, shape (2, p, planets, pairs)
-        Of each tooth pair [N], by its number `order`: that many base pitches ahead of the newest.
+        Load of each pair of teeth [N]; `order` says which pair.
     tooth : ndarray of int, shape (2, p, planets, pairs)
-        The tooth of sun (sun's meshes) or planet (ring's) in that pair, counted clockwise; -1 where none is.
+        Its tooth of the sun (meshes with the sun) or of the planet (meshes with the ring), counted clockwise; -1: none.
     order : ndarray of int, shape (pairs,)
+        By how many base pitches a pair of teeth is ahead of the pair that came into contact last.
     ring_angle : ndarray, shape (n,)
-        Of the rim's nodes, clockwise from the ring's tooth 0 [rad]; empty unless the ring is on supports.
+        Angles of nodes on the ring's outer edge, clockwise from its tooth 0 [rad]; empty unless the ring is on pads.
     ring_moved : ndarray, shape (p, n, 2)
         Their displacements, outwards and clockwise [m].
     meta : dict
-        The case, seconds.
+        ``"case"``: the `PlanetaryCase`; ``"seconds_flexibility"``, ``"seconds_contact"``: time taken [s].
     """
 
     position: NDArray[np.float64]
@@ -73,7 +77,7 @@ class SetCurves:
 
     @property
     def share(self) -> NDArray[np.float64]:
-        """Share of each mesh in the load of its kind ``(2, p, planets)``, times the planets: 1 where all carry the same."""
+        """Load of each mesh over the mean load of its kind ``(2, p, planets)``: 1 where all planets carry the same."""
         return self.force / self.force.mean(axis=2, keepdims=True)
 
     @property
@@ -83,7 +87,7 @@ class SetCurves:
 
     @property
     def k_without_rim(self) -> NDArray[np.float64]:
-        """`k` without what the ring's rim gives way [N/m]: for models in which the ring is a body on springs of its own."""
+        """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
 

@@ -67,11 +67,6 @@ class Mesh:
         self._found: dict[tuple[int, float], Contacts] = {}
         self._alone: tuple[float, NDArray[np.float64]] | None = None
 
-    @property
-    def modulus(self) -> float:
-        """Contact modulus [MPa]."""
-        return self.contact.modulus
-
     def at(self, wanted: list[int], line_load: float) -> list[Contacts]:
         """Contacts at phases by their number, as many as a load of about `line_load` [N/mm] may close."""
         new = sorted({i for i in wanted if (i, line_load) not in self._found})
@@ -103,6 +98,7 @@ class Meshes:
     case : PlanetaryCase
     stand : Standing
     refine : float
+        Divides the edge lengths.
     cache : SolvedGears
     """
 
@@ -193,7 +189,7 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([found.roll_1[i, k], found.roll_2[i, k], *contact.turns[:, i, k]])
         else:
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
-    values = np.hstack([np.atleast_2d(np.array(one).T).T if np.ndim(one[0]) else np.array(one)[:, None] for one in places])
+    values = np.hstack([np.reshape(one, (4, -1)) for one in places])
     near = built["gap"] - least <= reach
     seams = [flexible.seam for flexible in contact.flexibility if flexible.seam]
     return Contacts(

@@ -23,8 +23,9 @@ SPREAD = 3  # edges of the rim to either side over which the mesh is given a tra
 
 @dataclass(frozen=True, slots=True)
 class Pads:
-    """Tractions of pads on the rim: nodal forces `load` ``(z, r, p)``, forces x, y and clockwise torque `turns` ``(3, p)``.
+    """Tractions of pads on the rim, p of them by pad, direction and polynomial.
 
+    `load` ``(z, r, p)`` are their nodal forces, `turns` ``(3, p)`` their forces along x and y and clockwise torque [mm].
     `compliance` ``(p, p)`` is added to how the rim's mesh moves under them [mm per N/mm]: of springs, and close to each pad.
     `moved` are the edge's displacements by harmonic, as of `WholeGear.loose`.
     """
@@ -36,19 +37,8 @@ class Pads:
 
 
 def pads_on(whole: WholeGear, support: "RimSupports", width: float, moved: NDArray[np.complex128]) -> Pads:
-    """`Pads` of a ring, stiffnesses shared by the face `width` [mm]; `moved` as of `WholeGear.loose`.
-
-    Raises
-    ------
-    ValueError
-        If they are longer than the rim.
-    """
+    """`Pads` of a ring, stiffnesses shared by the face `width` [mm]; `moved` as of `WholeGear.loose`."""
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
-    if support.count * support.width > 2 * math.pi * gear.held * (1 - 1e-9):
-        raise ValueError(
-            f"ring: {support.count} pads of {support.width:g} mm are longer than its rim, {2 * math.pi * gear.held:.5g} mm: "
-            "give ring = 'held'"
-        )
     step = 4 * math.pi / (z * nodes)  # of an edge of the rim
     terms = 1 if support.pushes else TERMS
     place = np.cos((np.arange(POINTS) + 0.5) * math.pi / POINTS)
@@ -57,8 +47,8 @@ def pads_on(whole: WholeGear, support: "RimSupports", width: float, moved: NDArr
     held = [which for which in (0, 1) if stiff[which] > 0]
     hats = [_hat(which, step, z * nodes) for which in (0, 1)]
     columns, turns, compliance, local = [], [], [], []
-    for k in range(support.count):
-        angle = support.first + 2 * math.pi * k / support.count + place * support.width / (2 * gear.held)
+    for middle in support.middles:
+        angle = middle + place * support.width / (2 * gear.held)
         at = (angle + math.pi / z) / step  # in edges from the first corner
         number = np.arange(math.floor(at.min()), math.floor(at.max()) + 2)
         weight = np.maximum(1 - np.abs(number[:, None] - at), 0.0) @ shapes
@@ -111,9 +101,8 @@ def _sharper(whole, width, tops, edge, weight):
     terms, material = weight.shape[1], whole.material
     knots = tops + SPREAD * edge * np.array([[-1], [0], [1]])
     along = np.append(math.log(4 / width), 1 / (2 * np.arange(1, terms)))
-    direct = half_plane(material, whole.state) * (np.diag(along) - weight.T @ hat_logarithm(knots, knots) @ weight)
-    modulus = material.plane_modulus(whole.state)
-    ratio = material.nu / (1 - material.nu) if whole.state == "plane strain" else material.nu
+    direct = half_plane(material) * (np.diag(along) - weight.T @ hat_logarithm(knots, knots) @ weight)
+    modulus, ratio = material.plane_modulus("plane strain"), material.nu / (1 - material.nu)
     angle, order = (np.arange(FINE) + 0.5) * math.pi / FINE, np.arange(1, terms)
     ahead = np.column_stack([1 - 2 * angle / math.pi, -2 * np.sin(angle[:, None] * order) / (math.pi * order)])
     jump = np.cos(angle[:, None] * np.arange(terms)).T @ ahead / FINE
@@ -130,7 +119,7 @@ def _series(load):
 
 
 def among(pads):
-    """Displacement ``(p, p)`` of pads under each other's tractions."""
+    """Displacement ``(p, p)`` [mm per N/mm] of pads under each other's tractions."""
     z, waves = pads.load.shape[0], _series(pads.load)
     r = waves.shape[1]
     weight = np.full(waves.shape[0], 2.0)
@@ -141,8 +130,8 @@ def among(pads):
     return (out + out.T) / 2
 
 
-def by_teeth(pads, z):
-    """Displacement ``(p, z, PLACES)`` of pads under loads on the teeth."""
-    waves = _series(pads.load)
+def by_teeth(pads):
+    """Displacement ``(p, z, PLACES)`` [mm per N/mm] of pads under loads on the teeth."""
+    z, waves = pads.load.shape[0], _series(pads.load)
     found = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
     return np.fft.irfft(found.conj(), n=z, axis=0).transpose(1, 0, 2)

@@ -17,12 +17,14 @@ K. L. Johnson, Contact Mechanics, 1985, sec. 2.8 (tractions under a rigid punch)
 import math
 from dataclasses import dataclass, field
 from numbers import Integral, Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.tooth.gear import Gear
 
+from ..stiffness.limits import truth
 from .pads import Pads, among, by_teeth, pads_on
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 
@@ -31,17 +33,17 @@ SURE = 1e-9  # of the largest singular value of the pads' balance: less, and the
 
 @dataclass(frozen=True, slots=True)
 class RimBed:
-    """An elastic bed around the whole rim, for example a press fit or a soft sleeve.
+    """An elastic bed around the whole outer edge of a ring, for example a press fit or a soft sleeve.
 
     Parameters
     ----------
     radial, tangential : float
-        Traction by displacement [N/mm^3].
+        Stress on the edge per displacement [N/mm^3], both finite and > 0.
 
     Raises
     ------
     ValueError
-        If it does not hold the ring.
+        If one of them is not.
     """
 
     radial: float
@@ -60,27 +62,29 @@ class RimBed:
 
 @dataclass(frozen=True, slots=True)
 class RimSupports:
-    """Equal pads around the rim: bolts, lands, pins. Between them the rim is free.
+    """Equal, equally spaced pads on the outer edge (rim) of a ring: bolts, lands, pins. Between them the rim is free.
 
     Parameters
     ----------
     count : int
+        Number of pads.
     width : float
-        Arc of the rim that each pad holds [mm]. It decides: a pad of 5 mm and one of 15 differ by a fifth in k of planet and
-        ring.
+        Arc of the rim that each pad holds [mm]. It matters: from 5 to 15 mm the stiffness of the mesh of planet and ring changes
+        by a fifth.
     first : float
-        Angle from the centre-line of the ring's tooth 0 to the middle of the first pad, clockwise [rad].
+        Angle from the centre-line of the ring's tooth 0 to the middle of the first pad, clockwise [rad]. Tooth 0 of the ring is
+        the one in mesh with planet 0 at position 0, in the newest pair of teeth there.
     radial, tangential : float
-        Stiffness of each pad over the whole face width [N/mm]; default rigid, 0: it does not hold in that direction. A pad does
-        not turn.
+        Stiffness of each pad over the whole face width [N/mm]; default: rigid; 0: the pad does not hold in that direction. The
+        rim on a pad stays an arc that moves as a whole, without tilting.
     pushes : bool
-        The pads are the flanks of lugs or splines, which only push against the torque of the ring: no radial force, and none
-        that pulls. Needs ``radial=0``.
+        Whether the pads are the flanks of lugs or splines, which only push against the torque of the ring and never pull. Needs
+        ``radial=0``.
 
     Raises
     ------
     ValueError
-        If the pads cannot be, or would not hold the ring.
+        If a number is out of range, or the pads would not hold the ring.
     """
 
     count: int
@@ -105,6 +109,7 @@ class RimSupports:
                 raise ValueError(f"rim supports: {name} = {getattr(self, name):g} N/mm, but give 0 or more")
         if not self.tangential > 0:
             raise ValueError("rim supports: tangential = 0 N/mm, but then nothing takes the ring's torque: give more than 0")
+        object.__setattr__(self, "pushes", truth("rim supports: pushes", self.pushes))
         if self.pushes and self.radial:
             raise ValueError("rim supports: pads that only push have no radial force: give radial = 0")
         if self.count < (1 if self.radial and math.isinf(self.radial) else 2 if self.radial else 3):
@@ -113,8 +118,7 @@ class RimSupports:
     @property
     def middles(self) -> NDArray[np.float64]:
         """Angles of the pads' middles, clockwise from the ring's tooth 0 [rad]."""
-        step = 2 * math.pi / self.count
-        return np.array([self.first + k * step for k in range(self.count)])
+        return self.first + np.linspace(0, 2 * math.pi, self.count, endpoint=False)
 
     def ends(self, gear: Gear) -> NDArray[np.float64]:
         """Angles of both ends of all pads on the rim of a ring [rad]."""
@@ -154,27 +158,38 @@ class Rim:
     gives: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 0, 0)))
 
 
+def check_support(support: Any, gear: Gear) -> None:
+    """ValueError unless it is ``"held"``, `RimBed` or `RimSupports` whose pads find room on the rim of `gear`."""
+    if not (isinstance(support, (RimBed, RimSupports)) or (isinstance(support, str) and support == "held")):
+        raise ValueError(
+            f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
+        )
+    rim = 2 * math.pi * gear.held
+    if isinstance(support, RimSupports) and support.count * support.width > rim * (1 - 1e-9):
+        raise ValueError(
+            f"ring: {support.count} pads of {support.width:g} mm are longer than its rim, {rim:.5g} mm: give ring = 'held', or "
+            f"less than {rim / support.count:.4g} mm"
+        )
+
+
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
     """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm].
 
     Raises
     ------
     ValueError
-        If pads overlap, or the ring could move without force.
+        As of `check_support`, or if the ring could move without force.
     """
     gear = whole.gear
-    if support == "held":
-        return Rim(whole, np.zeros((gear.z, PLACES) * 2))
+    check_support(support, gear)
     if isinstance(support, RimBed):
         return Rim(whole, between_teeth(whole.bedded(np.array([support.radial, support.tangential]))))
     if not isinstance(support, RimSupports):
-        raise ValueError(
-            f"ring = {support!r}, but give 'held', RimBed(...) or RimSupports(...): a ring that nothing holds moves away"
-        )
+        return Rim(whole, np.zeros((gear.z, PLACES) * 2))
     more, moved = whole.loose()
     pads = pads_on(whole, support, width, moved)
     teeth = between_teeth(more)
-    across, between = by_teeth(pads, gear.z), among(pads) + pads.compliance
+    across, between = by_teeth(pads), among(pads) + pads.compliance
     gives = _moves(gear)
     if support.pushes:
         return Rim(whole, teeth, pads, lug=between, across=across, turns=pads.turns, gives=gives)
@@ -203,15 +218,16 @@ def _moves(gear):
 
 
 def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: NDArray) -> NDArray[np.float64]:
-    """Displacement ``(nodes, 2)`` of the rim, radial and clockwise, and angles of its nodes, under `loads` ``(z, PLACES)``.
+    """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm]; their angles are those of `rim_angles`.
 
     Parameters
     ----------
     rim : Rim
         On pads.
     loads : ndarray, shape (z, PLACES)
-        [N/mm].
+        On the teeth [N/mm].
     tractions : ndarray, shape (p,)
+        Of the pads [N/mm].
     whole : ndarray, shape (3,)
         Motion of the whole ring: along x, y [mm], clockwise turn [rad].
     """

@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.mesh.both_flanks import both_flanks
 from geometry.mesh.outline import stations
-from geometry.tooth.profile import flank_normal
+from geometry.tooth.profile import cartesian
 
-from ..elements.elasticity import Body, edge_nodes, edge_shapes
+from ..elements.asked import is_number
+from ..elements.contact_deck import _posed
+from ..elements.elasticity import Body
+from ..files import check_output
 from ..pictures.set_plot import draw_set
 from .curves import SetCurves
-from .deck import placed, touching
-from .rim import RimSupports
-from .standing import standing, tooth_angles
+from .loaded_gears import drawable, meshed, placed, touching
+from .whole_gear import line_loads
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,89 +38,23 @@ class Shape(NamedTuple):
     stress: NDArray[np.float64]
 
 
-def bent_shapes(curves: SetCurves, at: int) -> list[Shape]:
-    """`Shape` of sun, planets and ring of one position, their own motions as whole gears left out.
-
-    Parameters
-    ----------
-    curves : SetCurves
-        Of a case with a held ring or one on rigid pads.
-    at : int
-        Number of the position.
-
-    Raises
-    ------
-    ValueError
-        If the ring is held otherwise.
-    """
-    case = curves.meta["case"]
-    rigid = isinstance(case.ring, RimSupports) and math.isinf(case.ring.radial) and math.isinf(case.ring.tangential)
-    if not (case.ring == "held" or rigid):
-        raise ValueError("a picture of a ring that is neither held nor on rigid pads is not drawn: give one of these")
-    stand = standing(case.gears, np.array(case.angles), [curves.position[at]])
-    sides = [one for pair in touching(case, stand, curves, at) for one in pair]
-    bodies = enumerate(placed(case, stand, curves, at))
-    return [_shape(case, body, [one for one in sides if one["body"] == k]) for k, body in bodies]
-
-
-def _shape(case, body, sides):
-    gear, material, centre, angle, _ = body
-    size = {name: edge * gear.m_n for name, edge in EDGE.items()}
-    rolls = {(one["tooth"], one["side"]): stations(gear, size["flank"]) for one in sides}
-    pads = gear.internal and case.ring != "held"
-    ends = case.ring.ends(gear) if pads else ()
-    made = both_flanks(
-        gear, rolls, fillet_size=size["fillet"], size=size["near"], far_size=size["far"], marks=ends, mark_size=0.3 * gear.m_n
-    )
-    mesh = made.mesh
-    if pads:
-        facets = mesh.boundaries["held"]
-        on = case.ring.covers(gear, mesh.doflocs[:, mesh.nvertices + facets])
-        mesh = mesh.with_boundaries({"held": facets[on]})
-    load = np.zeros((2 * mesh.doflocs.shape[1], 1))
-    for one in sides:
-        _push(load, gear, mesh, made.flank[one["tooth"], one["side"]], rolls[one["tooth"], one["side"]], one)
-    solver = Body(mesh, material)
-    u = solver.solve(load)[:, 0]
-    xx, yy, xy = solver.stress(u)
-    zz = material.nu * (xx + yy)
-    mises = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
-    cos, sin = math.cos(angle), math.sin(angle)
-    turn = np.array([[cos, sin], [-sin, cos]])
-    return Shape(turn @ mesh.doflocs + centre[:, None], turn @ u.reshape(-1, 2).T, solver.nodes, mises)
-
-
-def _push(load, gear, mesh, vertices, rolls, one):
-    """Put the load of one flank where it touches, into its normal."""
-    rising = rolls * gear.outward
-    at = one["roll"] * gear.outward
-    edge = int(np.clip(np.searchsorted(rising, at) - 1, 0, rising.size - 2))
-    shapes, _ = edge_shapes(np.clip(2 * (at - rising[edge]) / (rising[edge + 1] - rising[edge]) - 1, -1, 1))
-    turn = 2 * math.pi * one["tooth"] / gear.z
-    x, y = -flank_normal(gear, one["roll"]) * np.array([1 - 2 * one["side"], 1])
-    cos, sin = math.cos(turn), math.sin(turn)
-    for shape, node in zip(shapes, edge_nodes(mesh, vertices)[:, edge], strict=True):
-        load[2 * node, 0] += one["force"] * shape * (cos * x + sin * y)
-        load[2 * node + 1, 0] += one["force"] * shape * (cos * y - sin * x)
-
-
 def plot_planetary_set(
     curves: SetCurves, at: int = 0, path: str | os.PathLike[str] | None = None, *, magnified: float | None = None, dpi: int = 150
 ) -> "Figure":
     """Draw one position of a loaded set, all gears bent and coloured by von Mises stress; save to `path` if given.
 
-    Each gear is solved by finite elements of its own under the loads of the set's meshes; their motions as whole gears are left
-    out. Loads stand on single nodes: close to them stress means nothing.
+    Each gear is solved by finite elements of its own under the loads of the set's meshes. That sun and planets turn and shift as
+    whole gears is left out. Each load stands on three nodes: close to it stress means nothing.
 
     Parameters
     ----------
     curves : SetCurves
-        Of a case with a held ring or one on rigid pads.
+        Of a case with a held ring or one on rigid pads, without modified flanks and cracks.
     at : int
-        Number of the position.
+        Number of the position, from 0.
     path : path, optional
     magnified : float, optional
-        How many times displacements are drawn; default: so that the largest is seen.
+        How many times as large displacements are drawn; default: so that the largest is seen.
     dpi : int
         Dots per inch.
 
@@ -130,12 +65,41 @@ def plot_planetary_set(
     Raises
     ------
     ValueError
-        If the ring is held otherwise.
+        If the set cannot be meshed gear by gear, as of `gearfe.epicyclic.loaded_gears.drawable`, or an argument is out of range.
     """
-    shapes, case = bent_shapes(curves, at), curves.meta["case"]
+    if path is not None:
+        check_output(path, "picture")
+    if magnified is not None and not (is_number(magnified) and 0 < magnified < math.inf):
+        raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
+    case, stand = drawable(curves, at)
+    sides = [one for pair in touching(case, stand, curves, at) for one in pair]
+    bodies = placed(case, stand, curves, at)
+    shapes = [_shape(case, body, [one for one in sides if one["body"] == k]) for k, body in enumerate(bodies)]
     supports = None
-    if isinstance(case.ring, RimSupports):
-        angles = np.array(case.angles)
-        angle = case.ring.middles + tooth_angles(case.gears, angles, standing(case.gears, angles, [curves.position[at]]))[2]
-        supports = 1.03 * case.ring_gear.r_rim * np.array([np.sin(angle), np.cos(angle)])
+    if case.ring != "held":
+        supports = cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + bodies[-1][3])
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
+
+
+def _shape(case, body, sides):
+    """`Shape` of one gear under the loads of its flanks, held where it is."""
+    gear, material, centre, angle, _ = body
+    size = {name: edge * gear.m_n for name, edge in EDGE.items()}
+    rolls = {(one["tooth"], one["side"]): stations(gear, size["flank"]) for one in sides}
+    made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n)
+    mesh = made.mesh
+    facets = mesh.boundaries["held"]
+    mesh = mesh.with_boundaries({"held": facets[np.isin(mesh.nvertices + facets, held)]})
+    load = np.zeros((2 * mesh.doflocs.shape[1], 1))
+    for one in sides:
+        at = one["tooth"], one["side"]
+        unit = line_loads(gear, mesh, made.flank[at], rolls[at], np.array([one["roll"]]), one["side"])
+        turned = _posed(unit.reshape(-1, 2).T, 2 * math.pi * one["tooth"] / gear.z, 1)
+        load += one["force"] * np.array(turned).T.reshape(-1, 1)
+    solver = Body(mesh, material)
+    u = solver.solve(load)[:, 0]
+    xx, yy, xy = solver.stress(u)
+    zz = material.nu * (xx + yy)
+    mises = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
+    place, moved = (np.array(_posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
+    return Shape(place + centre[:, None], moved, solver.nodes, mises)

@@ -6,8 +6,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..elements.asked import checked_refine
 from ..flexibility.solved import solved_gears
+from ..signal.given import whole
 from ..steps import steps
+from ..stiffness.limits import FURTHEST, numbers, truth
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
 from .curves import SetCurves
@@ -16,7 +19,7 @@ from .rim import ring_on
 from .standing import standing
 from .whole_gear import PLACES, between_teeth, whole_gear
 
-PASSES = 4  # at most, until the loads that the rows of hats are made for are those of the meshes
+PASSES = 4  # at most, until the loads for which corners and kinks are resolved are those of the meshes
 
 
 def planetary_stiffness(
@@ -28,20 +31,21 @@ def planetary_stiffness(
     refine: float = 1.0,
     cache: Any = True,
 ) -> SetCurves:
-    """Loads of every mesh and tooth of a planetary set, its stiffness, transmission error and bending ring.
+    """Load and stiffness of every mesh of a planetary set, loads of its teeth, transmission error, and how the ring bends.
 
     One contact problem at each position: each gear's flexibility over all its teeth, planets on both flanks, the ring on what
-    holds it, and in every mesh the contact of its pair with Hertz's logarithm, corners and kinks.
+    holds it, and in every mesh the contact that `mesh_stiffness` has for its pair alone, tip corners included.
 
     Parameters
     ----------
     case : PlanetaryCase
     positions : int or sequence of float
-        So many in each mesh cycle; or by how many of its pitches the sun is turned.
+        Number of positions in each mesh cycle; or the positions themselves: by how many of its pitches the sun is turned.
     cycles : int
-        Mesh cycles, if positions are a number. A ring on n supports repeats after ``z_r / n`` cycles.
+        Number of mesh cycles, if `positions` is a number. On n pads or lugs the set repeats after ``z_r / n`` cycles if that is
+        whole.
     coupled : bool
-        With False every mesh is alone, as isolated pairs are: gears are held between meshes.
+        With False meshes do not feel each other's loads, as if each gear were held between them.
     refine : float
         Divides the edge lengths.
     cache : bool or SolvedGears
@@ -51,25 +55,22 @@ def planetary_stiffness(
     -------
     SetCurves
 
-    Notes
-    -----
-    Mesh phases are those of the mean pose of each mesh (`geometry.pair.contacts`). Crossed terms of a crack are left out. Loads
-    are per width in plane strain, alike over the width.
-
     Raises
     ------
+    ValueError
+        If an argument is of the wrong kind or out of range.
     RuntimeError
-        If no forces that only push hold the set.
+        If no forces that only push hold the set, or none were found.
+
+    Notes
+    -----
+    The load is the same all over the face width. Phases are those of the mean pose of each mesh: its turn under load is shared by
+    both gears (`geometry.pair.contacts`). What is left out of cracks: see `PlanetaryCase`.
     """
     started = time.perf_counter()
-    if isinstance(positions, int):
-        if positions < 1 or cycles < 1:
-            raise ValueError(f"positions = {positions}, cycles = {cycles}, but both count from 1")
-        at = np.arange(positions * cycles) / positions
-    else:
-        at = np.atleast_1d(np.asarray(positions, dtype=float))
-        if at.ndim != 1 or not at.size or not np.isfinite(at).all():
-            raise ValueError("positions must be a number or a list of finite numbers")
+    if not isinstance(case, PlanetaryCase):
+        raise ValueError(f"case = {case!r}, but give a PlanetaryCase: what holds the set, and its load")
+    at, coupled, refine = _positions(positions, cycles), truth("coupled", coupled), checked_refine(refine)
     stand = standing(case.gears, np.array(case.angles), at)
     kept = solved_gears(cache)
     bodies = bodies_of(case, refine=refine, cache=kept)
@@ -81,8 +82,19 @@ def planetary_stiffness(
     return SetCurves.of(of, meshes, at, found, seconds)
 
 
+def _positions(positions, cycles):
+    """Turns of the sun [pitches] ``(p,)`` as `planetary_stiffness` is given them."""
+    at = numbers("positions", positions, " [pitches of the sun]")
+    if not at.ndim:
+        count = whole("positions", positions, 1)
+        return np.arange(count * whole("cycles", cycles, 1)) / count
+    if at.ndim != 1 or not at.size or not np.isfinite(at).all() or np.abs(at).max() > FURTHEST:
+        raise ValueError(f"positions = {positions!r}, but give a row of numbers within {FURTHEST:g} pitches, one at least")
+    return at
+
+
 def _position(of: Set, meshes: Meshes, i: int) -> Position:
-    """One position: rows of hats are made for the nominal load, then for the one that each mesh has."""
+    """One position: pressures at corners and kinks are resolved for the nominal load, then for the one that each mesh has."""
     nominal = of.case.force / of.case.width
     loads = np.full((2, of.case.planets), nominal)
     for _ in range(PASSES):

@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..stiffness.limits import numbers
+
 if TYPE_CHECKING:
     from geometry.pair.planetary import PlanetarySet
 
@@ -45,7 +47,7 @@ def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
     ValueError
         If teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
     """
-    given = np.atleast_1d(np.asarray(angles, dtype=float))
+    given = numbers("angles", angles, " [rad], one for each planet")
     if given.ndim != 1 or not given.size or not np.isfinite(given).all():
         raise ValueError(f"angles = {angles!r}, but give a finite angle for each planet [rad]")
     step = 2 * math.pi / (set_.sun.z + set_.ring.z)
@@ -100,14 +102,12 @@ def _turn_2(pair, nominal):
     return pair.turn(middle)[1] - pair.outward * (nominal - middle) / pair.gear_2.r_b
 
 
-def tooth_angles(
-    set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing, at: int = 0
-) -> tuple[float, NDArray[np.float64], float]:
-    """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at one of the positions of `stand`."""
+def tooth_angles(set_: "PlanetarySet", angles: NDArray[np.float64], stand: Standing) -> tuple[float, NDArray[np.float64], float]:
+    """Clockwise angles of tooth 0 of sun, planets ``(planets,)`` and ring [rad] at the first position of `stand`."""
     one, two = set_.sun_planet, set_.planet_ring
-    sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[at, 0] * one.p_bt)
-    planets = angles + _turn_2(one, one.path[0] + (stand.outer[at] + stand.planet) * one.p_bt)
-    at_ring = angles[0] - _turn_2(two, two.path[0] + stand.inner[at, 0] * two.p_bt)
+    sun = angles[0] + _turn_1(one, one.path[0] + stand.outer[0, 0] * one.p_bt)
+    planets = angles + _turn_2(one, one.path[0] + (stand.outer[0] + stand.planet) * one.p_bt)
+    at_ring = angles[0] - _turn_2(two, two.path[0] + stand.inner[0, 0] * two.p_bt)
     return float(sun), planets, float(at_ring - 2 * math.pi / set_.ring.z * stand.ring[0])
 
 

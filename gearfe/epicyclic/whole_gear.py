@@ -45,7 +45,7 @@ class WholeGear:
 
     Attributes
     ----------
-    gear, material, state
+    gear, material
         As of `whole_gear`.
     stiffness : ndarray, shape (h, n, n)
         Complex; the unknowns of the held edge come first.
@@ -59,7 +59,6 @@ class WholeGear:
 
     gear: Gear
     material: Material
-    state: str
     stiffness: NDArray[np.complex128]
     push: NDArray[np.complex128]
     bed: NDArray[np.complex128]
@@ -120,30 +119,30 @@ def _pseudo(stiffness):
     return (vectors[:, 1:] / values[1:]) @ np.conj(vectors[:, 1:].T)
 
 
-def whole_gear(gear, material, *, state="plane strain", refine=1.0, cache=True):
-    """`WholeGear` of a healthy gear by second-order triangles on one sector.
+def whole_gear(gear, material, *, refine=1.0, cache=True):
+    """`WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector.
 
     Parameters
     ----------
     gear : Gear
     material : Material
-    state : {"plane strain", "plane stress"}
     refine : float
         Divides the edge lengths.
     cache : bool or SolvedGears
         See `gearfe.flexibility.solved.solved_gears`.
     """
-    case = gear, material, state, float(refine)
+    case = gear, material, float(refine)
     return solved_gears(cache).get(("whole gear", *case), partial(_solved, *case))
 
 
-def _solved(gear, material, state, refine):
+def _solved(gear, material, refine):
     sector = periodic_sector(gear, refine=refine)
-    body = Body(sector.mesh, material, state=state, held="rim")  # its own outline: only its elements are used
+    body = Body(sector.mesh, material, held="rim")  # its own outline: only its elements are used
     local, dofs = body.local()
     left, right, edge = (np.array(_chain(sector.mesh, way)) for way in (sector.left, sector.right, sector.held))
     ends = np.concatenate([left, edge[1:-1], right])  # both sides begin with a corner of the held edge
-    load = np.hstack([_load(sector, k) for k in (0, 1)])
+    rolls = _rolls(gear)
+    load = np.hstack([line_loads(gear, sector.mesh, sector.flank[k], sector.roll, rolls, k) for k in (0, 1)])
     centre = sector.mesh.doflocs[:, sector.mesh.t[:3]].mean(axis=1)
     stays = (2 * ends[:, None] + np.arange(2)).ravel()
     total = condense(local, dofs, centre, coo_array(load), stays, leaf=LEAF)
@@ -170,7 +169,7 @@ def _solved(gear, material, state, refine):
     bed[np.ix_(at, at)] = _mass(sector)
     bed = (back @ bed @ spread)[:, : e + 2, : e + 2]
     places = np.append(-math.pi / gear.z, angle[left.size : -left.size])
-    return WholeGear(gear, material, state, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
+    return WholeGear(gear, material, (stiffness + np.conj(stiffness.transpose(0, 2, 1))) / 2, back @ push, bed, places)
 
 
 def _chain(mesh, vertices):
@@ -207,14 +206,24 @@ def _rolls(gear):
     return (gear.roll_f + gear.roll_a) / 2 + (gear.roll_a - gear.roll_f) / 2 * chebyshev.chebpts2(PLACES)
 
 
-def _load(sector, side):
-    """Forces ``(2 nodes, PLACES)`` of unit line loads into the right (0) or the left flank (1)."""
-    gear, mesh, roll = sector.gear, sector.mesh, _rolls(sector.gear)
-    rising = sector.roll * gear.outward
+def line_loads(gear, mesh, vertices, rolls, roll, side):
+    """Nodal forces ``(2 nodes, n)`` of unit line loads into the right (0) or the left flank (1) of tooth 0.
+
+    Parameters
+    ----------
+    gear : Gear
+    mesh : MeshTri2
+    vertices, rolls : ndarray
+        Vertices of the flank from root to tip and their roll lengths [mm].
+    roll : ndarray, shape (n,)
+        Roll lengths of the loads [mm].
+    side : int
+    """
+    rising = rolls * gear.outward
     edge = np.clip(np.searchsorted(rising, roll * gear.outward) - 1, 0, rising.size - 2)
-    low, high = sector.roll[edge], sector.roll[edge + 1]
-    shapes, _ = edge_shapes(2 * (roll - low) / (high - low) - 1)
-    nodes = edge_nodes(mesh, sector.flank[side])[:, edge]
+    low, high = rolls[edge], rolls[edge + 1]
+    shapes, _ = edge_shapes(np.clip(2 * (roll - low) / (high - low) - 1, -1, 1))
+    nodes = edge_nodes(mesh, vertices)[:, edge]
     force = -flank_normal(gear, roll) * np.array([[1 - 2 * side], [1]])
     out, column = np.zeros((2 * mesh.doflocs.shape[1], roll.size)), np.arange(roll.size)
     for shape, node in zip(shapes, nodes, strict=True):

@@ -21,28 +21,12 @@ BRIGHT = 99.5  # per cent of the nodes that the colours tell apart: point loads 
 def draw_set(
     shapes: list[Any],
     supports: NDArray[np.float64] | None,
-    path: str | os.PathLike[str] | None = None,
+    path: str | os.PathLike[str] | None,
     *,
-    magnified: float | None = None,
-    dpi: int = 150,
+    magnified: float | None,
+    dpi: int,
 ) -> "Figure":
-    """Draw the loaded gears of a set, bent, coloured by von Mises stress; save to `path` if given.
-
-    Parameters
-    ----------
-    shapes : list of gearfe.epicyclic.shape.Shape
-    supports : ndarray, shape (2, n), optional
-        Places [mm] where the ring is held.
-    path : path, optional
-    magnified : float, optional
-        How many times displacements are drawn; default: so that the largest is seen.
-    dpi : int
-        Dots per inch.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Picture of `gearfe.epicyclic.shape.plot_planetary_set`: `shapes` as of there, places `supports` ``(2, n)`` [mm]."""
     from matplotlib.figure import Figure
     from matplotlib.tri import Triangulation
 
@@ -67,20 +51,8 @@ def draw_set(
     return save_figure(figure, path, dpi)
 
 
-def draw_curves(curves: Any, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
-    """Draw stiffness and load of every mesh and the transmission error over the positions; save to `path` if given.
-
-    Parameters
-    ----------
-    curves : gearfe.epicyclic.curves.SetCurves
-    path : path, optional
-    dpi : int
-        Dots per inch.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+def draw_curves(curves: Any, path: str | os.PathLike[str] | None, *, dpi: int) -> "Figure":
+    """Picture of `gearfe.epicyclic.curves.SetCurves.plot`."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9, 8), layout="constrained")

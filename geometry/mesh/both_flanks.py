@@ -7,7 +7,7 @@ import numpy as np
 from skfem import MeshTri2
 
 from ..tooth.gear import Gear
-from .outline import half, held_circle, spaced, stations
+from .outline import _doubled, half, held_circle, spaced, stations
 from .section_mesh import fill
 
 GROWTH = 0.3  # of the edge length of the held circle per length, away from its marks
@@ -74,6 +74,6 @@ def _marked(gear, marks, fine, longest):
     for first, last in zip(at, np.append(at[1:], at[0] + 2 * math.pi), strict=True):
         length = (last - first) * gear.held
         place = spaced(0.0, length, min(size, length / 2), [(0.0, 0.0, fine), (length, length, fine)], 1, GROWTH) / gear.held
-        out.append(first + np.array([place[:-1], (place[1:] + place[:-1]) / 2]).T.ravel())
+        out.append(first + _doubled(place)[:-1])
     angle = np.concatenate(out)
     return gear.held * np.array([np.sin(angle), np.cos(angle)])

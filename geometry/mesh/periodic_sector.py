@@ -7,7 +7,7 @@ import numpy as np
 from skfem import MeshTri2
 
 from ..tooth.gear import Gear
-from .outline import half, spaced, stations
+from .outline import _doubled, half, spaced, stations
 from .section_mesh import fill
 
 # longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
@@ -73,10 +73,3 @@ def periodic_sector(gear, *, refine=1.0):
     up = one.flank  # from the tip to the form point, from the middle of the tip
     flanks = (first[2] + up)[::-1], (first[2] - up)[::-1]
     return PeriodicSector(gear, mesh, left, right[::-1], below[::-1], flanks, roll)
-
-
-def _doubled(values):
-    """Values with their middles in between."""
-    out = np.empty(2 * values.size - 1)
-    out[::2], out[1::2] = values, (values[1:] + values[:-1]) / 2
-    return out

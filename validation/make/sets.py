@@ -32,48 +32,56 @@ ERROR = 0.002  # mm by which planet 0 stands ahead
 AWAY = 1.0  # mm beside a pad, from where on the ring's deflection is compared
 HELD = "held all around"
 INTRO = f"""
-Pairs are solved as if their gears were held between meshes. In a set the planets twist one sun together, a planet passes its
-torque on to the ring and none to its bore, and a ring on a few supports bends. `gearfe.planetary_stiffness` solves all meshes of
-a set in one contact problem, in plane strain.
+A pair is solved alone as if each gear were held at its bore or rim. In a set the planets twist one sun together, a planet passes
+its torque on to the ring, so that its bore takes none, and a ring on a few supports bends between them.
+`gearfe.planetary_stiffness` solves all meshes of a set in one contact problem, in plane strain.
 
 ## Planets and supports
 
-A set of 45/30/105 teeth, m_n 2 mm, {FORCE:g} N a mesh on 20 mm, sun held but for its turn. The ring is held on pads of
-{PAD:g} mm, rigid, or all around; rim: its thickness outside of the root circle. Four do not fit equally spaced: they stand
-at 0, 91.2, 180 and 271.2 degrees. k: mean over {SAMPLES} positions of a pitch of the supports; of planet and ring least and
-largest, too. Isolated pairs: see the first line. TE: transmission error under load, peak to peak.
+A set of N planets, 45/30/105 teeth, m_n = 2 mm, width 20 mm; the mean force of a mesh is {FORCE:g} N, the axis of the sun is
+held. The ring is held all around or on rigid, equally spaced pads of {PAD:g} mm, the supports; its rim is as thick as the table
+says, outside of the root circle. Four planets do not fit equally spaced: they stand at 0, 91.2, 180 and 271.2 degrees. Columns:
+stiffness k of both kinds of mesh, means of all planets over {SAMPLES} positions, spread over a pitch of the supports, and for
+planet and ring the least and the largest value; mesh load factor K_gamma, the largest load of a planet over the mean; TE, the
+transmission error under load, peak to peak; kind, see below. The line above the table has k of the isolated pairs.
 
-Three kinds of behaviour appear, by what N planets and n supports have in common. **Together**: n is a multiple of N, all planets
-pass supports at the same time; they carry the same, and the set gives way as the single planet does, in the rhythm of the
-supports. **In groups**: n and N have a common divisor. **In turn**: they have none, planets pass supports one after the other, so
-that loads wander from planet to planet while the transmission error hardly feels the supports. An article with a two-dimensional
-model of finite elements (Adv. Mech. Eng., doi 10.1177/16878132221123469) classifies sets into three by the behaviour of mesh
-forces and transmission error, too; only its abstract was at hand, so that whether these are the same three is not known.
+Three kinds of behaviour appear, by the common divisor of N planets and n supports. **Together**: n is a multiple of N, all
+planets pass supports at the same time (four only nearly); equally spaced ones carry the same, and the set gives way much as a
+single planet does, in the rhythm of the supports. **In groups**: n and N have a common divisor, but n is no multiple of N.
+**In turn**: they have none, planets pass supports one after the other, so that loads wander from planet to planet while the
+transmission error feels the supports much less. An article with a two-dimensional model of finite elements (Adv. Mech. Eng., doi
+10.1177/16878132221123469) also classifies sets into three by the behaviour of mesh forces and transmission error; only its
+abstract was at hand, so that whether these are the same three is not known.
 """
 OUTSIDE = f"""
 ## CalculiX
 
-The set of 21/31/84 teeth, N = 3, six rigid pads of 4.8 mm on a rim of 9.4 mm, planet 0 ahead by {1e3 * ERROR:g} um so that
-loads differ: all gears with all teeth in second-order triangles (CPE6), frictionless surface-to-surface contact of all flanks,
-small displacements (`gearfe.write_set_inp`). Sun and planets are turned by what was found here. Reactions of sun, ring and pins
-then give the force of every mesh; as they are turned alike, forces differ as k does. Both share the gears' outlines, where they
-stand, and the small displacements. Ring: displacement of its outer edge, largest difference over the largest displacement,
-{AWAY:g} mm and more from the pads; closer by the rim as shown is spread over some edges of its mesh.
+A set of 21/31/84 teeth, N = 3, six rigid pads of 4.8 mm on a rim of 9.4 mm, the pin of planet 0 ahead by {1e3 * ERROR:g} um so
+that loads differ. The deck (`gearfe.write_set_inp`) has all gears with all teeth in second-order triangles (CPE6) and
+frictionless surface-to-surface contact of all flanks that may touch. In it sun and planets are turned by what was found here, and
+CalculiX gives the force of every mesh, from the reactions of sun, ring and pins; so forces differ by as many per cent as k does.
+Both sides share the gears' outlines, where the gears stand, and small displacements. The last lines compare how the ring's outer
+edge moves, {AWAY:g} mm and more away from the pads: the largest difference over the largest displacement. Closer to the pads
+`gearfe` gives the edge's displacement only smoothed over some edges of its mesh.
+
+"At a support" and "between two" say where planet 0 is.
 """
 PROOF = """
 ## What else was checked
 
-`tests/epicyclic`: meshes that do not feel each other are isolated pairs (1e-6, corners and kinks included); sun, planets and pads
-in balance (1e-10); equal planets carry the same (1e-9); pins and their errors are springs in series; very stiff springs hold;
-planets meet sun and ring at the places and with the teeth that are named; the ring on pads beside finite elements of the whole
-ring (0.2 % of what pads let it give way); far teeth beside the energy model of order 4.
+`tests/epicyclic`, largest relative differences in brackets: meshes that do not feel each other are isolated pairs (1e-6, tip
+corners included); forces on sun, planets and pads are in balance (1e-10); equal planets carry the same (1e-9); planets on elastic
+pins with position errors are springs in series; very stiff springs are rigid; teeth touch at the places, and with the numbers,
+that the set names; the ring on pads is that of finite elements of the whole ring (0.2 % of what the pads let it give way); how
+far teeth move under loads on others is that of the energy method, elements of order 4.
 
-Left out: friction, the width, cracks in a ring that bends, what a crack changes between meshes; the carrier is rigid. Where a
-mesh carries much less than others, its k in the set says little: it holds how others' loads move it.
+Left out: friction, changes along the width, cracks in a ring that bends, and how a crack changes what its gear feels of other
+meshes; the carrier is rigid. Where a mesh carries much less than others, its k says little about its teeth: it is mostly how the
+loads of the others move its gears.
 """
 HOW = """
-`python -m validation sets` makes this page; runs of CalculiX are kept in `tables/sets_calculix.jsonl`, `... sets ROW` makes
-those anew whose names begin so.
+`python -m validation sets` makes this page; runs of CalculiX are kept in `tables/sets_calculix.jsonl`, and
+`python -m validation sets NAME` makes those anew whose names begin with NAME.
 """
 
 
@@ -167,7 +175,7 @@ def outsider():
     """Lines on CalculiX, from the rows on file."""
     known = stored(TABLE)
     lines = [
-        "| planets | mesh | force here [N] | CalculiX [N] | apart | share here | CalculiX |",
+        "| planet | mesh | force here [N] | CalculiX [N] | apart | force over the mean, here | CalculiX |",
         "|---|---|---|---|---|---|---|",
     ]
     rings = []
