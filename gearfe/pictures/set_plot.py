@@ -69,7 +69,7 @@ def draw_curves(curves: Any, path: str | os.PathLike[str] | None, *, dpi: int) -
                    label=f"alone, {('sun', 'ring')[inner]}")  # fmt: skip
     below.plot(curves.position, 1e6 * curves.te, color=COLOURS[0])
     above.set(ylabel="k [N/um]")
-    middle.set(ylabel="share of the load, times planets")
+    middle.set(ylabel="share of the load, times planets", ylim=(0, 1.1 * float(curves.share[0].max())))
     below.set(ylabel="transmission error [um]", xlabel="turn of the sun [pitches]")
     figure.legend(*above.get_legend_handles_labels(), fontsize=8, ncols=4, loc="outside upper center")
     return save_figure(figure, path, dpi)
