@@ -10,6 +10,7 @@ import importlib
 
 _HOME = {
     "Body": "gearfe.machine.layout",
+    "Case": "gearfe.case",
     "Crack": "geometry.damage.crack",
     "Dataset": "gearfe.datasets.opened",
     "Flank": "geometry.tooth.modified",
@@ -92,6 +93,8 @@ _HOME = {
     "load_scene": "gearfe.scene.load",
     "main_effects": "gearfe.sweeps.effects",
     "mesh_stiffness": "gearfe.stiffness.solve",
+    "Solve": "gearfe.stiffness.solve",
+    "solve": "gearfe.stiffness.solve",
     "new_scene": "gearfe.scene.new",
     "open_dataset": "gearfe.datasets.opened",
     "order_spectrum": "gearfe.signal.orders",

@@ -4,8 +4,8 @@ from dataclasses import fields
 from typing import Any
 
 from ..scene.load import Scene
-from ..stiffness.inputs import by_gear, choose
-from ..studies.losses import damage_phases, damaged_tooth
+from ..stiffness.solve import Solve
+from ..studies.losses import damage_phases
 
 TEXT = """\
 import numpy as np
@@ -41,12 +41,12 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
     """
     chosen = scene.pair()
     pair, damage = chosen.pair, next(iter(chosen.damage.values()), {})
-    cracks, pits = by_gear(pair, damage)
-    method = "ritz3d" if chosen.wide else choose("auto", pair, cracks, pits, chosen.face, None)[0]
+    case = chosen.case(next(iter(chosen.damage), None))
+    method = Solve().chosen(case)[0].name
     count = solid if method == "ritz3d" else phases
     spelled, why = str(count), ""
     if damage:
-        first = damage_phases(pair, count, damaged_tooth(damage), face=chosen.face, groove=chosen.groove)[0]
+        first = damage_phases(case, count)[0]
         spelled, why = f"({round(first * count)} + np.arange({count})) / {count}", "  # the damaged tooth in the middle"
     options = {name: value for name in ("face", "groove", "flanks", "misalignment") if (value := getattr(chosen, name))}
     if method == "ritz" and options.get("face", "spur") != "spur":

@@ -4,6 +4,7 @@ import base64
 import json
 import math
 import tempfile
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,9 @@ from ..scene.assumed import of_stiffness
 from ..scene.load import Scene, scene_names, scene_of
 from ..scene.strict import shown
 from ..stiffness.methods import fitted
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from ..studies.by_zone import Comparison
-from ..studies.losses import damage_phases, damaged_tooth, engaged_phases, kind_of, loss_errors, told_damage, within
+from ..studies.losses import damage_phases, engaged_phases, kind_of, loss_errors, told_damage, within
 from ..threads import own_warnings
 from ..units import NEWTON_PER_UM
 from .fields import START
@@ -51,20 +52,16 @@ def scene_from(state: dict[str, Any]) -> Scene:
 def compared(scene: Scene, method: str, phases: int, *, error: bool) -> tuple[Comparison, tuple[str, ...]]:
     """A scene's pair, in its case of damage beside health, by one method as `gearfe.compare` has it; and what that leaves out."""
     chosen = scene.pair()
-    case = CASE if chosen.damage else None
-    run, left_out = fitted(method, chosen.case(case))
-    run |= {"method": method, "phases": phases}
-    if case is None:
-        return Comparison("stage", {method: mesh_stiffness(**run, error=error)}, {method: 0.0}), left_out
-    damage = run.pop("damage")
-    shape = {"face": run["face"], "groove": run["groove"]}
-    cycle = damage_phases(run["pair"], phases, damaged_tooth(damage), **shape)
-    run["phases"] = engaged_phases(run["pair"], phases, damaged_tooth(damage), **shape)
-    whole = mesh_stiffness(**run, error=error)
-    hurt = mesh_stiffness(**run, damage=damage, error=error)
-    again = {name: value for name, value in run.items() if name != "method"} | {"damage": damage, "phases": cycle}
-    doubt = loss_errors(within(whole, cycle), within(hurt, cycle), method, again, 1.0) if error else {}
-    said = told_damage(chosen.pair, damage), kind_of(damage)
+    case, variants, left_out = fitted(method, chosen.case(CASE if chosen.damage else None))
+    how = Solve(method, phases, variants=variants, error=error)
+    if not case.damaged:
+        return Comparison("stage", {method: solve(case, how)}, {method: 0.0}), left_out
+    cycle = damage_phases(case, phases)
+    how = replace(how, phases=engaged_phases(case, phases))
+    whole, hurt = solve(case.healthy, how), solve(case, how)
+    coarse = replace(how, phases=cycle, error=False)
+    doubt = loss_errors(within(whole, cycle), within(hurt, cycle), case, coarse) if error else {}
+    said = told_damage(case.pair, case.damage), kind_of(case.damage)
     return Comparison("stage", {method: hurt}, {method: 0.0}, {method: whole}, doubt, *said, {}, cycle), left_out
 
 
@@ -169,10 +166,10 @@ def stress(state: dict[str, Any]) -> dict[str, Any]:
     from ..stress.render import render_stress
 
     scene = scene_from(state)
-    case = CASE if scene.pair().damage else None
+    case = scene.case(case=CASE if scene.pair().damage else None)
     with own_warnings() as told, tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "stress.png"
-        found = render_stress(scene.pair(), file, case=case, size=STRESS, refine=0.7, title=scene.title)
+        found = render_stress(case, file, size=STRESS, refine=0.7, title=scene.title)
         data = base64.b64encode(file.read_bytes()).decode()
     text = f"{found['text']}; largest von Mises stress on the fillets {found['root']:.0f} MPa"
     return {"png": data, "text": " ".join(text.splitlines()), "notes": [str(one.message) for one in told]}

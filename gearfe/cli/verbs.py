@@ -1,5 +1,7 @@
 """What the verbs of the ``gearfe`` command do: one function each, no logic of its own. Heavy imports are inside."""
 
+from dataclasses import replace
+
 from .progress import working
 
 
@@ -40,30 +42,32 @@ def stiffness(arguments):
     """``gearfe stiffness``."""
     from ..scene.load import load_scene
     from ..stiffness.methods import fitted
-    from ..stiffness.solve import mesh_stiffness
+    from ..stiffness.solve import Solve, solve
     from ..studies.losses import beside_health, zone_table
     from ..studies.told_scene import told_supports
 
     _check_outputs(arguments, output="curve", plot="picture")
     scene = load_scene(arguments.scene)
-    chosen = scene.pair(arguments.pair)
-    force = chosen.force if arguments.force is None else arguments.force
+    case = scene.case(arguments.pair, arguments.case)
+    if arguments.force is not None:
+        case = replace(case, force=arguments.force)
     print(f"{scene.title}\n")
-    run, left_out = fitted(arguments.method, chosen.case(arguments.case))
+    case, variants, left_out = fitted(arguments.method, case)
     for text in left_out:
         print(f"{text}\n")
     if arguments.forces or arguments.torques:
-        _transmission_error(scene, arguments, run)
+        _transmission_error(scene, arguments, case, variants)
         _print_assumptions(scene, arguments.assumptions)
         return
     with working(f"stiffness by {arguments.method}") as tell:
-        run |= {"force": force, "extended": not arguments.no_extended, "refine": arguments.refine, "pose": arguments.pose}
-        options = {"phases": arguments.phases, "span": "tooth" if arguments.case else "cycle", "error": arguments.error}
-        curve = mesh_stiffness(**run, method=arguments.method, tell=tell, **options)
+        how = Solve(
+            arguments.method, arguments.phases, "tooth" if arguments.case else "cycle", not arguments.no_extended,
+            refine=arguments.refine, variants=variants, error=arguments.error, tell=tell, pose=arguments.pose,
+        )  # fmt: skip
+        curve = solve(case, how)
         meta = curve.meta
-        solved = run | {"method": meta["method"]}
-        answer = beside_health(curve, solved, arguments.phases) if arguments.case else zone_table(curve)
-    print(f"{meta['method']} ({meta['why']}), {force:g} N along the line of action, width {meta['width_mm']:g} mm:")
+        answer = beside_health(curve, case, replace(how, method=meta["method"])) if arguments.case else zone_table(curve)
+    print(f"{meta['method']} ({meta['why']}), {case.force:g} N along the line of action, width {meta['width_mm']:g} mm:")
     print(answer)
     if soft := told_supports(curve):
         print(f"\n{soft}")
@@ -78,7 +82,7 @@ def stiffness(arguments):
         print(f"written: {arguments.plot}")
 
 
-def _transmission_error(scene, arguments, run):
+def _transmission_error(scene, arguments, case, variants):
     """``gearfe stiffness --forces`` and ``--torques``."""
     from ..pictures.error_plots import plot_transmission_error
     from ..pictures.stiffness_plots import told
@@ -86,11 +90,12 @@ def _transmission_error(scene, arguments, run):
 
     if arguments.output or arguments.force is not None or (arguments.forces and arguments.torques):
         raise ValueError("--forces, or --torques, is the transmission error of several loads: leave out --output and --force")
-    r_b = run["pair"].gear_1.r_b
+    r_b = case.pair.gear_1.r_b
     forces = arguments.forces or [1e3 * torque / r_b for torque in arguments.torques]
     with working(f"transmission error by {arguments.method}"):
-        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "span": "cycle"}
-        found, plain = harris(run, forces, method=arguments.method, phases=arguments.phases, **options)
+        options = {"extended": not arguments.no_extended, "refine": arguments.refine, "variants": variants}
+        many = replace(case, force=tuple(forces))
+        found, plain = harris(many, method=arguments.method, phases=arguments.phases, **options)
     print(f"{found.curves[0].meta['method']}: transmission error along the line of action over the mesh cycle\n")
     print(harris_table(found, plain, r_b))
     if arguments.plot:
@@ -191,22 +196,22 @@ def render(arguments):
 
     _check_outputs(arguments, output="stress" if arguments.what == "stress" else "picture")
     scene = load_scene(arguments.scene)
-    pair, options = scene.pair(arguments.pair), {"case": arguments.case, "title": _title(scene, arguments)}
+    case, title = scene.case(arguments.pair, arguments.case), _title(scene, arguments)
     if arguments.what == "pattern":
         if arguments.phase is not None:
             raise ValueError("--what pattern is of a whole mesh cycle: leave out --phase, or take --what contact")
         with working("contact pattern"):
-            print(render_pattern(pair, arguments.output, **options).told())
+            print(render_pattern(case, arguments.output, title=title).told())
     elif arguments.what == "contact":
         with working("contact lines"):
-            told = render_contact(pair, arguments.output, phase=arguments.phase, **options)
+            told = render_contact(case, arguments.output, phase=arguments.phase, title=title)
         print(f"phase {told['phase']:.3g}: k {in_newton_per_um(told['k'])} N/um, largest pressure {told['pressure']:.0f} MPa")
     else:
         with working("stress"):
-            told = render_stress(pair, arguments.output, refine=arguments.refine, phase=arguments.phase, **options)
+            told = render_stress(case, arguments.output, refine=arguments.refine, phase=arguments.phase, title=title)
         print(told["text"])
         print(f"largest von Mises stress on the fillets {told['root']:.0f} MPa")
-        for line in () if arguments.case else told_root(pair):
+        for line in () if arguments.case else told_root(case):
             print(line)
     print(f"written: {arguments.output}")
 
@@ -216,20 +221,18 @@ def mesh(arguments):
     from ..contact.bodies import seen_gears
     from ..elements.mesh_file import export_mesh
     from ..scene.load import load_scene
-    from ..stiffness.inputs import by_gear
 
     _check_outputs(arguments, output="mesh", picture="picture")
     if arguments.close_up and not arguments.picture:
         raise ValueError("--close-up is of a picture: give --picture FILE too")
-    chosen = load_scene(arguments.scene).pair(arguments.pair)
+    case = load_scene(arguments.scene).case(arguments.pair, arguments.case)
     side = ("pinion", "wheel").index(arguments.gear)
-    cracks, pits = by_gear(chosen.pair, chosen.case(arguments.case).get("damage"))
-    gear = (chosen.pair.gear_1, chosen.pair.gear_2)[side]
-    if chosen.face == "herringbone":
-        gear = seen_gears(chosen.pair, chosen.face, chosen.groove)[side][0]
+    gear = (case.pair.gear_1, case.pair.gear_2)[side]
+    if case.face == "herringbone":
+        gear = seen_gears(case.pair, case.face, case.groove)[side][0]
     options = {"cells": arguments.cells, "teeth": arguments.teeth, "refine": arguments.refine}
     with working("mesh"):
-        made = export_mesh(arguments.output, gear, (*cracks[side], *pits[side]), **options)
+        made = export_mesh(arguments.output, gear, (*case.cracks[side], *case.pits[side]), **options)
         if arguments.picture:
             from ..stress.mesh_picture import render_mesh
 
@@ -240,8 +243,6 @@ def mesh(arguments):
 
 def dynamics(arguments):
     """``gearfe dynamics``."""
-    from dataclasses import replace
-
     from ..machine.modes import natural_frequencies
     from ..scene.load import load_scene
     from ..studies.vibration import analysis, responses

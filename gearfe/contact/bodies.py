@@ -5,15 +5,17 @@ its own frame, is the opposite one; also a ring's, whose frame is mirrored.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import groupby, product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from geometry.damage.crack import check_single, crack_in_band
 
+from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..steps import steps
 
 
@@ -34,36 +36,61 @@ def seen_cracks(gear, cracks, seen, band):
     return tuple(crack for crack in found if crack is not None)
 
 
-def bodies_of(pair, materials, cracks, bands, face, groove, flexible, shafts=(None, None), *, ahead=None):
+class Bodies(NamedTuple):
+    """How the bodies of gears give: by the energy model (`energy_bodies`), by finite elements, or by a user's own model.
+
+    `flexible`: ``flexible(gear, material, cracks, neighbours=n, **shaft)`` gives a `Flexibility3D`; `coarser`, optional: the same
+    with a coarser discretisation, for an estimate of its error; `ahead`, optional: ``ahead(wanted, neighbours=n)`` gets what
+    `flexible` will be called with, ``[(arguments, shaft), ...]``, before the first call.
+    """
+
+    flexible: Callable[..., Any]
+    coarser: Callable[..., Any] | None = None
+    ahead: Callable[..., Any] | None = None
+
+
+def energy_bodies(order=3, axial=None, refine=1.0, cache=True):
+    """`Bodies` by `gearfe.energy.ritz.solid`; coarser: a section order less by 1, axial degrees less by a quarter, at least 2.
+
+    (By 2 at any degree would cover ever less of the error of wide gears.)
+    """
+
+    def of(order, less):
+        def flexible(gear, material, cracks, neighbours):
+            degree = axial_degree(gear.b, gear.m_n) if axial is None else axial
+            degree -= max(2, round(degree / 4)) if less else 0
+            options = {"order": order, "axial": degree, "refine": refine, "cache": cache}
+            return flexibility3d(gear, material, cracks, neighbours=neighbours, **options)
+
+        return flexible
+
+    return Bodies(of(order, False), of(order - 1, True))
+
+
+def bodies_of(case, bands, flexible, ahead=None):
     """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
-    cracks : (tuple, tuple)
-        Of pinion and wheel.
+    case : Case
+        Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
     bands : list of (float, float)
         See `geometry.pair.lines.bands_of`.
-    face, groove
-        As in `gearfe.contact.solid.pair_stiffness3d`.
-    flexible : callable
-        ``flexible(gear, material, cracks)`` gives a `Flexibility3D`.
-    shafts : (Shaft or None, Shaft or None)
-        Of gears that are one piece with them: ``flexible`` gets them as ``shaft``, seen from the end that touches first.
-    ahead : callable, optional
-        Gets what `flexible` will be called with, ``[(arguments, options), ...]``, before the first call.
+    flexible, ahead : callable
+        As of `Bodies`, the number of neighbours given.
 
     Raises
     ------
     ValueError
         If a crack lies in the relief groove, or a body has two on one side of a tooth.
     """
-    gears = list(zip((pair.gear_1, pair.gear_2), seen_gears(pair, face, groove), materials, cracks, shafts, strict=True))
+    pair, shafts = case.pair, [held if held and held.integral else None for held in case.held or (None, None)]
+    seen = seen_gears(pair, case.runs, case.groove)
+    gears = list(zip((pair.gear_1, pair.gear_2), seen, case.materials, case.cracks, shafts, strict=True))
     for gear, (body, _), _, own, _ in gears:
         for crack in own:
             if not any(seen_cracks(gear, [crack], body, band) for band in bands):
-                raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {groove:g} mm")
+                raise ValueError(f"crack open from z = {crack.width} mm: no tooth is there, but the groove of {case.groove:g} mm")
         for band in bands:
             check_single(body, seen_cracks(gear, own, body, band))
     wanted = [

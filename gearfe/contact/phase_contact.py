@@ -68,32 +68,27 @@ class PhaseContact:
 
     Parameters
     ----------
-    pair : GearPair
+    case : Case
     force : float
-        In the transverse section [N].
-    materials : (Material, Material)
-    pits : (sequence of Pit, sequence of Pit)
-    face, groove, step, extended
+        One of its loads, in the transverse section [N].
+    step, extended
         As in `gearfe.contact.solid.pair_stiffness3d`.
     longer : int
         Of `gearfe.contact.cells.cells_of`.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel, `geometry.pair.flanks.flank_forms`.
     cache
         As in `gearfe.contact.corner.CornerLaw`.
-    supports : (Support or Shaft or None, Support or Shaft or None), optional
-        What holds the hubs of pinion and wheel; None: rigid.
     """
 
-    def __init__(
-        self, pair, force, materials, *, pits, face, groove, step, extended, longer, flanks=None, cache=True, supports=None
-    ):
+    def __init__(self, case, force, *, step, extended, longer, cache=True):
+        pair, materials, pits, flanks = case.pair, case.materials, case.pits, case.forms
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
-        self.force, self.hubs = force, hubs_of(supports)
+        self.force = force
+        outside = [None if held and held.integral else held for held in case.held or ()]  # other shafts are part of the bodies
+        self.hubs = hubs_of(outside) if outside else None
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
-        self.bands = bands_of(pair, face, groove)
+        self.bands = bands_of(pair, case.runs, case.groove)
         self.width = sum(abs(last - first) for first, last in self.bands)
         self.beta_b = abs(pair.gear_1.beta_b)
         radius = pair.relative_radius(*pair.curvature_radii(pair.pitch_phase)) / math.cos(self.beta_b)

@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from geometry.damage.pit import check_pits
 
-from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
 from ..steps import part, steps
-from .bodies import bodies_of
+from .bodies import bodies_of, energy_bodies
 from .cells import Cells
 from .corner import in_fillet
 from .phase_contact import PhaseContact
@@ -56,78 +55,40 @@ class Contact3D:
     supports: NDArray[np.float64] | None = None
 
 
-def pair_stiffness3d(
-    pair,
-    force,
-    material,
-    phases=32,
-    *,
-    pits=((), ()),
-    cracks=((), ()),
-    flanks=None,
-    face="helical",
-    groove=0.0,
-    step=None,
-    order=3,
-    axial=None,
-    refine=1.0,
-    extended=True,
-    error=False,
-    model=None,
-    ahead=None,
-    cache=True,
-    supports=None,
-):
-    """Mesh stiffness of a pair of finite width.
+def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, error=False, cache=True):
+    """Contact of a `Case` of finite width.
 
-    ``k = F / delta``, F = `force` in the transverse section along the line of action, delta the approach along it (of modified
+    ``k = F / delta``, F = the force in the transverse section along the line of action, delta the approach along it (of modified
     flanks: under load less without load). The flanks press at right angles, ``F / cos(beta_b)`` in all, and approach by
     ``delta cos(beta_b)``: k is ``cos(beta_b)**2`` times the normal force per normal approach.
 
     Parameters
     ----------
-    pair : GearPair
-        The faces, if of different width, lie centred on each other.
-    force : float or sequence of float
-        [N]. Several forces share the gears; each has its own cells, as in a call of its own.
-    material : Material or (Material, Material)
+    case : Case
+        The faces, if of different width, lie centred on each other. Pits on loaded flanks take contact away, no material.
+        Faces of cracks are kept from passing through each other if the bodies give their opening, as the energy model does. The
+        end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b otherwise; the outer ends of
+        ``herringbone`` halves touch first; the halves are mirrored and do not know each other's bodies. Several forces share the
+        gears; each has its own cells, as in a call of its own.
     phases : int or ndarray
         Number of equidistant phases in 0...1, or the phases: of the end that touches first, pair 0 enters there at phase 0.
-    pits, cracks : (sequence, sequence)
-        Of pinion and wheel, teeth numbered in each gear's own frame. Pits on loaded flanks take contact away, no material.
-        Faces of cracks are kept from passing through each other if `model` gives their opening, as the energy model does.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel and misalignment, `geometry.pair.flanks.flank_forms`.
-    face : {"spur", "helical", "herringbone"}
-        The end z = 0 of a helical pair touches first if the pinion's beta is negative, z = b
-        otherwise. The outer ends of ``herringbone`` halves touch first; the halves are mirrored and do not know each other's
-        bodies.
-    groove : float
-        Between the halves [mm].
+    bodies : Bodies, optional
+        How the gears give; default `gearfe.contact.bodies.energy_bodies`.
     step : float, optional
         Longest cell along the width [mm]; default 0.2 normal modules.
-    order, axial, refine : int, int, float
-        Of `flexibility3d`.
     extended : bool
         Let tip corners touch where a section is before the start or after the end of the path of contact, with the gap it
         has there and the plane's local law of a corner (`gearfe.contact.corner`).
     error : bool
-        The difference of every k from that of cells `LONGER` times as long, and of the energy model that from a section order
-        less by 1 and an axial degree less by a quarter, at least 2, added: a measure of the discretisation error at that phase
-        alone. An error that falls with the power 2.4 of the degree, and with the power 1 of the cells, or faster, is below it.
-        (By 2 at any degree would cover ever less of the error of wide gears.)
-    model : callable, optional
-        ``model(gear, material, cracks, neighbours=n)`` gives the `Flexibility3D` of a body instead of the energy model.
-    ahead : callable, optional
-        ``ahead(bodies, neighbours=n)``, before the first body: gets what `model` will be called with, ``[(arguments, options)]``.
+        The difference of every k from that of cells `LONGER` times as long, and from that of coarser bodies, added: a measure of
+        the discretisation error at that phase alone. Of the energy model an error that falls with the power 2.4 of the degree,
+        and with the power 1 of the cells, or faster, is below it.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-    supports : (Support or Shaft or None, Support or Shaft or None), optional
-        What holds the hubs of pinion and wheel; None: rigid.
 
     Returns
     -------
-    Contact3D, or a list of them if `force` is a sequence
+    Contact3D, or a list of them if the case has several forces
 
     Raises
     ------
@@ -136,47 +97,29 @@ def pair_stiffness3d(
     RuntimeError
         If pits leave no contact at some phase, or the contact was not found.
     """
-    forces = [float(value) for value in np.atleast_1d(force)]
-    for value in forces:
-        if not (math.isfinite(value) and value > 0):
-            raise ValueError(f"force = {value} N, but a mesh is pressed together: give a finite force > 0")
+    pair, cache = case.pair, solved_gears(cache)
     step = STEP * pair.gear_1.m_n if step is None else step
     if not (math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
-    materials = material if isinstance(material, tuple) else (material, material)
-    for gear, found in zip((pair.gear_1, pair.gear_2), pits, strict=True):
+    for gear, found in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
         check_pits(gear, found)
-    cache = solved_gears(cache)
-    options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
-    shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies
-    hubs = None if supports is None else [None if shaft else held for held, shaft in zip(supports, shafts, strict=True)]
-    options |= {"flanks": flanks, "supports": hubs}
+    bodies = bodies or energy_bodies(cache=cache)
 
     def contacts_of(longer):
-        return [PhaseContact(pair, value, materials, longer=longer, **options) for value in forces]
+        return [PhaseContact(case, force, longer=longer, step=step, extended=extended, cache=cache) for force in case.forces]
 
     contacts = contacts_of(1)
-
-    def energy(order, coarse):
-        def flexible(gear, own, found, neighbours):
-            degree = axial_degree(gear.b, gear.m_n) if axial is None else axial
-            degree -= max(2, round(degree / 4)) if coarse else 0
-            options = {"order": order, "axial": degree, "refine": refine, "cache": cache}
-            return flexibility3d(gear, own, found, neighbours=neighbours, **options)
-
-        return flexible
-
     least = max(contact.neighbours for contact in contacts)
 
-    def bodies_by(model):
+    def bodies_by(flexible, ahead=None):
         @lru_cache(maxsize=8)
-        def bodies(neighbours):
-            flexible, foretold = (one and partial(one, neighbours=neighbours) for one in (model, ahead))
-            return bodies_of(pair, materials, cracks, contacts[0].bands, face, groove, flexible, shafts, ahead=foretold)
+        def made(neighbours):
+            given = (one and partial(one, neighbours=neighbours) for one in (flexible, ahead))
+            return bodies_of(case, contacts[0].bands, *given)
 
         def within(orders):  # gears that bend far bring more teeth into reach than the first guess of their approach did
-            return bodies(max(orders, least))
+            return made(max(orders, least))
 
         with part("", 0.0, 0.5):
             within(0)
@@ -187,17 +130,16 @@ def pair_stiffness3d(
             return [_solved(contact, phase, within) for contact in steps(contacts)]
 
     with part("", 0.0, 0.6 if error else 1.0):
-        bodies = bodies_by(model or energy(order, False))
-        solved = solve(contacts, bodies)
+        finest = bodies_by(bodies.flexible, bodies.ahead)
+        solved = solve(contacts, finest)
     if error:
         with part("", 0.6, 1.0):
-            others = [solve(contacts_of(LONGER), bodies)]
-            if model is None:
-                others.append(solve(contacts, bodies_by(energy(order - 1, True))))
-        for other in others:
-            for i, (one, less) in enumerate(zip(solved, other, strict=True)):
-                solved[i] = replace(one, error=np.abs(less.k - one.k) + (0.0 if one.error is None else one.error))
-    return solved if np.ndim(force) else solved[0]
+            others = [solve(contacts_of(LONGER), finest)]
+            if bodies.coarser:
+                others.append(solve(contacts, bodies_by(bodies.coarser)))
+        away = [sum(np.abs(less.k - one.k) for less in rest) for one, *rest in zip(solved, *others, strict=True)]
+        solved = [replace(one, error=doubt) for one, doubt in zip(solved, away, strict=True)]
+    return solved if case.several else solved[0]
 
 
 def _solved(contact, phase, bodies):

@@ -13,9 +13,9 @@ from geometry.pair.gear_pair import GearPair
 from geometry.pair.planetary import PlanetarySet
 from geometry.tooth.modified import Flank
 
+from ..case import check_load
 from ..material import Material
 from ..stiffness.limits import numbers, truth
-from ..stiffness.plausible import check_load
 from .rim import check_support
 from .standing import assembled
 

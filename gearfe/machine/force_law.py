@@ -6,7 +6,7 @@ pressed beyond their first touch, and for small vibrations about a load it has i
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from geometry.pair.gear_pair import GearPair
 
 from ..material import Material
 from ..stiffness.curve import StiffnessCurve, joined
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import asked, solve
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
 TINY = 1e-30  # depth [m]: a mesh just touching
@@ -247,7 +247,7 @@ def force_law(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or Case
     forces : sequence of float
         Loads along the line of action [N], up to the largest that the mesh will see. Each 1.4 times the one before gives
         accelerations within about 1 % of those of ever more loads, each twice the one before within 3 %.
@@ -282,7 +282,8 @@ def force_law(
     """
     if span not in ("cycle", "tooth"):
         raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
-    curves = mesh_stiffness(pair, list(forces), material, phases=phases, span=span, **options)
+    case, how = asked("force_law", pair, list(forces), material, options | {"phases": phases, "span": span})
+    curves = solve(case, how)
     own = ForceLaw.of([one.without_supports() for one in curves], force)
     counts = np.concatenate([own.pairs, own.pairs[:1]]) if span == "cycle" else own.pairs
     ends = np.append(own.phase, own.phase[0] + 1) if span == "cycle" else own.phase
@@ -291,5 +292,5 @@ def force_law(
         return own
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
     more = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
-    finer = mesh_stiffness(pair, list(forces), material, phases=more, **options)
+    finer = solve(case, replace(how, phases=more, span="cycle"))
     return ForceLaw.of([joined(both).without_supports() for both in zip(curves, finer, strict=True)], force)

@@ -3,10 +3,9 @@
 import math
 from dataclasses import replace
 
-from geometry.damage.pit import Pit
 from geometry.pair.planetary import PlanetarySet
 
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from .contact_law import force
 from .force_law import force_law
 
@@ -44,22 +43,20 @@ def curves(name, pair, case, options):
     states.
     Without the part of shafts that hold its gears: a machine has bearings of its own.
     """
-    given = options["loads"]
-    damage = {} if given is None else pair.damage.get(case, {})
+    loads = options["loads"]
+    hurt = pair.case(case if loads is not None and case in pair.damage else None)
     options = {key: value for key, value in options.items() if key != "loads"}
-    if options["method"] == "auto" and any(isinstance(one, Pit) or not one.through for found in damage.values() for one in found):
-        options = options | {"method": "ritz3d"}
+    if options["method"] == "auto":  # one method for both
+        options["method"] = Solve().chosen(hurt)[0].name
     made = []
-    for what, span in ((None, "cycle"), (case, "tooth"))[: 2 if damage else 1]:
-        asked = pair.case(what) | options | {"span": span}
-        if given is None or len(given[name][0]) == 1:
-            asked |= {} if given is None else {"force": given[name][0][0]}
-            one = mesh_stiffness(**asked).without_supports()
-            made.append(replace(one, meta=one.meta | {"scene_pair": name}))
+    for solved, span in ((hurt.healthy, "cycle"), (hurt, "tooth"))[: 1 + hurt.damaged]:
+        if loads is None or len(loads[name][0]) == 1:
+            solved = solved if loads is None else replace(solved, force=loads[name][0][0])
+            curve = solve(solved, Solve(span=span, **options)).without_supports()
+            made.append(replace(curve, meta=curve.meta | {"scene_pair": name}))
         else:
-            asked.pop("force")
-            made.append(force_law(forces=given[name][0], force=given[name][1], **asked))
-    return made[0], made[1] if damage else None
+            made.append(force_law(solved, loads[name][0], force=loads[name][1], span=span, **options))
+    return made[0], made[1] if hurt.damaged else None
 
 
 def healthy_and_hurt(scene, case, options, kinds):

@@ -119,9 +119,8 @@ def _tooth(found):
     """The damaged tooth with its load in three dimensions; None, with a note, for damage that cannot be drawn so."""
     chosen = found.scene.pair(found.hurt_pair)
     case = found.case if found.case in chosen.damage else None
-    options = {name: getattr(chosen, name) for name in ("face", "groove", "flanks", "misalignment", "supports")}
     try:
-        pressed = pressed_tooth(chosen.pair, chosen.force, chosen.materials, chosen.case(case).get("damage"), **options)
+        pressed = pressed_tooth(chosen.case(case))
     except ValueError as error:
         found.notes.append(f"no tooth in three dimensions: {error}")
         return None

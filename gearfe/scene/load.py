@@ -14,6 +14,7 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
+from ..case import Case
 from ..material import Material
 from ..supports.shaft import Shaft
 from ..supports.support import Support
@@ -93,14 +94,8 @@ class ScenePair:
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
 
-    @property
-    def wide(self) -> bool:
-        """Whether flanks change along the width, lie askew, or are tilted by their shafts."""
-        tilted = any(held.tilts for held in self.supports.values())
-        return tilted or bool(self.misalignment) or any(flank.wide for flank in self.flanks.values())
-
-    def case(self, name: str | None = None) -> dict[str, Any]:
-        """Keyword arguments of `gearfe.mesh_stiffness` for a case of damage; None: healthy.
+    def case(self, name: str | None = None) -> Case:
+        """The pair as it is solved, in a case of damage; None: healthy.
 
         Raises
         ------
@@ -109,9 +104,9 @@ class ScenePair:
         """
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
-        out = {"pair": self.pair, "force": self.force, "material": self.materials, "face": self.face, "groove": self.groove}
-        out |= {name: own for name in ("flanks", "misalignment", "supports") if (own := getattr(self, name))}
-        return out if name is None else out | {"damage": self.damage[name]}
+        given = {own: getattr(self, own) or None for own in ("flanks", "misalignment", "supports", "face")}
+        damage = None if name is None else self.damage[name]
+        return Case(self.pair, self.force, self.materials, damage=damage, groove=self.groove, **given)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,6 +141,16 @@ class Scene:
         if name not in self.pairs:
             raise ValueError(f"scene {self.name} has no pair {name!r}; it has {', '.join(self.pairs)}")
         return self.pairs[name]
+
+    def case(self, pair: str | None = None, case: str | None = None) -> Case:
+        """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
+
+        Raises
+        ------
+        ValueError
+            If there is no such pair or case.
+        """
+        return self.pair(pair).case(case)
 
 
 def scene_names() -> list[str]:

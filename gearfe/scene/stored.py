@@ -12,7 +12,7 @@ COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "esti
 
 def fingerprint(chosen, case):
     """Eight letters that change with any number of a scene's pair or its damage; fields left at their default do not count."""
-    run = chosen.case(case)
+    run = {"face": None, "groove": 0.0, **chosen.case(case)}
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 

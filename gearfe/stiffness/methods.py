@@ -1,6 +1,6 @@
 """The methods of `mesh_stiffness` and what each can: one row for each, read wherever somebody asks.
 
-`gearfe.stiffness.inputs` refuses by it what a method has not, `mesh_stiffness` finds the function in it, the command line's
+A row answers for itself: `Method.refuses` what it does not model of a case, `Method.curves` the stiffness. The command line's
 help, `compare`, `case_table` and `error_map` list its names. It imports nothing heavy.
 
 To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in `ROWS`:
@@ -14,11 +14,17 @@ To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in
 
 from dataclasses import dataclass, replace
 from importlib import import_module
+from typing import Any
 
 from ..threads import loading
 
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
+WAYS = {  # who makes curves of a kind of method
+    "section": "gearfe.stiffness.plane:section_curves",
+    "sum": "gearfe.stiffness.plane:sum_curves",
+    "solid": "gearfe.stiffness.solid:solid_curves",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +61,8 @@ class Method:
         Whether its function takes ``cache``, and keeps solved gears there: in this process, or also on disk, as finite elements.
     crack_models : tuple of str
         Limit lines of a crack with which `gearfe.error_map` judges it.
+    own : OwnFlexibility or None
+        A model of the user's own, of which this is the row.
     """
 
     name: str
@@ -75,13 +83,44 @@ class Method:
     order: int | None = None
     kept: str = ""
     crack_models: tuple = ()
+    own: Any = None
+
+    @property
+    def brute(self):
+        """Whether it is finite elements of whole gears in three dimensions, whose matrices are large."""
+        return self.kind == "solid" and self.kept == "disk"
 
     def load(self):
         """The function, or for a sum the module, that computes it."""
-        module, _, function = self.home.partition(":")
-        with loading:
-            found = import_module(module)
-        return getattr(found, function) if function else found
+        return _loaded(self.home)
+
+    def refuses(self, case, how):
+        """Raise ValueError for what the method does not model of a `Case`, or has no option for (`gearfe.stiffness.refusals`)."""
+        _loaded("gearfe.stiffness.refusals:refuses")(self, case, how)
+
+    def curves(self, case, how, phase):
+        """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
+
+        Parameters
+        ----------
+        case : Case
+        how : Solve
+            With what its defaults stand for filled in.
+        phase : ndarray, shape (n,)
+
+        Returns
+        -------
+        list of StiffnessCurve
+        """
+        return _loaded(WAYS[self.kind])(self, case, how, phase)
+
+
+def _loaded(home):
+    """What ``module:name`` names, or the module."""
+    module, _, name = home.partition(":")
+    with loading:
+        found = import_module(module)
+    return getattr(found, name) if name else found
 
 
 ROWS = (
@@ -141,8 +180,8 @@ def having(what, kind=None):
     return " or ".join([", ".join(found[:-1]), found[-1]] if len(found) > 1 else found)
 
 
-def fitted(method, run):
-    """The arguments of a scene's pair as far as a method knows them, and in words what it leaves out.
+def fitted(method, case):
+    """A case as far as a method knows it, with the variants it needs, and in words what is left out.
 
     This is the one rule for which face, groove and variants go to which method:
 
@@ -150,39 +189,37 @@ def fitted(method, run):
     - whatever knows no width takes shafts that tilt their gears as such that only give way;
     - a plain sum takes a ring's body as its row says: left out, or as its article prints it.
 
-    ``mesh_stiffness`` itself refuses such arguments, so that nobody gets a section who asked for a helical gear.
+    `gearfe.solve` itself refuses such cases, so that nobody gets a section who asked for a helical gear.
 
     Parameters
     ----------
     method : str
         A name of `NAMES`; ``auto`` takes everything.
-    run : dict
-        Keyword arguments of `mesh_stiffness`, as of `gearfe.scene.load.ScenePair.case`: ``pair``, ``face``, ``groove``.
+    case : Case
 
     Returns
     -------
-    run : dict
+    case : Case
+    variants : dict or None
+        Of the `Solve`.
     left_out : tuple of str
         Empty if the method takes all of it.
     """
     if method not in METHODS:
-        return run, ()
-    row, pair, out, left_out = METHODS[method], run["pair"], dict(run), []
-    face = run.get("face") or ("helical" if pair.gear_1.beta else "spur")
-    groove = run.get("groove", 0.0)
-    if face not in row.faces:
-        out |= {"face": None, "groove": 0.0}
+        return case, None, ()
+    row, pair, changed, variants, left_out = METHODS[method], case.pair, {}, None, []
+    if case.runs not in row.faces:
+        changed |= {"face": None, "groove": 0.0}
         width = min(pair.gear_1.b, pair.gear_2.b)
-        if groove:
-            width -= groove
-            out["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))
-        less = f", b less the groove of {groove:g} mm" if groove else ""
-        left_out.append(f"{method} is the transverse section: {face} teeth are taken as spur teeth {width:g} mm wide{less}")
-    supports = run.get("supports") or {}
-    if row.kind != "solid" and any(one.tilts for one in supports.values() if one):
-        out["supports"] = {name: one and one.untilted() for name, one in supports.items()}
+        if case.groove:
+            width -= case.groove
+            changed["pair"] = replace(pair, gear_1=replace(pair.gear_1, b=width), gear_2=replace(pair.gear_2, b=width))
+        less = f", b less the groove of {case.groove:g} mm" if case.groove else ""
+        left_out.append(f"{method} is the transverse section: {case.runs} teeth are taken as spur teeth {width:g} mm wide{less}")
+    if row.kind != "solid" and any(held.tilts for held in case.held or () if held):
+        changed["supports"] = {name: held and held.untilted() for name, held in case.supports.items()}
         left_out.append(f"{method} knows no width: shafts give way, but do not tilt their gears")
-    if pair.gear_2.internal and row.rings in RING_FOUNDATIONS and not run.get("variants"):
-        out["variants"] = {"foundation": row.rings}
+    if pair.gear_2.internal and row.rings in RING_FOUNDATIONS:
+        variants = {"foundation": row.rings}
         left_out.append(f"{method} {RING_FOUNDATIONS[row.rings]}")
-    return out, tuple(left_out)
+    return replace(case, **changed) if changed else case, variants, tuple(left_out)

@@ -1,38 +1,21 @@
 """`contact_pattern`: where and how hard the flanks of a pair press over the mesh cycle."""
 
-from collections.abc import Mapping, Sequence
+from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
-from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank
 
+from ..case import Case, case_of
 from ..contact.solid import Contact3D, pair_stiffness3d
-from ..material import Material
-from ..supports.shaft import Shaft
-from ..supports.support import Support
 from ..threads import single
-from .inputs import by_gear, forces_of, overlap, phase_array, two_materials
-from .supported import check_integral, supports_of
+from .phases import phase_array
+from .supported import check_integral
 
 
 @single
 def contact_pattern(
-    pair: GearPair,
-    force: float,
-    material: Material | tuple[Material, Material],
-    *,
-    flanks: Mapping[str, Flank] | None = None,
-    misalignment: Misalignment | None = None,
-    supports: Mapping[str, Support | Shaft] | None = None,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
-    phases: int | ArrayLike = 24,
-    face: str | None = None,
-    groove: float = 0.0,
+    pair: GearPair | Case, force: float | None = None, material: Any = None, *, phases: int | ArrayLike = 24, **given: Any
 ) -> Contact3D:
     """Contact of a pair over the mesh cycle by ``ritz3d``: every contact line with its loads and pressures.
 
@@ -41,12 +24,14 @@ def contact_pattern(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or Case
     force : float
         Along the line of action [N].
     material : Material or (Material, Material)
-    flanks, misalignment, supports, damage, phases, face, groove
-        As of `mesh_stiffness`.
+    phases : int or array
+        As of `Solve`.
+    **given
+        As of `Case`: ``flanks``, ``misalignment``, ``supports``, ``damage``, ``face``, ``groove``.
 
     Returns
     -------
@@ -68,14 +53,9 @@ def contact_pattern(
     >>> [round(z, 6) for z, _ in found.cells[0].at_ends(pair)]
     [0.0]
     """
-    forces = forces_of(pair, force, None)
-    if len(forces) > 1:
-        raise ValueError(f"force = {force!r}, but the pattern is that of one force")
-    cracks, pits = by_gear(pair, damage)
-    face = face or ("helical" if pair.gear_1.beta else "spur")
-    forms = flank_forms(pair, flanks, misalignment)
-    phase = np.asarray(phase_array(phases, "cycle", pair, overlap(pair, face, groove)))
-    options = {"pits": pits, "cracks": cracks, "flanks": forms, "face": face, "groove": groove}
-    options["supports"] = supports_of(pair, supports, forces, face)
-    check_integral(pair, options["supports"], "ritz3d", face)
-    return pair_stiffness3d(pair, forces[0], two_materials(material), phase, **options)
+    case = case_of(pair, force, material, **given)
+    if case.several:
+        raise ValueError(f"force = {case.force!r}, but the pattern is that of one force")
+    check_integral(case, "ritz3d")
+    phase = phase_array(phases, "cycle", case.pair, case.overlap())
+    return pair_stiffness3d(case, phase)

@@ -9,12 +9,14 @@ import numpy as np
 
 from geometry.pair.contacts import near_pitches
 
+from ..case import SIDES
 from ..contact.plane import PairContact
 from ..energy.closed.plain_sum import plain_sum
-from ..steps import steps
+from ..steps import part, steps
 from .curve import StiffnessCurve
 from .estimate import coarser, estimate, finer_hats, fixed_phases
 from .own_flexibility import flexibility_of
+from .provenance import provenance
 from .supported import yielding
 
 MODEL = (
@@ -22,101 +24,94 @@ MODEL = (
 )
 
 
-def sum_solver(row, pair, materials, phase, *, cracks, pits, variants, face, groove, flanks=None, yields=None):
-    """`solve` of a plain sum (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it."""
-    options = {**variants, "face": face, "groove": groove}
-    solve, details = plain_sum(pair, materials, phase, row.load(), cracks=cracks, pits=pits, flanks=flanks, **options)
-    return yielding(solve, yields), options | {"outside": [asdict(one) for one in details["outside"]]}
+def sum_curves(row, case, how, phase):
+    """Curves of a plain sum of tooth pairs, one for each load."""
+    face, variants = case.face or "spur", how.variants or {}
+    of_teeth = {"cracks": case.cracks, "pits": case.pits, "flanks": case.forms, "face": face, "groove": case.groove}
+    solve, details = plain_sum(case.pair, case.materials, phase, row.load(), **of_teeth, **variants)
+    said = variants | {"face": face, "groove": case.groove, "outside": [asdict(place) for place in details["outside"]]}
+    meta = provenance(case, row.name, said)
+    return [curve(case, phase, force, yielding(solve, case), meta) for force in case.forces]
 
 
-def section_solver(
-    row, own, pair, materials, phase, *, cracks, extended, state, cache, flanks=None, yields=None, hats=1.0, **numeric
-):
+def section_curves(row, case, how, phase):
+    """Curves of two sections in contact, one for each load, with their estimated error if it was asked for."""
+    with part(row.name, 0.0, 0.4 if how.error else 1.0):
+        solve, details = section_solver(row, case, how, phase)
+    meta = provenance(case, row.name, details)
+    curves = [curve(case, phase, force, solve, meta) for force in case.forces]
+    if not how.error:
+        return curves
+    with part("estimate of the error", 0.4, 1.0):
+        return with_error(row, curves, case, how)
+
+
+def section_solver(row, case, how, phase, hats=1.0):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
     Parameters
     ----------
     row : Method
-    own : OwnFlexibility or None
-        Instead of the flexibility of `row`.
-    pair : GearPair
-    materials : (Material, Material)
-    phase : ndarray
-    cracks : (tuple, tuple)
-    extended : bool
-        Where the method knows of tip corners.
-    state : str
-    cache : SolvedGears
-        Where solved gears are looked up and kept.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications, `geometry.tooth.modified.flank_forms`.
-    yields : float, optional
-        Approach by the supports of the hubs per line load [mm per N/mm].
+    case : Case
+    how : Solve
+    phase : ndarray, shape (n,)
     hats : float
         How many times shorter than those of the method the hats at corners are.
-    **numeric
-        ``refine``, ``order``, ``teeth``: each method gets those that it has.
     """
     started = time.perf_counter()
-    extended = extended and (own or row).extended
+    own, pair = row.own, case.pair
+    extended = how.extended and (own or row).extended
     neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
 
     def named(row, gear, material, cracks=()):
-        return _flexibility(row, gear, material, cracks, neighbours, state, cache, numeric)
+        options = {"neighbours": neighbours, "state": how.state, **_numeric(row, how)}
+        options |= {"cache": how.cache} if row.kept else {}
+        return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
-    gears = list(zip((pair.gear_1, pair.gear_2), materials, cracks, strict=True))
+    gears = list(zip((pair.gear_1, pair.gear_2), case.materials, case.cracks, strict=True))
     if own is None:
-        flexible = [named(row, gear, material, found) for gear, material, found in steps(gears)]
+        flexible = [named(row, *gear) for gear in steps(gears)]
     else:
-        flexible = [flexibility_of(own, i, gear, material, state, named) for i, (gear, material, _) in enumerate(gears)]
+        flexible = [flexibility_of(own, i, gear, material, how.state, named) for i, (gear, material, _) in enumerate(gears)]
     if hats != 1:
-        flexible = [replace(one, fine=hats * one.fine) for one in flexible]
-    contact = PairContact(pair, materials, flexible, phase, extended=extended, state=state, flanks=flanks)
-    details = {"state": state, "extended": extended, **_numeric(row, numeric), **(own.told() if own else {})}
+        flexible = [replace(body, fine=hats * body.fine) for body in flexible]
+    contact = PairContact(pair, case.materials, flexible, phase, extended=extended, state=how.state, flanks=case.forms)
+    details = {"state": how.state, "extended": extended, **_numeric(row, how), **(own.told() if own else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
-    return yielding(contact.solve, yields), details
+    return yielding(contact.solve, case), details
 
 
-def _numeric(row, given):
-    """Of refine, order (None: the method's own) and teeth those that a method has."""
-    order = row.order if given["order"] is None else given["order"]
+def _numeric(row, how):
+    """Of refine, order and teeth those that a method has."""
     has = {"refine": row.converged, "order": row.order is not None, "teeth": row.teeth}
-    return {name: value for name, value in (given | {"order": order}).items() if has.get(name)}
+    order = row.order if how.order is None else how.order
+    return {name: value for name, value in (("refine", how.refine), ("order", order), ("teeth", how.teeth)) if has[name]}
 
 
-def _flexibility(row, gear, material, cracks, neighbours, state, cache, numeric):
-    """`Flexibility` of one gear by a method."""
-    own = (cracks,) if row.cracks else ()
-    kept = {"cache": cache} if row.kept else {}
-    return row.load()(gear, material, *own, neighbours=neighbours, state=state, **kept, **_numeric(row, numeric))
-
-
-def curve(pair, phase, force, solve, meta, damage=None):
-    """`StiffnessCurve` under a force [N] along the line of action; warns if no tooth with `damage` is in contact.
+def curve(case, phase, force, solve, meta):
+    """`StiffnessCurve` under a force [N] along the line of action; warns if no damaged tooth is in contact.
 
     To SI, in one place: widths and millimetres become newtons and metres here.
 
     Parameters
     ----------
-    pair : GearPair
-    phase : ndarray
+    case : Case
+    phase : ndarray, shape (n,)
     force : float
     solve : callable
         From the line load [N/mm] to `gearfe.contact.plane.Solved`.
     meta : dict
         Without the force.
-    damage : (sequence, sequence), optional
-        Cracks and pits of pinion and wheel, teeth numbered in each gear's own frame.
     """
     started = time.perf_counter()
-    width = min(pair.gear_1.b, pair.gear_2.b)
+    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
     solved = solve(force / width)
     used = solved.line_load.max(axis=0) > 0
     unloaded = None if solved.unloaded is None else solved.unloaded * 1e-3
     meta = meta | {"force_N": force, "seconds_contact": time.perf_counter() - started}
-    if damage is not None:
-        _warn_if_unseen(pair, damage, solved.order[used])
+    if case.damaged:
+        _warn_if_unseen(case, solved.order[used])
         meta["crack_closed_phases"] = phase[list(solved.closed)].tolist()
     if solved.fillet:
         meta["tip_in_fillet_phases"] = phase[list(solved.fillet)].tolist()
@@ -134,29 +129,29 @@ def curve(pair, phase, force, solve, meta, damage=None):
     )
 
 
-def with_error(row, curves, case, options):
-    """The curves with their estimated error, by other solves of the same `case` of `section_solver`."""
-    pair, materials, phase = case
-    order = _numeric(row, options).get("order")
-    less, hats = coarser(options["refine"], order), finer_hats(order)
-    turns = any(form.differs for form in options.get("flanks") or ())
-    periodic = not (any(options["cracks"]) or turns)
+def with_error(row, curves, case, how):
+    """The curves with their estimated error, by other solves of the same case."""
+    order = _numeric(row, how).get("order")
+    less, hats = coarser(how.refine, order), finer_hats(order)
+    periodic = not (any(case.cracks) or any(form.differs for form in case.forms or ()))
+    phase = curves[0].phase
     where = np.append(phase, fixed_phases(phase, periodic))
-    solvers = [section_solver(row, None, pair, materials, where, **(options | one))[0] for one in steps(({}, *less, *hats))]
+    asked = [(how, 1.0), *((replace(how, **options), 1.0) for options in less), *((how, one["hats"]) for one in hats)]
+    solvers = [section_solver(row, case, own, where, hats)[0] for own, hats in steps(asked)]
     out = []
-    width = min(pair.gear_1.b, pair.gear_2.b)
-    for one in curves:
-        solved = [solve(one.meta["force_N"] / width) for solve in solvers]
-        k, *others = (one.meta["force_N"] / (1e-3 * each.closing) for each in solved)
+    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
+    for found in curves:
+        solved = [solve(found.meta["force_N"] / width) for solve in solvers]
+        k, *others = (found.meta["force_N"] / (1e-3 * each.closing) for each in solved)
         doubt = estimate(phase, periodic, k, others[: len(less)], others[len(less) :])
-        out.append(replace(one, error=doubt + one.k * (MODEL + solved[0].left_out[: phase.size])))
+        out.append(replace(found, error=doubt + found.k * (MODEL + solved[0].left_out[: phase.size])))
     return out
 
 
-def _warn_if_unseen(pair, damage, order):
+def _warn_if_unseen(case, order):
     """Warn if no damaged tooth is in contact at any of the phases."""
-    gears = ((pair.gear_1, 1, damage[0]), (pair.gear_2, -1, damage[1]))
-    if not any(sense * one.tooth % gear.z in order % gear.z for gear, sense, found in gears for one in found):
+    gears = zip((case.pair.gear_1, case.pair.gear_2), SIDES, case.cracks, case.pits, strict=True)
+    if not any(sense * one.tooth % gear.z in order % gear.z for gear, (_, sense), *found in gears for one in sum(found, ())):
         warnings.warn(
             "no cracked tooth is in contact at these phases: tooth k is at phases from -k; use span='tooth' for tooth 0",
             stacklevel=4,

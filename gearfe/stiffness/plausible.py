@@ -18,27 +18,11 @@ from geometry.pair.gear_pair import GearPair
 
 from ..flexibility.hertz import contact_modulus
 from ..material import Material
+from ..supports.held import REFUSE
 from .curve import StiffnessCurve
 
-WARN, REFUSE = 0.05, 0.25  # approach, of the module
+WARN = 0.05  # approach, of the module
 DENTED = 0.035  # largest pressure, of the contact modulus E*
-
-
-def check_load(pair: GearPair, force: float, materials: tuple[Material, Material]) -> None:
-    """Refuse a force under which even the stiffest gears would be beyond small strains, before anything is solved.
-
-    Raises
-    ------
-    ValueError
-        If ``force / (b E / 5)``, with the stiffer E, is more than `REFUSE` modules: no mesh of teeth is as stiff as b E / 5.
-    """
-    width, stiffest = min(pair.gear_1.b, pair.gear_2.b), max(one.E for one in materials)
-    least = 5 * force / (width * stiffest) / pair.gear_1.m_n
-    if least > REFUSE:
-        raise ValueError(
-            f"force = {force:g} N on {width:g} mm: the gears would approach by more than {100 * least:.3g} % of the module, but "
-            f"teeth that bend so far (limit {100 * REFUSE:g} %) break: give a smaller force, forces in N, lengths in mm, E in MPa"
-        )
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
@@ -87,15 +71,3 @@ def _pressure(curve):
     """Largest pressure of the pairs [MPa], at the median phase; 0 without any."""
     known = np.where(np.isfinite(curve.pressure), curve.pressure, 0.0)
     return float(np.median(known.max(axis=1, initial=0.0))) / 1e6
-
-
-def answered(curves, pair, materials, force, torque):
-    """One curve or the list of them, none beyond what linear elasticity can say."""
-    for one in curves:
-        check_plausible(one, pair, materials)
-    return as_asked(curves, force, torque)
-
-
-def as_asked(curves, force, torque):
-    """The list of curves, or the one if one load was given."""
-    return curves if np.ndim(torque if force is None else force) else curves[0]

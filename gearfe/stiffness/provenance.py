@@ -4,33 +4,43 @@ from dataclasses import asdict, replace
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
 
+from ..case import SIDES
+
 VERSIONS = ("gearfe", "numpy", "scipy", "scikit-fem", "gmsh")
 
 
-def provenance(pair, materials, method, options):
-    """`meta` of a `StiffnessCurve` without its force, of a method (its name) with its `options`."""
+def provenance(case, method, options):
+    """`meta` of a `StiffnessCurve` without its force: of a `Case`, by a method (its name) with its `options`."""
+    pair = case.pair
     gears = {name: asdict(gear) for name, gear in (("gear_1", pair.gear_1), ("gear_2", pair.gear_2))}
-    held = "hubs on supports" if options.get("supports") else "bores held"
+    on_supports = case.held is not None
+    said = {"damage": damage_of(case)} if case.damaged else {}
+    if case.forms and case.flanks:
+        said["flanks"] = {name: asdict(flank) for name, flank in case.flanks.items() if flank}
+    if case.misalignment is not None:
+        said["misalignment"] = asdict(case.misalignment)
+    if on_supports:
+        said["supports"] = {name: asdict(held) for name, held in case.supports.items() if held}
     return {
         "method": method,
         "width_mm": min(pair.gear_1.b, pair.gear_2.b),
         **gears,
         "a_mm": pair.a,
         "eps_alpha": pair.eps_alpha,
-        "materials": [asdict(m) for m in materials],
-        "stiffness": f"secant F / (loaded - unloaded transmission error), along the line of action, {held}",
+        "materials": [asdict(m) for m in case.materials],
+        "stiffness": "secant F / (loaded - unloaded transmission error), along the line of action, "
+        + ("hubs on supports" if on_supports else "bores held"),
         **options,
+        **said,
         "versions": {name: _version(name) for name in VERSIONS},
     }
 
 
-def damage_of(cracks, pits):
-    """Cracks and pits of pinion and wheel as tables, numbered by pair; empty without any."""
-    if not any(cracks) and not any(pits):
-        return {}
+def damage_of(case):
+    """Cracks and pits of pinion and wheel as tables, numbered by pair."""
     return {
-        name: [asdict(replace(d, tooth=sense * d.tooth)) for found in (cracks, pits) for d in found[i]]
-        for i, (name, sense) in enumerate((("pinion", 1), ("wheel", -1)))
+        name: [asdict(replace(d, tooth=sense * d.tooth)) for found in (case.cracks, case.pits) for d in found[i]]
+        for i, (name, sense) in enumerate(SIDES)
     }
 
 

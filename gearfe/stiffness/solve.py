@@ -1,150 +1,39 @@
-"""`mesh_stiffness`: from a gear pair to its stiffness curve, by finite elements or by an energy method."""
+"""`solve`: from a `Case` to its stiffness curve, as a `Solve` says; `mesh_stiffness` is both in one call."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, replace
+import contextlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
-from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank
 
-from ..elements.asked import checked_refine
+from ..case import NAMES, Case, case_of
+from ..elements.asked import checked_refine, is_number
 from ..flexibility.solved import SolvedGears, solved_gears
-from ..material import Material, check_state
-from ..steps import part
-from ..supports.shaft import Shaft
-from ..supports.support import Support
-from ..threads import single
+from ..material import check_state
+from ..threads import one_thread
 from .curve import StiffnessCurve
-from .inputs import (
-    by_gear,
-    check_method,
-    choose,
-    forces_of,
-    overlap,
-    phase_array,
-    refuse,
-    refuse_numeric,
-    row_of,
-    said_of_face,
-    two_materials,
-)
-from .limits import check_section, check_teeth, truth
+from .limits import truth
+from .methods import METHODS, Method
+from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
-from .plane import curve, section_solver, sum_solver, with_error
-from .plausible import answered, as_asked, check_load
+from .phases import LONG, check_span, phase_array
+from .plausible import check_plausible
 from .pose import check_pose, in_pose
-from .provenance import damage_of, provenance
-from .solid import wide_curves
-from .supported import at_middle, supports_of
 from .turns import over_turns
 
-
-@overload
-def mesh_stiffness(
-    pair: GearPair,
-    force: float | None = ...,
-    material: Material | tuple[Material, Material] | None = ...,
-    *,
-    torque: float | None = ...,
-    method: str | OwnFlexibility = ...,
-    phases: int | ArrayLike = ...,
-    span: str = ...,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
-    flanks: Mapping[str, Flank] | None = ...,
-    misalignment: Misalignment | None = ...,
-    supports: Mapping[str, Support | Shaft] | None = ...,
-    extended: bool = ...,
-    state: str = ...,
-    refine: float = ...,
-    order: int | None = ...,
-    teeth: int | None = ...,
-    variants: Mapping[str, Any] | None = ...,
-    face: str | None = ...,
-    groove: float = ...,
-    error: bool = ...,
-    cache: bool = ...,
-    tell: Callable[[str], object] | None = ...,
-    pose: str = ...,
-) -> StiffnessCurve: ...
+Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
 
 
-@overload
-def mesh_stiffness(
-    pair: GearPair,
-    force: Sequence[float] | NDArray[np.float64] | None = ...,
-    material: Material | tuple[Material, Material] | None = ...,
-    *,
-    torque: Sequence[float] | NDArray[np.float64] | None = ...,
-    method: str | OwnFlexibility = ...,
-    phases: int | ArrayLike = ...,
-    span: str = ...,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
-    flanks: Mapping[str, Flank] | None = ...,
-    misalignment: Misalignment | None = ...,
-    supports: Mapping[str, Support | Shaft] | None = ...,
-    extended: bool = ...,
-    state: str = ...,
-    refine: float = ...,
-    order: int | None = ...,
-    teeth: int | None = ...,
-    variants: Mapping[str, Any] | None = ...,
-    face: str | None = ...,
-    groove: float = ...,
-    error: bool = ...,
-    cache: bool = ...,
-    tell: Callable[[str], object] | None = ...,
-    pose: str = ...,
-) -> list[StiffnessCurve]: ...
-
-
-@single
-def mesh_stiffness(
-    pair: GearPair,
-    force: float | Sequence[float] | NDArray[np.float64] | None = None,
-    material: Material | tuple[Material, Material] | None = None,
-    *,
-    torque: float | Sequence[float] | NDArray[np.float64] | None = None,
-    method: str | OwnFlexibility = "auto",
-    phases: int | ArrayLike = 64,
-    span: str = "cycle",
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
-    flanks: Mapping[str, Flank] | None = None,
-    misalignment: Misalignment | None = None,
-    supports: Mapping[str, Support | Shaft] | None = None,
-    extended: bool = True,
-    state: str = "plane strain",
-    refine: float = 1.0,
-    order: int | None = None,
-    teeth: int | None = None,
-    variants: Mapping[str, Any] | None = None,
-    face: str | None = None,
-    groove: float = 0.0,
-    error: bool = False,
-    cache: bool = True,
-    tell: Callable[[str], object] | None = None,
-    pose: str = "mean",
-) -> StiffnessCurve | list[StiffnessCurve]:
-    """Mesh stiffness of a gear pair over one mesh cycle.
-
-    ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
-    length on it, bores held, or on `supports` that give way.
+@dataclass(frozen=True, slots=True)
+class Solve:
+    """How a `Case` is solved: by which method, at which phases, how finely.
 
     Parameters
     ----------
-    pair : GearPair
-    force : float or sequence of float
-        Force along the line of action over the whole width [N]. Several loads share one flexibility and give a list, of the same
-        k as a call for each.
-    material : Material or (Material, Material)
-        Of both gears, or of pinion and wheel.
-    torque : float or sequence of float, optional
-        Instead of `force`: torque on the pinion [N m], ``force = torque / r_b`` with the pinion's base radius.
     method : {"auto", "ritz", "ritz3d", "fe", "fe3d", "coupled", "textbook", "published"} or OwnFlexibility
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
@@ -157,27 +46,18 @@ def mesh_stiffness(
         contact, neighbour coupling and load sharing. ``textbook``, ``published``: beam energies and a plain sum of the pairs
         (`gearfe.energy.closed.plain_sum`). An `OwnFlexibility`: your own model of how one gear gives, where ``ritz`` and ``fe``
         stand otherwise.
+
+        Cracks: all but ``coupled``; of part of the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits:
+        ``ritz3d``, ``fe3d`` and the plain sums. Flanks: all methods; what changes along the width, misalignment too, needs
+        ``ritz3d``, ``fe3d`` or a plain sum. Hubs that tilt: ``ritz3d`` or ``fe3d``.
     phases : int or array
-        Number of equidistant phases per mesh cycle, or the phases themselves.
+        Number of equidistant phases per mesh cycle, or the phases themselves; with pitch deviations those of as many teeth as are
+        to be seen.
     span : {"cycle", "tooth", "revolution", "hunting"}
         Which phases a number stands for: from 0 to 1; or the whole engagement of pair 0 and a quarter cycle before and
         after it (where the damaged tooth is); or every cycle of one revolution of the pinion, or of the hunting period after
         which the same teeth meet again (for pitch deviations; cycles that are alike are solved once). In three dimensions pair 0
         enters at one end at phase 0.
-    damage : dict, optional
-        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``. Cracks: all but ``coupled``; of part of
-        the width or of a depth that changes along it: ``ritz3d`` and ``fe3d``. Pits: ``ritz3d``, ``fe3d`` and the plain sums.
-        Crack faces that the load presses together are kept apart; ``meta["crack_closed_phases"]`` says where. (Likewise
-        ``meta["tip_in_fillet_phases"]`` says where a tip presses into its mate's fillet, if any does.)
-    flanks : dict, optional
-        Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``, for all methods; what
-        changes along the width needs ``ritz3d``, ``fe3d`` or a plain sum. The curve's `te` then is the transmission error under
-        load and `unloaded` that without; with pitch deviations give phases of as many teeth as are to be seen.
-    misalignment : Misalignment, optional
-        Axes that are not parallel, for the same. (A centre distance that is not the nominal one: the pair's `a`.)
-    supports : dict, optional
-        Springs or shafts under the hubs: ``{"pinion": Shaft(...), "wheel": Support(...)}``; default: rigid bores. Hubs that
-        tilt need ``ritz3d`` or ``fe3d``. The curve's `lte_supports` is their part of the deflection.
     extended : bool
         Let corners touch before the start and after the end of the path of contact (all but the closed
         forms, which know no contact there).
@@ -192,14 +72,9 @@ def mesh_stiffness(
     variants : dict, optional
         For ``textbook`` and ``published``: options of `gearfe.energy.closed.plain_sum.plain_sum` and of the formulas'
         ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
-    face : {"spur", "helical", "herringbone"}, optional
-        For ``ritz3d``, ``fe3d`` and the plain sums: how the teeth run. Default: ``helical`` for gears with a helix angle in
-        ``ritz3d`` and ``fe3d``, otherwise ``spur`` (of helical gears the transverse section, as a spur gear of the same width).
-    groove : float
-        Width of a herringbone pair's relief groove [mm], part of b.
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
-        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.wide_curves`).
+        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.solid_curves`).
     cache : bool
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
@@ -212,14 +87,78 @@ def mesh_stiffness(
         one against the held other. Near the ends of double contact k differs by 1 to 2 % (`geometry.pair.contacts`); the last two
         solve the contact about four times.
 
+    Raises
+    ------
+    ValueError
+        If an option is impossible; the message says which.
+    """
+
+    method: str | OwnFlexibility = "auto"
+    phases: int | ArrayLike = 64
+    span: str = "cycle"
+    extended: bool = True
+    state: str = "plane strain"
+    refine: float = 1.0
+    order: int | None = None
+    teeth: int | None = None
+    variants: Mapping[str, Any] | None = None
+    error: bool = False
+    cache: bool | SolvedGears = True
+    tell: Callable[[str], object] | None = None
+    pose: str = "mean"
+
+    def __post_init__(self) -> None:
+        """Check what can be said without a case."""
+        own = isinstance(self.method, OwnFlexibility)
+        if not own and not (isinstance(self.method, str) and self.method in METHOD_NAMES):
+            raise ValueError(f"method = {self.method!r}, but it must be one of {', '.join(METHOD_NAMES)}, or an OwnFlexibility")
+        for name in ("error", "extended"):
+            object.__setattr__(self, name, truth(name, getattr(self, name)))
+        object.__setattr__(self, "refine", checked_refine(self.refine))
+        if not isinstance(self.cache, SolvedGears):
+            truth("cache", self.cache)
+        check_state(self.state)
+        check_pose(self.pose)
+        check_span(self.span)
+        order = self.order
+        if order is not None and (not is_number(order) or not 2 <= order <= 8 or order != int(order)):
+            raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")
+        if self.variants is not None and not isinstance(self.variants, dict):
+            raise ValueError(f"variants = {self.variants!r}, but give a dict: {{'foundation': 'none'}}")
+
+    def chosen(self, case: Case) -> tuple[Method, str]:
+        """The method's row of the table, of ``auto`` that which fits the case, and why it was chosen."""
+        if isinstance(self.method, OwnFlexibility):
+            own = self.method
+            row = Method(str(own.name), "a model of one's own", "section", "", "", extended=own.extended, flanks=True, own=own)
+            return row, "asked for"
+        if self.method != "auto":
+            return METHODS[self.method], "asked for"
+        if self.teeth is not None:
+            return METHODS["fe"], "teeth are left out"
+        if any(held.integral for held in case.held or () if held):
+            return METHODS["fe3d"], "a gear is one piece with its shaft"
+        why = case.why_wide
+        return METHODS["ritz3d" if why else "ritz"], why or "spur gears, nothing changes along the width: plane strain"
+
+
+OPTIONS = tuple(own.name for own in fields(Solve))
+
+
+def solve(case: Case, how: Solve | None = None) -> Any:
+    """Stiffness curve of a `Case`, as a `Solve` says.
+
+    ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
+    length on it, bores held, or on supports that give way.
+
     Returns
     -------
-    StiffnessCurve, or a list of them if `force` is a sequence
+    StiffnessCurve, or a list of them if the case has several loads
 
     Raises
     ------
     ValueError
-        If an input is impossible, or given to a method that has no such thing; the message says which. If the gears approach so
+        If the method has no such thing as the case or the options have; the message says which. If the gears approach so
         far that strains are no longer small (`gearfe.stiffness.plausible`).
     RuntimeError
         If a system of ``fe`` or ``fe3d`` does not fit into memory, before it is solved; the message has the numbers.
@@ -229,76 +168,105 @@ def mesh_stiffness(
     UserWarning
         If deflection or pressure are beyond what teeth bear, see `gearfe.stiffness.plausible`.
     """
-    if not isinstance(pair, GearPair):
-        raise ValueError(f"pair = {pair!r}, but give a GearPair")
-    check_method(method)
-    forces = forces_of(pair, force, torque)
-    check_teeth(teeth, max(pair.gear_1.z, pair.gear_2.z))
-    refine, error, extended = checked_refine(refine), truth("error", error), truth("extended", extended)
-    solved = cache if isinstance(cache, SolvedGears) else solved_gears(truth("cache", cache))
-    materials = two_materials(material)
-    for value in forces:
-        check_load(pair, value, materials)
-    check_state(state)
-    check_pose(pose)
-    cracks, pits = by_gear(pair, damage)
-    forms = flank_forms(pair, flanks, misalignment)
-    held = supports_of(pair, supports, forces, face)
-    method, why = choose(method, pair, cracks, pits, face, teeth, forms, held)
-    row, own = row_of(method)
-    refuse(row, pair, cracks, pits, teeth, variants, face, groove, forms)
-    refuse_numeric(row, refine=refine, order=order, error=error, state=state)
-    said_of_face(pair, face)
-    if row.name == "fe":
-        check_section(refine)
-    if row.kind == "solid" and face is None:
-        face = "helical" if pair.gear_1.beta else "spur"
-    yields = at_middle(pair, held, row, face)
-    phase = phase_array(phases, span, pair, overlap(pair, face, groove))
-    same: dict[str, Any] = {"method": own or row.name, "damage": damage, "flanks": flanks, "misalignment": misalignment}
-    same |= {"supports": supports, "extended": extended, "state": state, "refine": refine, "teeth": teeth, "variants": variants}
-    same |= {"face": face, "groove": groove, "order": order, "error": error, "cache": cache, "tell": tell}
-    if span in ("revolution", "hunting"):
-        more = same | {"pose": pose, "cache": solved}
-        differs = [bool(cracks[i] or pits[i]) or (forms is not None and forms[i].differs) for i in (0, 1)]
-        turned = over_turns(
-            lambda at: mesh_stiffness(pair, np.array(forces), materials, phases=at, **more), phase, pair, span, differs
-        )
-        return as_asked([replace(one, meta=one.meta | {"why": why}) for one in turned], force, torque)
-    if pose != "mean":
-        curves = [
-            in_pose(lambda at, value=value: mesh_stiffness(pair, value, materials, phases=at, **same), phase, pair, pose, forms)
-            for value in forces
-        ]
-        curves = [replace(one, meta=one.meta | {"why": why}) for one in curves]
-        return as_asked(curves, force, torque)
-    numeric = {"refine": refine, "order": row.order if order is None else order}
-    said = ({"damage": damage_of(cracks, pits)} if any(cracks) or any(pits) else {}) | {"why": why, "pose": pose}
-    said |= {"flanks": {name: asdict(one) for name, one in flanks.items() if one}} if forms and flanks else {}
-    said |= {"misalignment": asdict(misalignment)} if misalignment is not None else {}
-    said |= {"supports": {name: asdict(one) for name, one in supports.items() if one}} if held and supports else {}
-    if row.kind == "solid":
-        options = {"face": face, "groove": groove, "extended": extended, **numeric}
-        case = (pair, materials, phase, cracks, pits)
-        written = {name: value for name, value in options.items() if name != "order" or row.order}
-        meta = provenance(pair, materials, row.name, written | said)
-        options |= {"brute": row.kept == "disk", "error": error, "cache": solved, "tell": tell}
-        options |= {"flanks": forms, "supports": held}
-        with part(row.name, 0.0, 1.0):
-            curves = wide_curves(forces, case, meta, **options)
-        return answered(curves, pair, materials, force, torque)
-    if row.kind == "sum":
-        sliced = {"variants": variants or {}, "face": face or "spur", "groove": groove, "flanks": forms, "yields": yields}
-        solve, details = sum_solver(row, pair, materials, phase, cracks=cracks, pits=pits, **sliced)
-    else:
-        numeric |= {"cracks": cracks, "flanks": forms, "extended": extended, "state": state, "cache": solved, "teeth": teeth}
-        numeric["yields"] = yields
-        with part(row.name, 0.0, 0.4 if error else 1.0):
-            solve, details = section_solver(row, own, pair, materials, phase, **numeric)
-    meta = provenance(pair, materials, row.name, details | said)
-    hurt = tuple((*cracks[i], *pits[i]) for i in (0, 1)) if any(cracks) or any(pits) else None
-    curves = [curve(pair, phase, value, solve, meta, hurt) for value in forces]
-    if error and row.error:
-        with part("estimate of the error", 0.4, 1.0):
-            curves = with_error(row, curves, (pair, materials, phase), numeric)
-    return answered(curves, pair, materials, force, torque)
+    how = how or Solve()
+    row, why = how.chosen(case)
+    row.refuses(case, how)
+    how = replace(how, cache=solved_gears(how.cache))
+    with contextlib.nullcontext() if row.brute else one_thread():
+        curves = _curves(row, case, how)
+    curves = [replace(curve, meta=curve.meta | {"why": why, "pose": how.pose}) for curve in curves]
+    return curves if case.several else curves[0]
+
+
+def _curves(row, case, how):
+    """A curve for each load, over the span and in the pose that were asked for."""
+    pair = case.pair
+
+    def of_loads(at, loads=case):
+        curves = row.curves(loads, how, at)
+        for curve in curves:
+            check_plausible(curve, pair, case.materials)
+        return curves
+
+    def posed(at):
+        if how.pose == "mean":
+            return of_loads(at)
+        alone = [replace(case, force=force) for force in case.forces]
+        return [in_pose(lambda phase, one=one: of_loads(phase, one)[0], at, pair, how.pose, case.forms) for one in alone]
+
+    phase = phase_array(how.phases, how.span, pair, case.overlap(case.runs if row.kind == "solid" else case.face or "spur"))
+    if how.span not in LONG:
+        return posed(phase)
+    differs = [bool(case.cracks[i] or case.pits[i]) or (case.forms is not None and case.forms[i].differs) for i in (0, 1)]
+    return over_turns(posed, phase, pair, how.span, differs)
+
+
+@overload
+def mesh_stiffness(
+    pair: GearPair | Case, force: float | None = ..., material: Any = ..., *, torque: float | None = ..., **options: Any
+) -> StiffnessCurve: ...
+
+
+@overload
+def mesh_stiffness(
+    pair: GearPair | Case, force: Loads | None = ..., material: Any = ..., *, torque: Loads | None = ..., **options: Any
+) -> list[StiffnessCurve]: ...
+
+
+def mesh_stiffness(pair, force=None, material=None, **options):
+    """Mesh stiffness of a gear pair over one mesh cycle: a `Case` and a `Solve` in one call.
+
+    ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
+    length on it, bores held, or on `supports` that give way.
+
+    Parameters
+    ----------
+    pair : GearPair or Case
+    force : float or sequence of float
+        Force along the line of action over the whole width [N]; or give `torque`, on the pinion [N m]. Several loads share one
+        flexibility and give a list, of the same k as a call for each.
+    material : Material or (Material, Material)
+        Of both gears, or of pinion and wheel.
+    **options
+        ``torque``, ``damage``, ``flanks``, ``misalignment``, ``supports``, ``face``, ``groove`` of a `Case`, and ``method``,
+        ``phases``, ``span``, ``extended``, ``state``, ``refine``, ``order``, ``teeth``, ``variants``, ``error``, ``cache``,
+        ``tell``, ``pose`` of a `Solve`: there it says what they are. `flanks` make the curve's `te` the transmission error under
+        load and `unloaded` that without; of `supports` the curve's `lte_supports` is their part of the deflection.
+        ``meta["crack_closed_phases"]`` says where the load presses faces of a crack together, ``meta["tip_in_fillet_phases"]``
+        where a tip presses into its mate's fillet.
+
+    Returns
+    -------
+    StiffnessCurve, or a list of them if `force` is a sequence
+
+    Raises
+    ------
+    ValueError, RuntimeError
+        As `Case`, `Solve` and `solve`.
+
+    Examples
+    --------
+    >>> import math, gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
+    >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack))
+    >>> curve = gf.mesh_stiffness(pair, force=2000.0, material=gf.Material(E=207e3, nu=0.25), method="ritz", phases=32)
+    >>> print(f"{1e-6 * curve.k.mean():.0f} N/um in the mean, from {1e-6 * curve.k.min():.0f} to {1e-6 * curve.k.max():.0f}")
+    314 N/um in the mean, from 244 to 351
+    """
+    return solve(*asked("mesh_stiffness", pair, force, material, options))
+
+
+def asked(function, pair, force, material, options):
+    """`Case` and `Solve` of the arguments of a function that takes both.
+
+    Raises
+    ------
+    TypeError
+        If it has no such argument.
+    """
+    unknown = sorted(set(options) - {*NAMES, *OPTIONS})
+    if unknown:
+        raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")
+    given = {name: value for name, value in options.items() if name in NAMES}
+    how = Solve(**{name: value for name, value in options.items() if name in OPTIONS})
+    return case_of(pair, force, material, **given), how

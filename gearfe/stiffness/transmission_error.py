@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank
 
-from ..material import Material
+from ..case import Case
 from ..pictures.error_plots import plot_transmission_error
-from ..threads import single
 from .curve import StiffnessCurve
-from .solve import mesh_stiffness
+from .solve import Loads, asked, solve
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,14 +77,8 @@ class TransmissionError:
         return plot_transmission_error(self, path, title)
 
 
-@single
 def transmission_error(
-    pair: GearPair,
-    forces: Sequence[float] | NDArray[np.float64],
-    material: Material | tuple[Material, Material],
-    *,
-    flanks: Mapping[str, Flank] | None = None,
-    **options: Any,
+    pair: GearPair | Case, forces: Loads | None = None, material: Any = None, **options: Any
 ) -> TransmissionError:
     """Transmission error of a gear pair over the mesh cycle under several loads, which share one solve of the gears.
 
@@ -97,14 +88,12 @@ def transmission_error(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or Case
     forces : sequence of float
-        Forces along the line of action [N].
+        Forces along the line of action [N]; default those of the case.
     material : Material or (Material, Material)
-    flanks : dict, optional
-        ``{"pinion": Flank(...), "wheel": Flank(...)}``.
     **options
-        As of `mesh_stiffness`: ``method``, ``phases``, ``pose`` and so on.
+        As of `mesh_stiffness`: ``flanks``, ``method``, ``phases``, ``pose`` and so on.
 
     Returns
     -------
@@ -132,7 +121,8 @@ def transmission_error(
     [1.3, 3.6]
     [2.6, 0.4]
     """
-    curves = tuple(mesh_stiffness(pair, np.atleast_1d(forces), material, flanks=flanks, **options))
+    case, how = asked("transmission_error", pair, forces, material, options)
+    curves = tuple(solve(replace(case, force=case.forces), how))
     te, phase = np.array([curve.te for curve in curves]), curves[0].phase
     unloaded = np.zeros(phase.size) if curves[0].unloaded is None else curves[0].unloaded
     return TransmissionError(np.array([curve.meta["force_N"] for curve in curves]), phase, te, unloaded, curves)

@@ -14,8 +14,7 @@ from ..elements.fe import EDGES, flank_load
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from ..steps import steps
-from ..stiffness.inputs import by_gear
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 
 MISES = "von Mises stress [MPa]"
 
@@ -72,20 +71,18 @@ def write_vtu(path, fields):
         mesh.write(name, file_format="vtu")
 
 
-def loaded_phase(scene_pair, damage):
+def loaded_phase(case):
     """Phase at which the damaged tooth of a spur pair carries alone for the last time, or most; 0 without damage."""
-    cracks, pits = by_gear(scene_pair.pair, damage)
-    own = [sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*cracks[i], *pits[i])]
-    if not own:
+    order = case.first_tooth
+    if order is None:
         return 0.0
-    phases = own[0] * -1.0 + scene_pair.pair.eps_alpha * (np.arange(64) + 0.5) / 64
-    case = scene_pair.case() | {"phases": phases, "supports": None}
-    curve = mesh_stiffness(**case, method="ritz")
-    load = curve.force[:, curve.order == own[0]].sum(axis=1)
+    phases = -order + case.pair.eps_alpha * (np.arange(64) + 0.5) / 64
+    curve = solve(replace(case, damage=None, supports=None), Solve("ritz", phases))
+    load = curve.force[:, curve.order == order].sum(axis=1)
     return float(phases[np.flatnonzero(load > (1 - 1e-6) * load.max())[-1]])
 
 
-def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
+def stressed_gears(case, phase=0.0, refine=1.0):
     """Both gears of a spur pair in mesh at `phase`, in plane strain; crack faces may pass through each other.
 
     Returns
@@ -93,12 +90,10 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
     list of Field
         Pinion first, in the pinion's frame.
     """
-    pair, materials = scene_pair.pair, scene_pair.materials
-    cracks, pits = by_gear(pair, damage)
-    if any(pits):
+    pair, materials = case.pair, case.materials
+    if any(case.pits):
         raise ValueError("pits do not run through the whole width: a transverse section cannot show them")
-    case = scene_pair.case() | {"phases": [phase], "damage": damage, "supports": None}  # those of a section share no load
-    curve = mesh_stiffness(**case, method="ritz")
+    curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports of a section share no load
     found = pair.contacts([phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]
@@ -107,7 +102,7 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
     out = []
     rolls = found.roll_1[0], found.roll_2[0]
     mirrors, centres = (1, pair.outward), (0.0, pair.centre_2)
-    gears = (pair.gear_1, pair.gear_2), materials, cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
+    gears = (pair.gear_1, pair.gear_2), materials, case.cracks, rolls, pair.turn(nominal), centres, mirrors, (1, -1)
     for gear, material, own, roll, turn, centre, mirror, ahead in steps(zip(*gears, strict=True)):
         loads = {}
         for i, k in carrying:

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.mesh.holes import Holed, holed_sector, skin
-from geometry.pair.flanks import flank_forms
 from geometry.pair.pit_lines import in_both_halves
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
@@ -19,8 +18,7 @@ from ..elements.hexahedron import assemble
 from ..elements.solver import factor, plan
 from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
 from ..steps import part
-from ..stiffness.inputs import by_gear, overlap, two_materials
-from ..stiffness.supported import check_integral, supports_of
+from ..stiffness.supported import check_integral
 from .fields import Field
 
 SPREAD = 0.15  # of the load to either side of its line, in modules
@@ -66,33 +64,14 @@ class Pressed:
     unknowns: int
 
 
-def pressed_tooth(
-    pair,
-    force,
-    material,
-    damage,
-    *,
-    phases=None,
-    face=None,
-    groove=0.0,
-    flanks=None,
-    misalignment=None,
-    supports=None,
-    refine=1.0,
-    teeth=3,
-    removal=False,
-    sizes=None,
-    strip=None,
-    spread=SPREAD,
-    tell=None,
-):
+def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, sizes=None, strip=None, spread=SPREAD):
     """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
     Parameters
     ----------
-    pair, force, material, damage, face, groove, flanks, misalignment, supports
-        As of `gearfe.mesh_stiffness`; damage of one tooth of one gear, its pits in one half if herringbone, or the same in both.
-        Without any it is tooth 0 of the pinion.
+    case : Case
+        Damage of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without any it is tooth 0 of
+        the pinion.
     phases : array, optional
         Default: the one of 16 at which the damaged tooth carries most.
     refine, teeth, sizes
@@ -103,8 +82,6 @@ def pressed_tooth(
         Of the load to either side of its line, as a hat [modules]; a hat of 1.2 Hertz half widths is as wide as his pressure.
     removal : bool
         Solve the tooth without its holes too, for `Pressed.extra`.
-    tell : callable, optional
-        Gets the `gearfe.elements.solver.Plan` before anything costly starts.
 
     Returns
     -------
@@ -119,21 +96,17 @@ def pressed_tooth(
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
-    materials = two_materials(material)
-    face = face or ("helical" if pair.gear_1.beta else "spur")
-    cracks, pits = by_gear(pair, damage)
+    pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
     which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
     if len(which) > 1 or len(cracks[which[0]]) > 1:
         raise ValueError("give pits, one crack or both, of one tooth of one gear: holes are cut into one tooth")
     side = which[0]
-    gear, half, own_pits = _own(pair, side, face, groove, pits[side])
+    gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
     tooth = next((one.tooth for one in (*pits[side], *cracks[side])), 0)
     order = (1, -1)[side] * tooth
     with part("contact", 0.0, 0.2):
-        case = {"pits": pits, "cracks": cracks, "face": face, "groove": groove}
-        case |= {"flanks": flank_forms(pair, flanks, misalignment), "supports": held_by(pair, supports, force, face)}
-        contact = contact_of(pair, force, materials, phases, order, extended=False, **case)
+        contact = contact_of(case, phases, order, extended=False)
     lines = [_lines(pair, found, side, tooth, half) for found in contact.cells]
     spread *= gear.m_n
     strips = () if strip is None else _strips(gear, lines, strip * gear.m_n / refine, spread)
@@ -144,13 +117,13 @@ def pressed_tooth(
     loads = np.column_stack([_pressure(sector, nodes, number, found, spread) for found in lines])
     held = _held(sector, number)
     with part("stress", 0.5, 1.0):
-        moved, unknowns = _moved(nodes, kept, materials[side], held, loads, tell)
+        moved, unknowns = _moved(nodes, kept, materials[side], held, loads)
     extra = np.zeros(0)
     if removal:
-        whole, _ = _moved(nodes, cells, materials[side], held, loads, tell)
+        whole, _ = _moved(nodes, cells, materials[side], held, loads)
         work = np.einsum("np,np->p", loads, np.where(loads != 0, moved - whole, 0.0))
         halves = 2 if len(own_pits) < len(pits[side]) else 1  # the same pits in the other half do as much
-        extra = halves * work / (force * contact.approach)
+        extra = halves * work / (case.forces[0] * contact.approach)
     moved = moved.reshape(-1, 3, len(lines)).transpose(2, 1, 0)
     load = np.array([sum(one[3].sum() for one in found.get(0, ())) for found in lines])
     stress = np.array([nodal_stress(nodes, kept, one, materials[side]) for one in moved])
@@ -218,22 +191,14 @@ def _mirrored(gear, lower, upper):
     return sorted(map(rounded, lower)) == sorted(map(rounded, in_both_halves(gear, upper, "herringbone")))
 
 
-def held_by(pair, supports, force, face):
-    """Supports of a pair's hubs as the contact in three dimensions takes them."""
-    held = supports_of(pair, supports, (force,), face)
-    check_integral(pair, held, "ritz3d", face)
-    return held
-
-
-def contact_of(pair, force, materials, phases, order, **options):
-    """`Contact3D` at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one.
-
-    `options` of `gearfe.contact.solid.pair_stiffness3d`; damage is numbered in each gear's own frame.
-    """
-    if phases is not None:
-        return pair_stiffness3d(pair, force, materials, np.atleast_1d(phases), **options)
-    end = pair.eps_alpha + overlap(pair, options["face"], options["groove"])
-    found = pair_stiffness3d(pair, force, materials, -order + end * (np.arange(16) + 0.5) / 16, **options)
+def contact_of(case, phases, order, *, extended=True):
+    """`Contact3D` of a case at `phases`, or at that of 16 where pair `order` carries most, of several alike at the middle one."""
+    check_integral(case, "ritz3d")
+    given = phases is not None
+    at = phases if given else -order + (case.pair.eps_alpha + case.overlap()) * (np.arange(16) + 0.5) / 16
+    found = pair_stiffness3d(case, at, extended=extended)
+    if given:
+        return found
     carried = found.load[:, found.order == order].sum(axis=1)
     alike = np.flatnonzero(carried > (1 - 1e-9) * carried.max())  # a pair that is alone carries the same at several phases
     best = int(alike[alike.size // 2])
@@ -274,13 +239,11 @@ def _held(sector, number):
     return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
 
 
-def _moved(nodes, cells, material, held, loads, tell):
+def _moved(nodes, cells, material, held, loads):
     """Displacements ``(3 nodes, phases)`` [mm], nan where there is no cell, and the number of unknowns."""
     there = np.unique(cells)
     free = np.setdiff1d(there, held)
     made = plan(3 * free.size)
-    if tell:
-        tell(made)
     rows = (3 * free[:, None] + np.arange(3)).ravel()
     solve = factor(assemble(nodes, cells, material, free, tet_stiffness), made)
     moved = np.full(loads.shape, np.nan)

@@ -7,19 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from geometry.pair.flanks import flank_forms
-
+from ..case import Case
 from ..elements.asked import checked_refine
 from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.contact_plot import plot_contact
 from ..scene.load import ScenePair
 from ..steps import part
-from ..stiffness.inputs import by_gear
 from ..stiffness.limits import check_section
 from ..threads import single
 from .fields import MISES, loaded_phase, stressed_gears, write_vtu
-from .holed import contact_of, held_by, pressed_tooth, tooth_field
+from .holed import contact_of, pressed_tooth, tooth_field
 from .window import drawing_library, plotting
 
 COLOURS, ABOVE = "viridis", "#d55e00"  # even steps, told apart by the colour-blind too; beyond the scale
@@ -41,7 +39,7 @@ EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (
 
 @single
 def render_stress(
-    scene_pair: ScenePair,
+    pair: Case | ScenePair,
     path: str | os.PathLike[str],
     *,
     case: str | None = None,
@@ -59,11 +57,11 @@ def render_stress(
 
     Parameters
     ----------
-    scene_pair : ScenePair
+    pair : Case or ScenePair
+        What is loaded; of a scene's pair its case of damage that is called `case`, default healthy.
     path : path
         A ``.png`` file, or ``.vtu``: mesh, displacement and stress.
     case : str, optional
-        Case of damage of the pair; default healthy.
     phase : float, optional
         Mesh phase; default where the damaged tooth carries most, 0 for healthy spur gears.
     size : tuple of int
@@ -87,26 +85,25 @@ def render_stress(
     suffix, refine = suffix_of(path, "stress"), checked_refine(refine)
     if suffix == ".png":
         drawing_library()
-    damage = scene_pair.case(case).get("damage")
-    pitted = any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
-    wide = bool(scene_pair.pair.gear_1.beta) or scene_pair.wide or pitted
+    shown = pair.case(case) if isinstance(pair, ScenePair) else pair
+    wide = bool(shown.pair.gear_1.beta or shown.why_wide)
     _check_size(wide, refine)
     with part("", 0.0, 0.85):
-        fields, told = (_tooth if wide else _gears)(scene_pair, damage, phase, refine)
+        fields, told = (_tooth if wide else _gears)(shown, phase, refine)
     told |= {"root": max(field.root for field in fields), "largest": max(float(field.mises.max()) for field in fields)}
     told["text"] = _text(title or (case or ""), told)
     if suffix == ".vtu":
         write_vtu(path, fields)
     else:
         with part("picture", 0.85, 1.0):
-            (_draw_tooth if wide else _draw_gears)(scene_pair.pair, fields, told, path, size)
+            (_draw_tooth if wide else _draw_gears)(shown.pair, fields, told, path, size)
     return told
 
 
-def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
+def render_contact(case, path, *, phase=None, title=""):
     """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
 
-    Parameters as of `render_stress`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
+    `case` is a `Case`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
 
     Returns
     -------
@@ -114,15 +111,8 @@ def render_contact(scene_pair, path, *, case=None, phase=None, title=""):
         ``phase``, ``k`` [N/m], ``pressure`` (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the
         pressure is unbounded, and the largest is that of the rest; nan if nothing else touches.
     """
-    cracks, pits = by_gear(scene_pair.pair, scene_pair.case(case).get("damage"))
-    order = next((sense * one.tooth for sense, i in ((1, 0), (-1, 1)) for one in (*pits[i], *cracks[i])), 0)
-    face = scene_pair.face or ("helical" if scene_pair.pair.gear_1.beta else "spur")
-    phases = None if phase is None else [phase]
-    run = {"pits": pits, "cracks": cracks, "face": face, "groove": scene_pair.groove}
-    run["flanks"] = flank_forms(scene_pair.pair, scene_pair.flanks, scene_pair.misalignment)
-    run["supports"] = held_by(scene_pair.pair, scene_pair.supports, scene_pair.force, face)
-    found = contact_of(scene_pair.pair, scene_pair.force, scene_pair.materials, phases, order, **run)
-    plot_contact(scene_pair.pair, found, path=path, pits=pits[0], title=title or (case or ""))
+    found = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
+    plot_contact(case.pair, found, path=path, pits=case.pits[0], title=title)
     pressure = found.cells[0].pressure
     corner = np.isnan(pressure)
     largest = math.nan if corner.all() else float(pressure[~corner].max())
@@ -137,19 +127,15 @@ def _check_size(wide, refine):
         plan(int(LEAST * refine**2.5))
 
 
-def _gears(scene_pair, damage, phase, refine):
-    phase = loaded_phase(scene_pair, damage) if phase is None else phase
-    fields = stressed_gears(scene_pair, phase, refine, damage)
-    scale = enlarged(max(field.opening for field in fields), scene_pair.pair.gear_1.m_n)
-    return fields, {"phase": phase, "load": scene_pair.force, "enlarged": scale, "where": "on the pair"}
+def _gears(case, phase, refine):
+    phase = loaded_phase(case) if phase is None else phase
+    fields = stressed_gears(case, phase, refine)
+    scale = enlarged(max(field.opening for field in fields), case.pair.gear_1.m_n)
+    return fields, {"phase": phase, "load": case.force, "enlarged": scale, "where": "on the pair"}
 
 
-def _tooth(scene_pair, damage, phase, refine):
-    phases = None if phase is None else [phase]
-    names = ("face", "groove", "flanks", "misalignment", "supports")
-    options = {"phases": phases} | {name: getattr(scene_pair, name) for name in names}
-    options |= {"refine": refine, "sizes": FINE, "strip": STRIP}
-    made = pressed_tooth(scene_pair.pair, scene_pair.force, scene_pair.materials, damage, **options)
+def _tooth(case, phase, refine):
+    made = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
     field = tooth_field(made)
     told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
     return [field], told | {"enlarged": enlarged(field.opening, made.sector.gear.m_n)}

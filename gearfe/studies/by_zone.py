@@ -4,29 +4,25 @@ import math
 import os
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 
+from ..case import Case, case_of
 from ..markdown import table_row
-from ..material import Material
-from ..scene.load import Scene, ScenePair, load_scene
-from ..steps import part, steps
+from ..scene.load import Scene, load_scene
+from ..steps import steps
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.inputs import by_gear, forces_of, two_materials, why_solid
 from ..stiffness.limits import check_count
 from ..stiffness.methods import METHODS, ROWS, fitted
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from ..units import in_newton_per_um
 from .losses import (
     damage_phases,
-    damaged_tooth,
     engaged_phases,
     headline,
     kind_of,
@@ -162,7 +158,7 @@ class Comparison:
 
 
 def compare(
-    scene: Scene | GearPair | str | os.PathLike[str] | None = None,
+    scene: Scene | Case | GearPair | str | os.PathLike[str] | None = None,
     pair: str | GearPair | None = None,
     *,
     case: str | None = None,
@@ -170,12 +166,7 @@ def compare(
     phases: int | ArrayLike = 64,
     refine: float = 1.0,
     reference: str | None = None,
-    force: float | None = None,
-    torque: float | None = None,
-    material: Material | tuple[Material, Material] | None = None,
-    damage: Mapping[str, Any] | None = None,
-    face: str | None = None,
-    groove: float = 0.0,
+    **given: Any,
 ) -> Comparison:
     """Compare every formulation that models it with the reference, on one pair of a scene or of your own, healthy or damaged.
 
@@ -184,8 +175,8 @@ def compare(
 
     Parameters
     ----------
-    scene : Scene, str or path, optional
-        A scene, the name of a built-in one, or its file; or a pair of your own, see `pair`.
+    scene : Scene, str, path or Case, optional
+        A scene, the name of a built-in one, or its file; or a `Case`, or a pair of your own, see `pair`.
     pair : str or GearPair, optional
         Name of the scene's pair; default the first. Or, without a scene, a pair of your own with `force` or `torque`, and
         `material`.
@@ -201,8 +192,9 @@ def compare(
         Resolution of the reference.
     reference : str, optional
         ``"fe3d"``: finite elements of whole gears, minutes for each; or another of fe and ritz3d than the default.
-    force, torque, material, damage, face, groove
-        Of a pair of your own, as of `mesh_stiffness`: force along the line of action [N] or torque on the pinion [N m].
+    **given
+        Of a pair of your own, as of `Case`: ``force`` along the line of action [N] or ``torque`` on the pinion [N m],
+        ``material``, ``damage``, ``face``, ``groove``, ``flanks`` and so on.
 
     Returns
     -------
@@ -214,36 +206,31 @@ def compare(
     ValueError
         If there is no such scene, pair or case, or a pair of your own comes without its load or material.
     """
-    own_case = {"force": force, "torque": torque, "material": material, "damage": damage, "face": face, "groove": groove}
-    chosen, pair_name, case = _chosen(scene, pair, case, own_case)
-    run = chosen.case(case)
-    methods, left_out = _methods(chosen, run.get("damage", {}), reference)
+    chosen, pair_name = _chosen(scene, pair, case, given)
+    methods, left_out = _methods(chosen, reference)
     own = own_models(models, taken=(REFERENCE, *FORMULATIONS))
     cycle = None
-    if case and np.ndim(phases) == 0:
-        which = (chosen.pair, check_count(phases), damaged_tooth(run["damage"]))
-        shape = {"face": chosen.face, "groove": chosen.groove}
-        phases, cycle = engaged_phases(*which, **shape), damage_phases(*which, **shape)
-    run |= {"phases": phases, "span": "cycle"}
-    with part("", 0.0, 0.0):
-        mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
-    for method in methods:
+    if chosen.damaged and np.ndim(phases) == 0:
+        count = check_count(phases)
+        phases, cycle = engaged_phases(chosen, count), damage_phases(chosen, count)
+    for method in (*methods, "ritz"):  # imports what methods load lazily
         METHODS[method].load()
     curves: dict[str, StiffnessCurve] = {}
     seconds, healthy, doubt = {}, {}, {}
-    work = (*methods, ESTIMATE, *([HEALTHY] if case else []))
+    work = (*methods, ESTIMATE, *([HEALTHY] if chosen.damaged else []))
     cost = {methods[0]: 3.0, ESTIMATE: 6.0, HEALTHY: 6.0}
     for method in steps(work, lambda name: name, [cost.get(name, 0.3) for name in work]):
         if method == ESTIMATE:
-            curves[methods[0]] = mesh_stiffness(**run, method=methods[0], refine=refine, error=True)
+            curves[methods[0]] = solve(chosen, Solve(methods[0], phases, refine=refine, error=True))
             continue
         if method == HEALTHY:
-            healthy, doubt = _healthy(run, curves, methods[0], refine, cycle)
+            healthy, doubt = _healthy(chosen, curves, Solve(methods[0], phases, refine=refine), cycle)
             continue
         started = time.perf_counter()
-        options: dict[str, Any] = {"refine": refine} if method == methods[0] else {}
+        known, variants, _ = fitted(method, chosen)
+        how = Solve(method, phases, variants=variants, cache=False, refine=refine if method == methods[0] else 1.0)
         try:
-            curves[method] = mesh_stiffness(**fitted(method, run)[0], method=method, cache=False, **options)
+            curves[method] = solve(known, how)
         except ValueError as error:
             if method == methods[0]:
                 raise
@@ -254,70 +241,66 @@ def compare(
         started = time.perf_counter()
         curves[name] = own_curve(name, model, chosen.pair, curves[methods[0]])
         seconds[name] = time.perf_counter() - started
-    said = (told_damage(chosen.pair, run["damage"]), kind_of(run["damage"])) if case else ("", "")
+    said = (told_damage(chosen.pair, chosen.damage), kind_of(chosen.damage)) if chosen.damaged else ("", "")
     return Comparison(pair_name, curves, seconds, healthy, doubt, *said, left_out, cycle)
 
 
-def _healthy(run, curves, reference, refine, cycle):
-    """Curves of the same methods without the damage, and the doubt of what it takes by the reference."""
-    whole, out = {name: value for name, value in run.items() if name != "damage"}, {}
+def _healthy(chosen, curves, reference, cycle):
+    """Curves of the same methods without the damage, and the doubt of what it takes by the reference (a `Solve`)."""
+    out = {}
     for method in curves:
-        options = {"refine": refine, "error": method == "fe3d"} if method == reference else {}
-        out[method] = mesh_stiffness(**fitted(method, whole)[0], method=method, **options)
-    run = run if cycle is None else run | {"phases": cycle}
-    two = (within(one[reference], cycle) for one in (out, curves))
-    return out, loss_errors(*two, reference, run, refine)
+        known, variants, _ = fitted(method, chosen.healthy)
+        how = replace(reference, method=method, variants=variants)
+        how = replace(how, error=method == "fe3d") if method == reference.method else replace(how, refine=1.0)
+        out[method] = solve(known, how)
+    two = (within(one[reference.method], cycle) for one in (out, curves))
+    return out, loss_errors(*two, chosen, reference if cycle is None else replace(reference, phases=cycle))
 
 
-def _chosen(scene, pair, case, own):
-    """`ScenePair`, its name and its case: of a scene, or of a pair of one's own."""
-    if isinstance(scene, GearPair) and pair is None:
+def _chosen(scene, pair, case, given):
+    """`Case` and its name: of a scene, or of one's own."""
+    if isinstance(scene, (Case, GearPair)) and pair is None:
         scene, pair = None, scene
-    if isinstance(pair, GearPair):
+    if isinstance(pair, (Case, GearPair)):
         if scene is not None or case is not None:
             raise ValueError("a pair of your own has no scene and no case: leave them out, and give its damage as damage=")
-        return _own(pair, **own)
-    given = [name for name, value in own.items() if value not in (None, 0.0)]
-    if given:
-        raise ValueError(f"{given[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
+        return _own(pair, given)
+    stated = [name for name, value in given.items() if value not in (None, 0.0)]
+    if stated:
+        raise ValueError(f"{stated[0]} is stated by the scene: leave it out, or give pair=GearPair(...) instead of a scene")
     if isinstance(scene, (str, os.PathLike)):
         scene = load_scene(scene)
     if not isinstance(scene, Scene):
         raise ValueError(
             f"scene = {scene!r}, but give a Scene, the name or file of one, or pair=GearPair(...) with force= and material="
         )
-    return scene.pair(pair), pair or next(iter(scene.pairs)), case
+    return scene.case(pair, case), pair or next(iter(scene.pairs))
 
 
-def _own(pair, *, force, torque, material, damage, face, groove):
-    if material is None or (force is None and torque is None):
+def _own(pair, given):
+    load = [given.get(name) for name in ("force", "torque")]
+    if isinstance(pair, GearPair) and (given.get("material") is None or load == [None, None]):
         raise ValueError(
             "a pair of your own needs its load and material: force= [N] or torque= [N m], and material=Material(...)"
         )
-    forces = forces_of(pair, force, torque)
-    if len(forces) > 1:
-        raise ValueError(f"force = {force!r}, torque = {torque!r}, but one load is compared at a time")
-    by_gear(pair, damage)
-    damage = {side: [one] if isinstance(one, (Crack, Pit)) else list(one or ()) for side, one in (damage or {}).items()}
-    cases = {"given": damage} if any(damage.values()) else {}
-    made = ScenePair(pair, two_materials(material), forces[0], face, groove, cases)
-    return made, f"{pair.gear_1.z}/{pair.gear_2.z}", "given" if cases else None
+    made = case_of(pair, **given)
+    if len(made.forces) > 1:
+        raise ValueError(f"force = {load[0]!r}, torque = {load[1]!r}, but one load is compared at a time")
+    return replace(made, force=made.forces[0]), f"{made.pair.gear_1.z}/{made.pair.gear_2.z}"
 
 
-def _methods(chosen, damage, reference):
-    """Reference and formulations for a pair of a scene that have it whole, a ring's body included; why others are left out."""
+def _methods(case, reference):
+    """Reference and formulations for a case that have it whole, a ring's body included; why others are left out."""
     if reference not in (None, *REFERENCES):
         raise ValueError(f"reference = {reference!r}, but it must be one of {', '.join(REFERENCES)}")
-    found = [one for own in damage.values() for one in own]
-    solid = why_solid(chosen.pair, chosen.face, found)
-    solid = solid or ("flanks or shafts change the load along the width" if chosen.wide else "")
+    solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")
     first = reference or (REFERENCE_SOLID if solid else REFERENCE)
-    rows = [row for row in ROWS if row.rings == "yes" or not chosen.pair.gear_2.internal]
+    rows = [row for row in ROWS if row.rings == "yes" or not ring]
     if solid:
         others = [row.name for row in rows if row.kind == "sum" or (row.name == REFERENCE_SOLID)]
     else:
-        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not found)]
+        others = [row.name for row in rows if row.name in (REFERENCE, *FORMULATIONS) and (row.cracks or not case.damaged)]
     methods = tuple(dict.fromkeys([first, *others]))
-    return methods, {row.name: why_not(row, chosen.pair, found, solid) for row in ROWS if row.name not in methods}
+    return methods, {row.name: why_not(row, case, solid) for row in ROWS if row.name not in methods}

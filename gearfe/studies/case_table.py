@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..case import overlap
 from ..markdown import table_row
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
 from ..steps import steps
-from ..stiffness.inputs import overlap, why_solid
 from ..stiffness.methods import METHODS, SUMS, fitted
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from ..units import in_newton_per_um
 from .losses import damage_phases, damaged_tooth
 
@@ -172,21 +172,19 @@ def damage_cycle(chosen):
 
 def _cycle(chosen, phases):
     """Phases of tooth 0 of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
-    shape = {"face": chosen.face, "groove": chosen.groove}
-    return damage_phases(chosen.pair, phases, **shape) if phases else damage_cycle(chosen)
+    return damage_phases(chosen.case(), phases) if phases else damage_cycle(chosen)
 
 
 def is_wide(chosen):
     """Whether a scene's pair needs three dimensions in any of its cases."""
-    damage = [one for case in chosen.damage.values() for found in case.values() for one in found]
-    return chosen.wide or bool(why_solid(chosen.pair, chosen.face, damage))
+    return any(chosen.case(case).why_wide for case in (None, *chosen.damage))
 
 
 def case_curve(chosen, case, method, phase, **options):
-    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `mesh_stiffness`."""
-    run, _ = fitted(method, chosen.case(case) | {"phases": phase, "method": method} | options)
+    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `Solve`."""
+    known, variants, _ = fitted(method, chosen.case(case))
     started = time.perf_counter()
-    curve = mesh_stiffness(**run)
+    curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
     seconds = time.perf_counter() - started
     own = np.flatnonzero(curve.order == damaged_tooth(chosen.damage.get(case)))
     tooth = curve.force[:, own].sum(axis=1) / curve.lte

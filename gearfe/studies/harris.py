@@ -1,31 +1,28 @@
 """S. L. Harris's map of a scene's pair: transmission error under a row of loads, with its flanks and beside plain involutes."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from ..case import Case
 from ..stiffness.transmission_error import TransmissionError, transmission_error
 
 
-def harris(run: dict[str, Any], forces: Sequence[float], **options: Any) -> tuple[TransmissionError, TransmissionError | None]:
+def harris(case: Case, **options: Any) -> tuple[TransmissionError, TransmissionError | None]:
     """Transmission error of a pair as it is and, if its flanks are modified, by the same method of the pair without `flanks`.
 
     Parameters
     ----------
-    run : dict
-        As of `gearfe.scene.load.ScenePair.case`; its force is left aside.
-    forces : sequence of float
-        Along the line of action [N].
+    case : Case
+        Under several loads.
     **options
-        As of `gearfe.mesh_stiffness`.
+        As of `gearfe.Solve`.
     """
-    run = {name: value for name, value in run.items() if name != "force"}
-    found = transmission_error(forces=forces, **run, **options)
-    if not run.pop("flanks", None):
+    found = transmission_error(case, **options)
+    if not case.flanks:
         return found, None
     options["method"] = found.curves[0].meta["method"]
-    return found, transmission_error(forces=forces, **run, **options)
+    return found, transmission_error(case, flanks=None, **options)
 
 
 def harris_table(found: TransmissionError, plain: TransmissionError | None, r_b: float) -> str:

@@ -7,7 +7,7 @@ tooth is in contact all the time, and a healthy pair has the same mean over it a
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,46 +18,47 @@ from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
+from ..case import Case
 from ..elements.asked import COARSEST
 from ..markdown import aligned, table_row
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import coarser
-from ..stiffness.inputs import overlap, phase_array
 from ..stiffness.methods import METHODS, RING_FOUNDATIONS, Method
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.phases import phase_array
+from ..stiffness.solve import Solve, solve
 from ..units import in_newton_per_um
 
+Damage = Mapping[str, Iterable[Crack | Pit]] | None
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
 LARGEST = "most at a phase"  # row of the phase at which most is lost
 
 
-def damaged_tooth(damage: Mapping[str, Iterable[Crack | Pit]] | None) -> int:
+def damaged_tooth(damage: Damage) -> int:
     """Number of the tooth that the first crack or pit of a case is in; 0 without damage."""
     return next((one.tooth for own in (damage or {}).values() for one in own), 0)
 
 
-def damage_phases(pair: GearPair, phases: int, tooth: int = 0, *, face: str | None = None, groove: float = 0.0) -> NDArray:
-    """Phases ``(phases,)`` of the mesh cycle in which a tooth is in the middle of its engagement.
+def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
+    """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
     They are multiples of ``1 / phases``: those of a healthy cycle, whole cycles further on.
 
     Examples
     --------
-    >>> from gearfe import Gear, GearPair
+    >>> from gearfe import Case, Gear, GearPair, Material
     >>> rack = dict(m_n=2.0, alpha_n=0.349, b=20.0)
     >>> pair = GearPair(Gear(z=21, r_bore=7.4, **rack), Gear(z=31, r_bore=11.4, **rack))
-    >>> print(f"{pair.eps_alpha:.3f}", damage_phases(pair, 4))
+    >>> print(f"{pair.eps_alpha:.3f}", damage_phases(Case(pair, 1000.0, Material(E=207e3, nu=0.3)), 4))
     1.615 [0.5  0.75 1.   1.25]
     """
-    face = face or ("helical" if pair.gear_1.beta else "spur")
-    middle = (pair.eps_alpha + overlap(pair, face, groove)) / 2 - tooth
+    tooth = damaged_tooth(case.damage) if tooth is None else tooth
+    middle = (case.pair.eps_alpha + case.overlap()) / 2 - tooth
     return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
-def engaged_phases(pair: GearPair, phases: int, tooth: int = 0, *, face: str | None = None, groove: float = 0.0) -> NDArray:
-    """Phases ``(n,)`` of the whole engagement of a tooth and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
-    face = face or ("helical" if pair.gear_1.beta else "spur")
-    return phase_array(phases, "tooth", pair, overlap(pair, face, groove)) - tooth
+def engaged_phases(case: Case, phases: int) -> NDArray:
+    """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
+    return phase_array(phases, "tooth", case.pair, case.overlap()) - damaged_tooth(case.damage)
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:
@@ -85,22 +86,21 @@ def zone_table(curve: StiffnessCurve) -> str:
     return aligned("\n".join(lines))
 
 
-def beside_health(curve: StiffnessCurve, run: dict[str, Any], phases: int) -> str:
+def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
     """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
 
     Parameters
     ----------
     curve : StiffnessCurve
         Over the whole engagement of the damaged tooth (`engaged_phases`).
-    run : dict
-        What it was solved with: arguments of `mesh_stiffness`, with `damage`.
-    phases : int
-        Per mesh cycle.
+    case : Case
+        With its damage.
+    how : Solve
+        As the curve was solved, its phases a number per mesh cycle.
     """
-    pair, damage, shape = run["pair"], run["damage"], {name: run[name] for name in ("face", "groove")}
-    cycle = damage_phases(pair, phases, damaged_tooth(damage), **shape)
-    healthy = mesh_stiffness(**{name: value for name, value in run.items() if name != "damage"} | {"phases": cycle})
-    hurt, kind = within(curve, cycle), kind_of(damage)
+    cycle = damage_phases(case, cast(int, how.phases))
+    healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
+    hurt, kind = within(curve, cycle), kind_of(case.damage)
     found, doubt, before, after = loss(healthy, hurt), hurt.zone_errors(), healthy.zones(), hurt.zones()
     head = ["zone", "healthy [N/um]", f"{kind} [N/um]", *(["error at most about"] if doubt else []), "loss"]
     lines = [table_row(head), "|---" * len(head) + "|"]
@@ -108,7 +108,7 @@ def beside_health(curve: StiffnessCurve, run: dict[str, Any], phases: int) -> st
         two = [in_newton_per_um(one[zone]) if zone in one else "" for one in (before, after)]
         about = [f"{100 * doubt[zone]:.2f} %" if zone in doubt else ""] if doubt else []
         lines.append(table_row([zone, *two, *about, f"{100 * lost:.1f} %"]))
-    return f"{told_damage(pair, damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
+    return f"{told_damage(case.pair, case.damage)}; {told_cycle(cycle, kind)}\n" + aligned("\n".join(lines))
 
 
 def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
@@ -117,30 +117,28 @@ def loss(healthy: StiffnessCurve, hurt: StiffnessCurve) -> dict[str, float]:
     return {zone: 1 - after[zone] / before[zone] for zone in before} | {LARGEST: float((1 - hurt.k / healthy.k).max())}
 
 
-def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, method: str, case: dict, refine: float) -> dict[str, float]:
+def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: Solve) -> dict[str, float]:
     """Estimated discretisation error of the losses by zone: how far coarser solves of both gears move them.
 
     The differences from all coarser solves that an estimate of k looks at are added; empty if there are none so coarse. Of finite
     elements in three dimensions, which take minutes, the relative errors of both stiffnesses are added: a much wider bound.
     """
-    found = loss(healthy, hurt)
+    found, method = loss(healthy, hurt), str(how.method)
     if method == "fe3d":
         before, after = healthy.zone_errors(), hurt.zone_errors()
         widest = {zone: (1 - found[zone]) * (before[zone] + after[zone]) for zone in before.keys() & after.keys()}
         return widest | {LARGEST: max(widest.values(), default=math.nan)}
-    whole = {name: value for name, value in case.items() if name != "damage"}
     away = dict.fromkeys(found, 0.0)
-    rougher = coarser(refine, METHODS[method].order)
+    rougher = coarser(how.refine, METHODS[method].order)
     if any(options["refine"] < COARSEST for options in rougher):
         return {}
     for options in rougher:
-        two = (mesh_stiffness(**run, method=method, **options) for run in (whole, case))
-        rough = loss(*two)
+        rough = loss(*(solve(one, replace(how, **options)) for one in (case.healthy, case)))
         away = {zone: away[zone] + abs(found[zone] - rough[zone]) for zone in away}
     return away
 
 
-def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
+def told_damage(pair: GearPair, damage: Damage) -> str:
     """Damage in words.
 
     Examples
@@ -151,6 +149,7 @@ def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Crack | Pit]]) -> 
     '3.07 mm crack at 45 degrees (level 0.3)'
     """
     gears = {"pinion": pair.gear_1, "wheel": pair.gear_2}
+    damage = damage or {}
     cracks = [(gears[side], one) for side, own in damage.items() for one in own if isinstance(one, Crack)]
     pits = sum(isinstance(one, Pit) for own in damage.values() for one in own)
     said = [_told_crack(*cracks[0])] if len(cracks) == 1 else [f"{len(cracks)} cracks"] if cracks else []
@@ -166,9 +165,9 @@ def _told_crack(gear: Gear, crack: Crack) -> str:
     return f"{path_length(gear, crack):.3g} mm crack {angle} (level {crack.level:.3g})"
 
 
-def kind_of(damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
+def kind_of(damage: Damage) -> str:
     """What a tooth with such damage is called: cracked, pitted, or damaged if it is both."""
-    kinds = {type(one) for own in damage.values() for one in own}
+    kinds = {type(one) for own in (damage or {}).values() for one in own}
     return {frozenset([Crack]): "cracked", frozenset([Pit]): "pitted"}.get(frozenset(kinds), "damaged")
 
 
@@ -202,8 +201,9 @@ def percent_with_doubt(value: float, doubt: float) -> str:
     return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
 
 
-def why_not(row: Method, pair: GearPair, damage: Iterable[Crack | Pit], solid: str) -> str:
-    """Why a comparison has no column of a method; `solid` says why the pair needs three dimensions, if it does."""
+def why_not(row: Method, case: Case, solid: str) -> str:
+    """Why a comparison has no column of a method; `solid` says why the case needs three dimensions, if it does."""
+    pair = case.pair
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
         return "not for rings"
     if pair.gear_2.internal and row.rings != "yes":
@@ -214,4 +214,4 @@ def why_not(row: Method, pair: GearPair, damage: Iterable[Crack | Pit], solid: s
         return "nothing changes along the width; of narrow teeth ask for it: --reference ritz3d (reference='ritz3d')"
     if solid and row.kind == "section":
         return f"a transverse section, but {solid}"
-    return "for healthy gears only" if tuple(damage) and not row.cracks else "left out"
+    return "for healthy gears only" if case.damaged and not row.cracks else "left out"

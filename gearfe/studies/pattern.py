@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..case import Case
 from ..contact.solid import Contact3D
 from ..pictures.contact_plot import plot_contact
-from ..scene.load import ScenePair
-from ..stiffness.inputs import by_gear
 from ..stiffness.pattern import contact_pattern
-from .losses import damage_phases, damaged_tooth
+from .losses import damage_phases
 
 PLACES = 400  # along the width
 
@@ -49,34 +48,30 @@ class Pattern:
         return "\n".join(lines)
 
 
-def pattern_of(chosen: ScenePair, case: str | None = None, phases: int = 24) -> Pattern:
-    """Contact pattern of a scene's pair with its flanks, misalignment, supports and, if a case is given, its damage.
+def pattern_of(case: Case, phases: int = 24) -> Pattern:
+    """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one.
 
     Raises
     ------
     ValueError
-        If there is no such case, or the pair can not be solved.
+        If it can not be solved.
     """
-    run = chosen.case(case)
-    shape = {name: run[name] for name in ("face", "groove")}
-    cycle = damage_phases(chosen.pair, phases, damaged_tooth(run.get("damage")), **shape) if case else phases
-    contact = contact_pattern(**run, phases=cycle)
+    contact = contact_pattern(case, phases=damage_phases(case, phases) if case.damaged else phases)
     pressures = [np.where(np.isnan(cells.pressure), -math.inf, cells.pressure) for cells in contact.cells]
     most = int(np.argmax([own.max() for own in pressures]))
     cells, at = contact.cells[most], int(np.argmax(pressures[most]))
     corners = sum(bool(((one.corner > 0) & (one.load > 0)).any()) for one in contact.cells)
     load = face_load(contact)[1]
     return Pattern(
-        contact, float(pressures[most][at]), float(contact.phase[most]), math.hypot(chosen.pair.gear_1.r_b, cells.roll_1[at]),
+        contact, float(pressures[most][at]), float(contact.phase[most]), math.hypot(case.pair.gear_1.r_b, cells.roll_1[at]),
         float(cells.z[at]), float(load.max() / load.mean()), corners,
     )  # fmt: skip
 
 
-def render_pattern(chosen: ScenePair, path: str | os.PathLike[str], *, case: str | None = None, title: str = "") -> Pattern:
-    """Picture of a pair's contact pattern (`gearfe.plot_contact`); gives what `pattern_of` does."""
-    found = pattern_of(chosen, case)
-    pits = by_gear(chosen.pair, chosen.case(case).get("damage"))[1]
-    plot_contact(chosen.pair, found.contact, None, path, pits[0], title)
+def render_pattern(case: Case, path: str | os.PathLike[str], *, title: str = "") -> Pattern:
+    """Picture of a case's contact pattern (`gearfe.plot_contact`); gives what `pattern_of` does."""
+    found = pattern_of(case)
+    plot_contact(case.pair, found.contact, None, path, case.pits[0], title)
     return found
 
 

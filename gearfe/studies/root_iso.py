@@ -6,8 +6,8 @@ from typing import cast
 
 from geometry.pair.gear_pair import GearPair
 
+from ..case import Case
 from ..elements.loaded_tooth import root_stress
-from ..scene.load import ScenePair
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,15 +91,15 @@ def _beyond(pair):
     return "" if 1 < pair.eps_alpha < 2 else f"this one has {pair.eps_alpha:.4g}"
 
 
-def told_root(chosen: ScenePair) -> list[str]:
-    """Root stress of both healthy gears of a scene's pair by finite elements, beside ISO 6336-3; none where it is not known."""
-    if _beyond(chosen.pair):
+def told_root(case: Case) -> list[str]:
+    """Root stress of both healthy gears of a pair by finite elements, beside ISO 6336-3; none where it is not known."""
+    if _beyond(case.pair):
         return []
-    width = min(chosen.pair.gear_1.b, chosen.pair.gear_2.b)
+    width = min(case.pair.gear_1.b, case.pair.gear_2.b)
     lines = ["root stress of one tooth under the whole force at its outer point of single contact, as ISO 6336-3 has it:"]
     for i, side in enumerate(("pinion", "wheel")):
-        gear, norm = (chosen.pair.gear_1, chosen.pair.gear_2)[i], iso_root_stress(chosen.pair, chosen.force, side)
-        found = cast(float, root_stress(gear, norm.radius, chosen.force / width, chosen.materials[i]))
+        gear, norm = (case.pair.gear_1, case.pair.gear_2)[i], iso_root_stress(case.pair, case.forces[0], side)
+        found = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
         away, factors = 100 * (norm.stress / found - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
         lines.append(f"  {side} {found:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")
     return lines

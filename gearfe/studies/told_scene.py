@@ -3,14 +3,12 @@
 import math
 from collections.abc import Iterator
 
-from geometry.pair.flanks import flank_forms
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
 from ..scene.load import Scene, ScenePair
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.inputs import by_gear, choose, overlap
-from ..stiffness.supported import supports_of
+from ..stiffness.solve import Solve
 from ..supports.shaft import Shaft
 from ..supports.support import Support
 from ..units import in_newton_per_um
@@ -54,20 +52,20 @@ def told_gear(gear: Gear) -> str:
 
 
 def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
-    pair, face = chosen.pair, chosen.face or ("helical" if chosen.pair.gear_1.beta else "spur")
-    across = f", overlap ratio {overlap(pair, face, chosen.groove):.3f}" if face != "spur" else ""
+    pair, case = chosen.pair, chosen.case()
+    across = f", overlap ratio {case.overlap():.3f}" if case.runs != "spur" else ""
     yield (
         f"pair {name}: {pair.gear_1.z} and {pair.gear_2.z} teeth, {pair.a:.5g} mm apart, "
         f"contact ratio {pair.eps_alpha:.3f}{across}; {told_load(chosen)}"
     )
-    if face == "herringbone":
+    if case.runs == "herringbone":
         groove = f" with a groove of {chosen.groove:g} mm" if chosen.groove else ""
         yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
     yield from (f"  {text}" for text in told_details(chosen))
-    for case in (None, *chosen.damage):
-        damage = chosen.damage.get(case, {}) if case else {}
-        what = "healthy" if case is None else f"case {case}: {', '.join(_where(chosen, damage))}"
-        yield f"  {what}; {_method(chosen, damage)}"
+    for which in (None, *chosen.damage):
+        what = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
+        row, why = Solve().chosen(chosen.case(which))
+        yield f"  {what}; solved by {row.name}: {why}"
     yield from (f"  {note}" for note in pair.notes)
 
 
@@ -136,15 +134,6 @@ def _where(chosen: ScenePair, damage: dict) -> Iterator[str]:
     for side, own in damage.items():
         teeth = sorted({one.tooth for one in own})
         yield f"{told_damage(chosen.pair, {side: own})} in the {side}'s tooth {' and '.join(map(str, teeth))}"
-
-
-def _method(chosen: ScenePair, damage: dict) -> str:
-    """By which method it is solved unless another is asked for, and why."""
-    forms = flank_forms(chosen.pair, chosen.flanks or None, chosen.misalignment)
-    held = supports_of(chosen.pair, chosen.supports or None, (chosen.force,), chosen.face)
-    cracks, pits = by_gear(chosen.pair, damage)
-    method, why = choose("auto", chosen.pair, cracks, pits, chosen.face, None, forms, held)
-    return f"solved by {method}: {why}"
 
 
 def _machine(scene: Scene) -> str:

@@ -12,9 +12,9 @@ from scipy.stats import qmc
 
 from geometry.pair.gear_pair import GearPair
 
+from ..case import two_materials
 from ..elements.asked import is_number
 from ..material import Material
-from ..stiffness.inputs import two_materials
 from ..stiffness.solve import mesh_stiffness
 from ..studies.batches import batch
 from .space import Space, space_of

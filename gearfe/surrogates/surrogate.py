@@ -14,7 +14,7 @@ from geometry.tooth.gear import Gear
 
 from ..files import Content, check_output, read_npz, save_as
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.inputs import phase_array
+from ..stiffness.phases import phase_array
 from .space import Space, space_of
 from .zoned import DEGREE, at, piece_of
 

@@ -2,7 +2,8 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from ..scene.strict import NUMBER, TEXT, TRUTH, WHOLE
 from ..signal.indicators import indicators
 from ..signal.series import Signal
 from ..stiffness.curve import StiffnessCurve
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from ..store.shards import Field
 from ..studies.vibration import recorded
 
@@ -64,9 +65,9 @@ def curves_of(
     scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
 ) -> list[StiffnessCurve]:
     """Stiffness curves of a case by load; gears are solved once for all cases of this process that share them."""
-    run: dict[str, Any] = scene.pair(pair).case(case) | options
-    run |= {"span": options["span"] or ("tooth" if case else "cycle"), "cache": KEPT, "force": list(forces)}
-    return mesh_stiffness(**run)
+    loaded = replace(scene.case(pair, case), force=tuple(forces))
+    span = options["span"] or ("tooth" if case else "cycle")
+    return cast(list[StiffnessCurve], solve(loaded, Solve(**options | {"span": span, "cache": KEPT})))
 
 
 def stiffness(

@@ -1,0 +1,39 @@
+"""Which phases of the mesh cycle a curve is at: a number of them over a span, or spelled out."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.pair.gear_pair import GearPair
+
+from .limits import check_count, check_range, numbers
+from .turns import check_length, cycles_in
+
+SPANS = ("cycle", "tooth", "revolution", "hunting")
+LONG = SPANS[2:]  # of many cycles
+
+
+def check_span(span: Any) -> None:
+    """ValueError unless the span is known."""
+    if span not in SPANS:
+        raise ValueError(f"span = {span!r}, but it must be one of {', '.join(SPANS)}")
+
+
+def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0) -> NDArray[np.float64]:
+    """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
+    check_span(span)
+    if np.ndim(phases) == 0:
+        phases = check_count(phases)
+        if span == "tooth":
+            return np.arange(math.floor(-0.25 * phases), math.ceil((pair.eps_alpha + overlap + 0.25) * phases) + 1) / phases
+        check_length(pair, span, phases)
+        return np.arange(phases * cycles_in(pair, span)) / phases
+    if span in LONG:
+        raise ValueError(f"span = {span!r} with phases spelled out: give their number in each mesh cycle")
+    phases = numbers("phases", phases, "")
+    if phases.ndim != 1 or phases.size == 0 or not np.isfinite(phases).all():
+        raise ValueError("phases must be a non-empty array of finite numbers")
+    check_range(phases, pair.eps_alpha + overlap)
+    return phases

@@ -1,0 +1,114 @@
+"""What a method does not model is refused, by its row of the table, so that nobody gets something else than was asked for."""
+
+import math
+from inspect import signature
+from itertools import chain
+
+from geometry.damage.crack import check_through
+
+from ..elements.asked import is_number
+from ..energy.closed.plain_sum import plain_sum
+from .limits import check_section, check_teeth
+from .methods import METHODS, RING_FOUNDATIONS, having
+from .supported import check_integral, check_tilt
+
+NO_VARIANTS = (
+    *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
+    "flanks",
+)
+CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
+
+
+def refuses(row, case, how):
+    """Raise ValueError for what the method of a `row` of the table does not model of a case, or has no option for.
+
+    Raises
+    ------
+    ValueError
+        The message says what was given, and which methods have it.
+    RuntimeError
+        If a section of finite elements does not fit into memory.
+    """
+    method = f"method = {row.name!r}"
+    of_case = (told for group in (_teeth, _damage, _flanks) for told in group(row, case, method))
+    for told in chain(of_case, _options(row, how, method)):
+        raise ValueError(told)
+    if row.cracks != "any":
+        check_through([crack for own in case.cracks for crack in own], method)
+    check_teeth(how.teeth, max(case.pair.gear_1.z, case.pair.gear_2.z))
+    _check_variants(row, case, how, method)
+    check_integral(case, row.name)
+    if row.kind != "solid":
+        check_tilt(case, row.name)
+    if row.name == "fe":
+        check_section(how.refine)
+
+
+def _teeth(row, case, method):
+    """How teeth run, and how many are in contact."""
+    if case.face not in (None, *row.faces):
+        yield f"face = {case.face!r} with {method}, a transverse section: use method = 'ritz3d' or a closed form"
+    if case.groove and "herringbone" not in row.faces:
+        yield f"groove = {case.groove} mm with {method}, a transverse section: use face = 'herringbone'"
+    ratio = case.pair.eps_alpha
+    if ratio + case.overlap(case.face or ("helical" if row.kind == "solid" else "spur")) < 1:
+        yield (
+            f"contact ratio {ratio:.4g} < 1 with {method}: without more overlap of helical teeth they lose contact; "
+            "use method = 'ritz3d' and a face wide enough, or change a, addendum or profile shift"
+        )
+    if case.pair.gear_2.internal and row.rings == "no":
+        yield f"{method} has no ring: use method = 'ritz'"
+
+
+def _damage(row, case, method):
+    if case.damaged and not row.cracks and not row.pits:
+        yield f"damage with {method}, which has none: use {having('cracks')}"
+    if any(case.cracks) and not row.cracks:
+        yield f"cracks with {method}, which has none: use {having('cracks')}"
+    if any(case.pits) and not row.pits:
+        yield f"pits with {method}, a transverse section: use {having('pits')}"
+
+
+def _flanks(row, case, method):
+    if case.forms is not None and not row.flanks:
+        yield f"modified flanks with {method}, which takes involutes only: use {having('flanks')}"
+    if row.kind == "section" and any(form.wide for form in case.forms or ()):
+        yield (
+            f"flanks that change along the width, or misalignment, with {method}, which knows no width: use method = 'ritz3d', "
+            "'fe3d' or a plain sum"
+        )
+
+
+def _options(row, how, method):
+    """Options that a method has not: none is ignored in silence."""
+    if how.teeth is not None and not row.teeth:
+        yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
+    if how.variants and not row.variants:
+        yield f"variants = {how.variants!r} with {method}: only {having('variants')} have variants"
+    if how.order is not None and row.order is None:
+        yield f"order = {how.order!r} with {method}, which has no polynomials: only {having('order')} have an order"
+    if how.refine != 1 and not row.converged:
+        yield f"refine = {how.refine:g} with {method}, which has no mesh: only {having('converged')} can be refined"
+    if how.error and not row.error:
+        yield f"error = True with {method}, which has no estimate: only {having('error')} estimate their error"
+    if how.state != "plane strain" and row.kind != "section":
+        yield f"state = {how.state!r} with {method}, which is no plane section: leave it out"
+
+
+def _check_variants(row, case, how, method):
+    """ValueError for variants that the formulas have not, and for rings whose body nobody said what to do with."""
+    variants = how.variants or {}
+    if case.pair.gear_2.internal and row.rings in RING_FOUNDATIONS and variants.get("foundation") not in RING_FOUNDATIONS:
+        raise ValueError(
+            f"{method} has no foundation for a ring: give variants = {{'foundation': 'external'}} to leave the ring's "
+            "out ('none': both gears'; 'printed': that of external gears with h = 1, as article S4), or use method = 'ritz'"
+        )
+    for name, value in variants.items():
+        known = [*signature(plain_sum).parameters, *signature(row.load().components).parameters]
+        known = sorted(set(known) - set(NO_VARIANTS))
+        if name not in known:
+            raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
+        if name == "theta_f" and value is not None and not (is_number(value) and 0 < value < math.pi / 2):
+            raise ValueError(f"variants: theta_f = {value!r}, but a root half angle lies between 0 and pi/2 rad")
+        if name == "crack_model" and value not in CRACK_MODELS:
+            raise ValueError(f"variants: crack_model = {value!r}, but it must be one of {', '.join(CRACK_MODELS)}")
