@@ -127,6 +127,9 @@ class Case(Mapping[str, Any]):
             warnings.warn(told, stacklevel=4)
         cracks, pits = by_gear(pair, self.damage)
         made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
+        if self.damage:
+            hurt = {name: [own] if isinstance(own, (Crack, Pit)) else list(own or ()) for name, own in self.damage.items()}
+            made |= {"damage": hurt}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
         made |= {"held": supports_of(pair, self.supports, forces, self.face)}
         if self.torque is not None:

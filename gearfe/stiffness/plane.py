@@ -46,7 +46,7 @@ def section_curves(row, case, how, phase):
         return with_error(row, curves, case, how)
 
 
-def section_solver(row, case, how, phase, hats=1.0):
+def section_solver(row, case, how, phase, hats=1.0, **coarser):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
     Parameters
@@ -57,14 +57,16 @@ def section_solver(row, case, how, phase, hats=1.0):
     phase : ndarray, shape (n,)
     hats : float
         How many times shorter than those of the method the hats at corners are.
+    **coarser
+        ``refine`` and ``order`` of an estimate, instead of those of `how`.
     """
     started = time.perf_counter()
-    own, pair = row.own, case.pair
+    own, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
     extended = how.extended and (own or row).extended
     neighbours = math.ceil(pair.eps_alpha) + sum(near_pitches(pair)) - 2
 
     def named(row, gear, material, cracks=()):
-        options = {"neighbours": neighbours, "state": how.state, **_numeric(row, how)}
+        options = {"neighbours": neighbours, "state": how.state, **numeric}
         options |= {"cache": how.cache} if row.kept else {}
         return row.load()(gear, material, *((cracks,) if row.cracks else ()), **options)
 
@@ -76,7 +78,7 @@ def section_solver(row, case, how, phase, hats=1.0):
     if hats != 1:
         flexible = [replace(body, fine=hats * body.fine) for body in flexible]
     contact = PairContact(pair, case.materials, flexible, phase, extended=extended, state=how.state, flanks=case.forms)
-    details = {"state": how.state, "extended": extended, **_numeric(row, how), **(own.told() if own else {})}
+    details = {"state": how.state, "extended": extended, **numeric, **(own.told() if own else {})}
     if row.converged:
         details |= {"dofs": [f.dofs for f in flexible], "seconds_flexibility": time.perf_counter() - started}
     return yielding(contact.solve, case), details
@@ -136,8 +138,7 @@ def with_error(row, curves, case, how):
     periodic = not (any(case.cracks) or any(form.differs for form in case.forms or ()))
     phase = curves[0].phase
     where = np.append(phase, fixed_phases(phase, periodic))
-    asked = [(how, 1.0), *((replace(how, **options), 1.0) for options in less), *((how, one["hats"]) for one in hats)]
-    solvers = [section_solver(row, case, own, where, hats)[0] for own, hats in steps(asked)]
+    solvers = [section_solver(row, case, how, where, **other)[0] for other in steps(({}, *less, *hats))]
     out = []
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)
     for found in curves:

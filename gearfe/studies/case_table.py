@@ -14,7 +14,7 @@ from ..steps import steps
 from ..stiffness.methods import METHODS, SUMS, fitted
 from ..stiffness.solve import Solve, solve
 from ..units import in_newton_per_um
-from .losses import damage_phases, damaged_tooth
+from .losses import damage_phases
 
 PHASES = 32  # of the cycle of curves on file
 COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 1.0}  # about, of a curve, in CPU seconds: for the time left
@@ -186,7 +186,7 @@ def case_curve(chosen, case, method, phase, **options):
     started = time.perf_counter()
     curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
     seconds = time.perf_counter() - started
-    own = np.flatnonzero(curve.order == damaged_tooth(chosen.damage.get(case)))
+    own = np.flatnonzero(curve.order == (known.first_tooth or 0))
     tooth = curve.force[:, own].sum(axis=1) / curve.lte
     doubt = float("nan") if curve.error is None else float((curve.error / curve.k).mean())
     return CaseCurve(curve.k, tooth, seconds, doubt)
@@ -243,7 +243,7 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
         if progress:
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
-            tooth = damaged_tooth(scene.pairs[name].damage.get(case))
+            tooth = scene.case(name, case).first_tooth or 0
             curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name] - tooth)
         except ValueError as error:
             if METHODS[method].converged:

@@ -33,11 +33,6 @@ ALONE = {"single": "carries alone", "double": "carries with one neighbour", "tri
 LARGEST = "most at a phase"  # row of the phase at which most is lost
 
 
-def damaged_tooth(damage: Damage) -> int:
-    """Number of the tooth that the first crack or pit of a case is in; 0 without damage."""
-    return next((one.tooth for own in (damage or {}).values() for one in own), 0)
-
-
 def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     """Phases ``(phases,)`` of the mesh cycle in which a tooth, by default the damaged one, is in the middle of its engagement.
 
@@ -51,14 +46,14 @@ def damage_phases(case: Case, phases: int, tooth: int | None = None) -> NDArray:
     >>> print(f"{pair.eps_alpha:.3f}", damage_phases(Case(pair, 1000.0, Material(E=207e3, nu=0.3)), 4))
     1.615 [0.5  0.75 1.   1.25]
     """
-    tooth = damaged_tooth(case.damage) if tooth is None else tooth
+    tooth = (case.first_tooth or 0) if tooth is None else tooth
     middle = (case.pair.eps_alpha + case.overlap()) / 2 - tooth
     return (math.ceil((middle - 0.5) * phases - 1e-9) + np.arange(phases)) / phases
 
 
 def engaged_phases(case: Case, phases: int) -> NDArray:
     """Phases ``(n,)`` of the damaged tooth's engagement and a quarter of a cycle at its ends, in steps of ``1 / phases``."""
-    return phase_array(phases, "tooth", case.pair, case.overlap()) - damaged_tooth(case.damage)
+    return phase_array(phases, "tooth", case.pair, case.overlap()) - (case.first_tooth or 0)
 
 
 def within(curve: StiffnessCurve, phases: NDArray | None) -> StiffnessCurve:

@@ -15,11 +15,11 @@ from gearfe.contact.cells import cells_of
 from gearfe.contact.joined_lines import System
 from gearfe.contact.pieces import pieces_of
 from gearfe.contact.sharing import share
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility import halfspace
 from gearfe.flexibility.hertz import half_width
 from geometry.tooth.profile import cartesian, flank
+from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
@@ -61,17 +61,17 @@ def test_contact_lines_are_straight_with_one_normal(face):
 def test_mirrored_pair_is_as_stiff():
     run = {"order": 2, "axial": 6}
     pits = [gf.Pit(radius=18.7, z=3.0, axes=(1.0, 1.5), depth=0.1, angle=0.3)]
-    one = pair_stiffness3d(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), **run)
+    one = solid_contact(pair_of(), 1500.0, STEEL, 4, pits=(pits, ()), **run)
     pits = [replace(pits[0], z=9.0, angle=-0.3)]
-    two = pair_stiffness3d(pair_of(beta=-BETA), 1500.0, STEEL, 4, pits=(pits, ()), **run)
+    two = solid_contact(pair_of(beta=-BETA), 1500.0, STEEL, 4, pits=(pits, ()), **run)
     assert_allclose(one.k, two.k, rtol=1e-9)
     assert_allclose(one.cells[1].z, 12.0 - two.cells[1].z, atol=1e-9)
 
 
 def test_no_helix_is_the_limit_of_a_small_one():
     run = {"order": 2, "axial": 6, "phases": np.array([0.1, 0.25, 0.7, 0.9])}
-    spur = pair_stiffness3d(pair_of(beta=0.0), 1500.0, STEEL, face="spur", **run)
-    slight = pair_stiffness3d(pair_of(beta=math.radians(0.01)), 1500.0, STEEL, **run)
+    spur = solid_contact(pair_of(beta=0.0), 1500.0, STEEL, face="spur", **run)
+    slight = solid_contact(pair_of(beta=math.radians(0.01)), 1500.0, STEEL, **run)
     assert_allclose(slight.k, spur.k, rtol=1e-4)
 
 
@@ -82,7 +82,7 @@ def test_corner_contact_of_a_wide_spur_pair_is_that_of_the_plane(line_load):
     phases = np.array([-0.02, 0.0, 0.01, 0.3, 0.57, 0.58, 0.6, 0.62, 0.8])
     force = 400.0 * line_load
     plane, without = (gf.mesh_stiffness(pair, force, STEEL, phases=phases, extended=e, method="ritz").k for e in (True, False))
-    solid = pair_stiffness3d(pair, force, STEEL, phases, face="spur", axial=0, step=20.0)
+    solid = solid_contact(pair, force, STEEL, phases, face="spur", axial=0, step=20.0)
     print(np.round(100 * (solid.k / plane - 1), 2), np.round(100 * (plane / without - 1), 1))
     assert_allclose(solid.k, plane, rtol=4e-3)
     assert (plane / without).max() > 1.02
@@ -98,7 +98,7 @@ def test_corner_contact_of_a_ring_and_of_two_materials_is_that_of_the_plane():
     leaves = pair.eps_alpha - 1
     phases = np.array([-0.02, 0.0, 0.4, leaves, leaves + 0.02, leaves + 0.05])
     plane, without = (gf.mesh_stiffness(pair, 6e4, materials, phases=phases, extended=e, method="ritz").k for e in (True, False))
-    solid = pair_stiffness3d(pair, 6e4, materials, phases, face="spur", axial=0, step=20.0)
+    solid = solid_contact(pair, 6e4, materials, phases, face="spur", axial=0, step=20.0)
     assert (plane > 1.2 * without).any()
     assert_allclose(solid.k, plane, rtol=5e-3)
 
@@ -107,10 +107,10 @@ def test_helical_contact_goes_on_beyond_the_path():
     """Lines end where the gap is the approach, loads stay positive, and more contact is stiffer."""
     pair, phases = pair_of(20.0), np.linspace(0, 1, 5)[:-1]
     run = {"order": 2, "axial": 8}
-    inside, beyond = (pair_stiffness3d(pair, 3000.0, STEEL, phases, extended=e, **run) for e in (False, True))
+    inside, beyond = (solid_contact(pair, 3000.0, STEEL, phases, extended=e, **run) for e in (False, True))
     assert (beyond.k > 1.003 * inside.k).all()
     assert (beyond.k > 1.02 * inside.k).any()
-    fine = pair_stiffness3d(pair, 3000.0, STEEL, phases, step=0.15, **run)
+    fine = solid_contact(pair, 3000.0, STEEL, phases, step=0.15, **run)
     assert_allclose(beyond.k, fine.k, rtol=2e-3)
     for own, approach in zip(beyond.cells, beyond.approach, strict=True):
         assert (own.gap[own.load > 0] < approach).all()
@@ -124,22 +124,22 @@ def test_gears_of_another_size_are_alike():
     def per_width(m):
         rack = {"m_n": m, "alpha_n": math.radians(20), "b": 5.8 * m}
         one, two = (gf.Gear(z=z, r_bore=0.27 * z * m, beta=turn * BETA, **rack) for z, turn in ((15, 1), (13, -1)))
-        return pair_stiffness3d(gf.GearPair(one, two), 100 * m**2, STEEL, np.array([0.06, 0.6, 0.8]), order=2, axial=6).k / m
+        return solid_contact(gf.GearPair(one, two), 100 * m**2, STEEL, np.array([0.06, 0.6, 0.8]), order=2, axial=6).k / m
 
     assert_allclose(per_width(0.5), per_width(2.0), rtol=1e-9)
 
 
 def test_herringbone_is_twice_a_half():
     run = {"order": 2, "axial": 6, "phases": 4}
-    half = pair_stiffness3d(pair_of(), 1500.0, STEEL, **run)
-    whole = pair_stiffness3d(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, **run)
+    half = solid_contact(pair_of(), 1500.0, STEEL, **run)
+    whole = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, **run)
     assert_allclose(whole.k, 2 * half.k, rtol=1e-7)
     assert_allclose(whole.load.sum(axis=1), 3000.0, rtol=1e-9)
     z, width = whole.cells[0].z, whole.cells[0].width
     assert not ((z + width / 2 > 12 + 1e-9) & (z - width / 2 < 16 - 1e-9)).any()
     pits = [gf.Pit(radius=18.2, z=z, axes=(1.0, 1.0), depth=0.1) for z in (3.0, 25.0)]
-    damaged = pair_stiffness3d(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, pits=(pits, ()), **run)
-    one = pair_stiffness3d(pair_of(), 1500.0, STEEL, pits=([replace(pits[0], z=9.0)], ()), **run)
+    damaged = solid_contact(pair_of(28.0), 3000.0, STEEL, face="herringbone", groove=4.0, pits=(pits, ()), **run)
+    one = solid_contact(pair_of(), 1500.0, STEEL, pits=([replace(pits[0], z=9.0)], ()), **run)
     assert (damaged.k <= whole.k * (1 + 1e-9)).all()
     assert (damaged.k / whole.k).min() < 0.99
     assert_allclose(damaged.k, 2 * one.k, rtol=1e-6)
@@ -182,7 +182,7 @@ def test_loads_satisfy_the_contact_conditions():
 )  # fmt: skip
 def test_impossible_pairs(options, message):
     with pytest.raises(ValueError, match=message):
-        pair_stiffness3d(pair_of(), **({"force": 1500.0, "material": STEEL} | options))
+        solid_contact(pair_of(), **({"force": 1500.0, "material": STEEL} | options))
 
 
 @pytest.mark.parametrize(("ratio", "printed", "found"), [(5, -0.040, -0.034), (20, -0.014, -0.013)])
@@ -194,7 +194,7 @@ def test_verdict_on_how_much_plane_strain_is_too_stiff(ratio, printed, found):
     """
     pair, phase = pair_of(2.0 * ratio, 0.0), np.linspace(0.1, 0.9, 9)
     plane = gf.mesh_stiffness(pair, 400.0 * ratio, STEEL, phases=phase, extended=False, order=6).k
-    solid = pair_stiffness3d(pair, 400.0 * ratio, STEEL, phase, face="spur", extended=False).k
+    solid = solid_contact(pair, 400.0 * ratio, STEEL, phase, face="spur", extended=False).k
     print(f"b/m = {ratio}: {100 * (solid.mean() / plane.mean() - 1):.2f} %")
     ours = solid.mean() / plane.mean() - 1
     assert (abs(ours - printed) < 0.002) == (ratio == 20)
@@ -207,7 +207,7 @@ def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
     beta = 0.26682
     pinion = gf.Gear(z=12, x=0.3243, r_bore=2.02, beta=beta, **rack)
     pair = gf.GearPair(pinion, gf.Gear(z=13, x=0.003, r_bore=2.29, beta=-beta, **rack))
-    k, fine = (pair_stiffness3d(pair, 110.4, STEEL, [0.6466, 0.6803], order=2, axial=6, step=step) for step in (0.2, 0.025))
+    k, fine = (solid_contact(pair, 110.4, STEEL, [0.6466, 0.6803], order=2, axial=6, step=step) for step in (0.2, 0.025))
     print(f"off by {k.k / fine.k - 1}; cells at corners {[int((c.corner > 0).sum()) for c in k.cells]}")
     assert all((cells.corner > 0).sum() >= 4 for cells in k.cells)
     assert_allclose(k.k, fine.k, rtol=3e-4)
@@ -218,8 +218,8 @@ def test_error_estimate_sees_the_length_of_the_cells():
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.75, "beta": math.radians(8.72), "tip_radius": 0.2}
     ring = gf.Gear(z=32, r_rim=41.8, addendum=0.688, **rack)
     pair = gf.GearPair(gf.Gear(z=12, x=0.197, r_bore=5.73, **rack), ring)
-    solved = pair_stiffness3d(pair, 496.0, STEEL, [0.049], error=True)
-    half = pair_stiffness3d(pair, 496.0, STEEL, [0.049], step=0.2)
+    solved = solid_contact(pair, 496.0, STEEL, [0.049], error=True)
+    half = solid_contact(pair, 496.0, STEEL, [0.049], step=0.2)
     print(f"half the cells {half.k / solved.k - 1}, estimated {solved.error / solved.k}")
     assert np.abs(half.k - solved.k)[0] < solved.error[0] < 0.01 * solved.k[0]
 
@@ -282,7 +282,7 @@ def test_a_piece_that_vanishes_takes_its_load_with_it():
 
 def test_plot_of_the_contact_lines(tmp_path):
     pair = pair_of()
-    found = pair_stiffness3d(pair, 1000.0, STEEL, [0.4], order=2, axial=6)
+    found = solid_contact(pair, 1000.0, STEEL, [0.4], order=2, axial=6)
     figure = gf.plot_contact(pair, found, path=tmp_path / "lines.png")
     assert (tmp_path / "lines.png").stat().st_size > 10000
     assert figure.axes[1].get_xlabel() == "along the width [mm]"
@@ -292,10 +292,10 @@ def test_teeth_that_bend_far_are_coupled_to_all_that_touch():
     """A thin helical disc bends, so that three pairs touch where the first guess of the approach has two: all know each other."""
     gears = [gf.Gear(z=z, b=2.46, beta=side * math.radians(30), r_bore=11.0 * z / 18, **RACK) for z, side in ((33, -1), (66, 1))]
     pair, run = gf.GearPair(*gears), {"order": 2, "axial": 5}
-    found = pair_stiffness3d(pair, 246.0, STEEL, [0.75], **run)
+    found = solid_contact(pair, 246.0, STEEL, [0.75], **run)
 
     def all_teeth(gear, material, cracks, neighbours):
         return flexibility3d(gear, material, cracks, neighbours=5, **run)
 
     assert np.ptp(found.cells[0].order) == 2
-    assert_allclose(found.k, pair_stiffness3d(pair, 246.0, STEEL, [0.75], model=all_teeth).k, rtol=1e-9)
+    assert_allclose(found.k, solid_contact(pair, 246.0, STEEL, [0.75], model=all_teeth).k, rtol=1e-9)

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.pieces import cut
 from gearfe.contact.rows import _apart
-from gearfe.contact.solid import pair_stiffness3d
+from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 
@@ -35,7 +35,7 @@ def test_the_tip_cuts_into_the_fillet_at_the_start_of_the_path():
 def test_a_wide_spur_pair_whose_tips_cut_into_fillets_is_that_of_the_plane(line_load):
     pair, phases = pair_of(100.0), np.arange(12) / 24
     plane = gf.mesh_stiffness(pair, 100.0 * line_load, STEEL, phases=phases, method="ritz")
-    solid = pair_stiffness3d(pair, 100.0 * line_load, STEEL, phases, axial=0, step=2.0)
+    solid = solid_contact(pair, 100.0 * line_load, STEEL, phases, axial=0, step=2.0)
     print(np.round(100 * (solid.k / plane.k - 1), 2))
     assert solid.unloaded.min() < -2e-3
     assert_allclose(1e-3 * solid.unloaded, plane.unloaded, atol=1e-12)

@@ -93,7 +93,7 @@ def relieved(pair, amount, length):
 
 def test_design_relief(pair):
     run = {"pair": pair, "material": STEEL}
-    found = harris(run | {"flanks": relieved(pair, 0.010, 2.6)}, [500.0, 1000.0, 2000.0, 4000.0])
+    found = harris(gf.Case(**run, force=[500.0, 1000.0, 2000.0, 4000.0], flanks=relieved(pair, 0.010, 2.6)))
     assert harris_table(*found, pair.gear_1.r_b) in (SITE / "howto" / "design.md").read_text(encoding="utf-8")
     short = gf.transmission_error(**run, forces=[2000.0], flanks=relieved(pair, 0.010, 1.0))
     says("howto/design.md", "10 um over 1 mm leave {} um at 2000 N", 1e6 * short.peak_to_peak[0])
@@ -106,9 +106,9 @@ def test_design_relief(pair):
 def test_design_pattern_and_root_stress(tmp_path):
     text = (SITE / "howto" / "design.md").read_text(encoding="utf-8")
     scene = gf.new_scene(tmp_path / "my.toml")
-    assert "\n".join(told_root(gf.load_scene(scene).pair())) in text
+    assert "\n".join(told_root(gf.load_scene(scene).case())) in text
     scene.write_text(scene.read_text().replace("#F_beta_um", "F_beta_um"))
-    first, second, *_ = pattern_of(gf.load_scene(scene).pair()).told().splitlines()
+    first, second, *_ = pattern_of(gf.load_scene(scene).case()).told().splitlines()
     assert f"{first}\n{second}\n```" in text
 
 

@@ -76,7 +76,7 @@ def pressed():
     pair = gf.GearPair(HELICAL, replace(HELICAL, z=27))
     damage = {"pinion": [pit(HELICAL), pit(HELICAL, z=1.2), gf.Crack(level=0.3)]}
     run = {"phases": [0.5, 0.9], "removal": True, "sizes": COARSE}
-    return pair, pressed_tooth(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage, **run)
+    return pair, pressed_tooth(gf.Case(pair, 1500.0, gf.Material(E=207e3, nu=0.3), damage=damage), **run)
 
 
 def test_the_load_is_that_of_the_contact(pressed):
@@ -144,12 +144,16 @@ def test_vtu_reads_back(pressed, tmp_path):
 def test_damage_of_two_gears_is_refused():
     pair = gf.GearPair(GEAR, replace(GEAR, z=27))
     with pytest.raises(ValueError, match="one tooth of one gear"):
-        pressed_tooth(pair, 1000.0, gf.Material(), {"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]})
+        pressed_tooth(gf.Case(pair, 1000.0, gf.Material(), damage={"pinion": [pit(GEAR)], "wheel": [gf.Crack(level=0.2)]}))
 
 
 def test_a_load_without_width_is_refused(steel):
     with pytest.raises(ValueError, match="give spread > 0"):
-        pressed_tooth(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, {"pinion": [pit(GEAR)]}, phases=[0.5], spread=0.0)
+        pressed_tooth(
+            gf.Case(gf.GearPair(GEAR, replace(GEAR, z=27)), 500.0, steel, damage={"pinion": [pit(GEAR)]}),
+            phases=[0.5],
+            spread=0.0,
+        )
 
 
 def test_the_second_half_is_drawn_in_the_mirror():
@@ -171,26 +175,26 @@ def test_halves_are_mirror_images(steel):
     """Pits in the second half of a herringbone pair, turned the other way, do what they do in the first."""
     wide = [replace(gear, b=12.0) for gear in (HELICAL, replace(HELICAL, z=27))]
     pair = gf.GearPair(*wide)
-    run = {"phases": [0.6], "face": "herringbone", "removal": True, "sizes": COARSE, "teeth": 1}
-    found = [
-        pressed_tooth(pair, 2000.0, steel, {"pinion": [pit(HELICAL, z=z, angle=a)]}, **run) for z, a in ((2.0, 0.5), (10.0, -0.5))
-    ]
+    run = {"phases": [0.6], "removal": True, "sizes": COARSE, "teeth": 1}
+
+    def pressed(pits):
+        return pressed_tooth(gf.Case(pair, 2000.0, steel, damage={"pinion": pits}, face="herringbone"), **run)
+
+    found = [pressed([pit(HELICAL, z=z, angle=a)]) for z, a in ((2.0, 0.5), (10.0, -0.5))]
     assert_allclose(found[0].contact.k, found[1].contact.k, rtol=1e-6)
     assert_allclose(found[0].load, found[1].load, rtol=1e-6)
     assert_allclose(found[0].extra, found[1].extra, rtol=1e-6)
-    both = pressed_tooth(
-        pair, 2000.0, steel, {"pinion": [pit(HELICAL, z=z, angle=a) for z, a in ((2.0, 0.5), (10.0, -0.5))]}, **run
-    )
+    both = pressed([pit(HELICAL, z=z, angle=a) for z, a in ((2.0, 0.5), (10.0, -0.5))])
     assert_allclose(both.extra, 2 * found[0].extra, rtol=0.1, err_msg="both halves lose material")
     with pytest.raises(ValueError, match="both halves"):
-        pressed_tooth(pair, 2000.0, steel, {"pinion": pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2)}, **run)
+        pressed(pit_row(2, 2.0, 9.0, radius=HELICAL.r, axes=(0.5, 0.5), depth=0.2))
 
 
 @pytest.mark.slow
 def test_root_stress_in_the_middle_of_a_wide_tooth_is_that_of_plane_strain(steel):
     """The mean over the middle third of the width, in ten pieces of the fillet: the nodal peaks of so coarse tets scatter."""
     pair = gf.GearPair(replace(GEAR, b=16.0), replace(GEAR, b=16.0, z=27))
-    made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes={"fillet": 0.2, "flank": 0.4})
+    made = pressed_tooth(gf.Case(pair, 2000.0, steel), phases=[0.75], sizes={"fillet": 0.2, "flank": 0.4})
     assert made.load[0] == pytest.approx(2000.0), "one pair carries"
     field = tooth_field(made)
     arcs = np.linspace(0.0, fillet_length(pair.gear_1), 400)
@@ -210,7 +214,7 @@ def test_the_mesh_is_finer_along_loaded_contact_lines_only(steel):
     pair = gf.GearPair(replace(HELICAL, b=4.0), replace(HELICAL, b=4.0, z=27))
     near, far = [], []
     for strip in (None, 0.12):
-        made = pressed_tooth(pair, 2000.0, steel, {}, phases=[0.75], sizes=COARSE, teeth=1, strip=strip)
+        made = pressed_tooth(gf.Case(pair, 2000.0, steel), phases=[0.75], sizes=COARSE, teeth=1, strip=strip)
         cells = made.contact.cells[0]
         own = (cells.order == 0) & (cells.load > 0)
         radius, angle = flank(pair.gear_1, cells.roll_1[own])

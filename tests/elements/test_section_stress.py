@@ -9,7 +9,7 @@ from gearfe.stress.fields import stressed_gears
 
 def test_what_holds_a_section_along_the_width_is_nu_times_the_rest():
     """sigma_zz = nu (sigma_xx + sigma_yy), no shear along the width; von Mises' stress does not change with the axes."""
-    chosen = gf.load_scene("planetary_pitting").pair()
+    chosen = gf.load_scene("planetary_pitting").case()
     for field, material in zip(stressed_gears(chosen, 0.2, 0.5), chosen.materials, strict=True):
         xx, yy, zz, xy, yz, xz = field.stress
         assert np.abs(xx - yy).max() > 10

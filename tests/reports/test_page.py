@@ -61,8 +61,8 @@ def test_tooth_is_pressed_as_its_scene_says(tmp_path, monkeypatch):
     (tmp_path / "own.toml").write_text(text.replace("#F_beta_um", "F_beta_um"))
     given = {}
 
-    def pressed_tooth(*_, **options):
-        given.update(options)
+    def pressed_tooth(case):
+        given.update(case)
         raise ValueError("seen")
 
     monkeypatch.setattr("gearfe.reports.findings.pressed_tooth", pressed_tooth)

@@ -78,8 +78,8 @@ def test_keys_along_the_width_and_misalignment(tmp_path):
     assert case["misalignment"] == gf.Misalignment(F_beta=0.012, f_sigma_beta=0.006, length=90)
     made = case["flanks"]["pinion"]
     assert made == gf.Flank(lead_crowning=0.005, lead_slope=-0.003, twist=0.002, end_relief=(0.004, 0.008), end_length=(2.0, 3.0))
-    assert scene.pair().wide
-    assert not loaded(tmp_path, RELIEF)[0].pair().wide
+    assert scene.case().why_wide
+    assert not loaded(tmp_path, RELIEF)[0].case().why_wide
     for text, message in (
         ("f_sigma_beta_um = 6\n", r"\[pair.main\]: misalignment: .* give length"),
         ("F_beta_um = 12000\n", r"\[pair.main\]: 600 um of misalignment per mm"),

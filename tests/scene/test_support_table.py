@@ -1,5 +1,7 @@
 """[support.NAME] and [shaft.NAME] tables of a scene, and the newer keys of [flank.NAME]: units, places, mistakes."""
 
+from dataclasses import replace
+
 import pytest
 from numpy.testing import assert_allclose
 
@@ -64,7 +66,7 @@ def test_units_are_those_of_the_keys(tmp_path):
         "pinion": shaft,
         "wheel": gf.Support(radial=1.5e5, tilt=2e7, torsion=3e8, coupling=3e-9),
     }
-    assert chosen.wide
+    assert chosen.case().why_wide
     bored = loaded(tmp_path, HELD.replace("gear_at", "bores_mm = [8, 8]\ngear_at")).pair().supports["pinion"]
     assert bored.segments[1].bore == 8
     assert loaded(tmp_path, HELD.replace("gear_at", "integral = true\ngear_at")).pair().supports["pinion"].integral
@@ -74,15 +76,15 @@ def test_a_comparison_says_what_a_section_leaves_out(tmp_path):
     scene = loaded(tmp_path, HELD.replace("coupling_urad_per_kN = 3", ""))
     from gearfe.stiffness.methods import fitted
 
-    run, left_out = fitted("ritz", scene.pair().case() | {"phases": 4})
+    case, _, left_out = fitted("ritz", scene.case())
     assert "do not tilt" in left_out[0]
-    found, plain = gf.mesh_stiffness(**run, method="ritz"), gf.mesh_stiffness(**(run | {"supports": None}), method="ritz")
+    found, plain = (gf.mesh_stiffness(one, method="ritz", phases=4) for one in (case, replace(case, supports=None)))
     springs = [held.support() if isinstance(held, gf.Shaft) else held for held in scene.pair().supports.values()]
     way = [
         1e-3 * (1 / held.radial + gear.r_b**2 / held.torsion) for held, gear in zip(springs, scene.gears.values(), strict=True)
     ]
     assert_allclose(1 / found.k - 1 / plain.k, sum(way), rtol=1e-9)
-    assert fitted("ritz3d", scene.pair().case())[1] == ()
+    assert fitted("ritz3d", scene.case())[2] == ()
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
-from geometry.pair.flanks import flank_forms, tilt_of
+from geometry.pair.flanks import tilt_of
+from validation.shared.solid_pair import solid_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 15.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -105,8 +105,9 @@ def test_crowning_carries_in_the_middle_and_misalignment_at_an_end():
     spur = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=30, r_bore=18.0, **RACK))
     centre = []
     for flanks, askew in (({"pinion": gf.Flank(lead_crowning=0.02)}, 0.0), ({}, 0.02), ({}, -0.02)):
-        forms = flank_forms(spur, flanks, gf.Misalignment(F_beta=askew))
-        found = pair_stiffness3d(spur, 1500.0, STEEL, [0.75], flanks=forms, face="spur", order=2)
+        found = solid_contact(
+            spur, 1500.0, STEEL, [0.75], flanks=flanks, misalignment=gf.Misalignment(F_beta=askew), face="spur", order=2
+        )
         cells = found.cells[0]
         centre.append(cells.load @ cells.z / cells.load.sum())
         line = cells.load / cells.width
@@ -223,6 +224,6 @@ def test_kinks_in_three_dimensions_are_those_of_the_section():
     }
     for force, phase in ((4000.0, 0.21875), (15000.0, 0.4375)):  # 3 to 6 % apart without the kinks
         plane = gf.mesh_stiffness(pair, force, STEEL, method="ritz", phases=[phase], flanks=flanks)
-        run = {"face": "spur", "axial": 0, "step": 20.0, "flanks": flank_forms(pair, flanks)}
-        solid = pair_stiffness3d(pair, force, STEEL, plane.phase, **run)
+        run = {"face": "spur", "axial": 0, "step": 20.0, "flanks": flanks}
+        solid = solid_contact(pair, force, STEEL, plane.phase, **run)
         assert_allclose(1e-3 * solid.approach, plane.te, rtol=0, atol=0.003 * plane.lte.mean())

@@ -13,7 +13,6 @@ import gearfe as gf
 from gearfe.cli import main
 from gearfe.energy.closed import coupled, textbook
 from gearfe.energy.ritz import plane as ritz
-from gearfe.stiffness.inputs import why_solid
 from gearfe.stiffness.methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, ROWS, fitted
 from gearfe.studies.own_model import own_models
 from geometry.pair import lines
@@ -122,23 +121,23 @@ def test_rows_are_complete():
         assert row.cost in ("milliseconds", "seconds", "minutes")
         loaded = row.load()
         assert callable(loaded.components if row.kind == "sum" else loaded)
-        assert f"``{row.name}``" in gf.mesh_stiffness.__doc__
+        assert f"``{row.name}``" in gf.Solve.__doc__
 
 
 def test_one_rule_for_what_a_method_gets():
-    run = {"pair": HELICAL, "face": "herringbone", "groove": 0.4}
+    case = gf.Case(HELICAL, 100.0, gf.Material(), face="herringbone", groove=0.4)
     for row in ROWS:
-        given, left_out = fitted(row.name, run)
+        given, variants, left_out = fitted(row.name, case)
         if row.kind == "section":
-            assert (given["face"], given["groove"], given["pair"].gear_1.b) == (None, 0.0, 1.6)
+            assert (given.face, given.groove, given.pair.gear_1.b) == (None, 0.0, 1.6)
             assert left_out == (f"{row.name} is the transverse section: herringbone teeth are taken as spur teeth 1.6 mm wide, b "
                                 "less the groove of 0.4 mm",)  # fmt: skip
         else:
-            assert (given, left_out) == (run, ())
-        given, left_out = fitted(row.name, {"pair": RING, "face": None, "groove": 0.0})
-        assert ("variants" in given) == (row.rings in RING_FOUNDATIONS) == bool(left_out)
-    assert fitted("auto", run) == (run, ())
-    assert [bool(why_solid(pair, None, ())) for pair in (SPUR, HELICAL)] == [False, True]
+            assert (given, variants, left_out) == (case, None, ())
+        _, variants, left_out = fitted(row.name, gf.Case(RING, 100.0, gf.Material()))
+        assert (variants is not None) == (row.rings in RING_FOUNDATIONS) == bool(left_out)
+    assert fitted("auto", case) == (case, None, ())
+    assert [bool(gf.Case(pair, 100.0, gf.Material()).why_wide) for pair in (SPUR, HELICAL)] == [False, True]
 
 
 def test_a_herringbone_scene_with_a_groove_by_the_section(tmp_path, capsys):

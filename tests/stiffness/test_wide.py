@@ -200,18 +200,19 @@ def test_pits_over_the_whole_contact_line_name_the_phase(steel):
 def test_the_error_mesh_is_the_coarsest_that_can_be_made(monkeypatch):
     """A coarse section may fold; then the next finer one is taken, and what fails for all is said."""
 
-    def contact(*case, model, least):
-        if model.keywords["refine"] < least:
+    def contact(*case, bodies, least):
+        refine = bodies.flexible.keywords["refine"]
+        if refine < least:
             raise RuntimeError("a quad of the section folds")
-        return SimpleNamespace(k=np.array([model.keywords["refine"]]))
+        return SimpleNamespace(k=np.array([refine]))
 
     for least, wanted in ((0.3, 0.35), (0.37, 0.38)):
         monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=least))
-        ratio, k = wide._coarser((), {}, 0.5, False, None)
+        ratio, k = wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
         assert_allclose([0.5 * ratio, k[0]], wanted)
     monkeypatch.setattr(wide, "pair_stiffness3d", partial(contact, least=1.0))
     with pytest.raises(RuntimeError, match="folds"):
-        wide._coarser((), {}, 0.5, False, None)
+        wide._coarser(None, None, {}, gf.Solve("fe3d", refine=0.5, cache=False))
 
 
 def test_overlap_carries_pairs_whose_section_loses_contact(steel):

@@ -54,7 +54,7 @@ def test_mean_of_a_healthy_pair_is_the_same_over_any_cycle(found, scene):
 
 def test_phases_have_the_tooth_in_the_middle_and_in_contact(pair):
     for tooth in (0, 2, -1):
-        phase = damage_phases(pair, 64, tooth) + tooth
+        phase = damage_phases(gf.Case(pair, 1000.0, gf.Material()), 64, tooth) + tooth
         assert abs(phase.mean() - pair.eps_alpha / 2) < 1 / 64
         assert 0 <= phase.min() < phase.max() <= pair.eps_alpha
         assert_allclose(np.sort(phase % 1), np.arange(64) / 64, atol=1e-12)
@@ -141,10 +141,11 @@ def test_doubt_by_whole_gears_adds_both_estimates():
         gf.StiffnessCurve(phase, k, k, none[:, 0], np.array([0]), none, none, error=part * k, meta={"eps_alpha": 1.5})
         for k, part in ((np.full(8, 3e8), 0.01), (np.full(8, 2.4e8), 0.02))
     ]
-    doubt = loss_errors(*two, "fe3d", {}, 1.0)
+    case = gf.load_scene("planetary_pitting").case()
+    doubt = loss_errors(*two, case, gf.Solve("fe3d"))
     assert doubt.keys() == loss(*two).keys()
     assert_allclose(list(doubt.values()), 0.8 * 0.03, rtol=1e-12)
-    assert loss_errors(*two, "fe", {}, 0.3) == {}, "there are no meshes so coarse"
+    assert loss_errors(*two, case, gf.Solve("fe", refine=0.3)) == {}, "there are no meshes so coarse"
 
 
 def test_doubts_are_rounded_up():

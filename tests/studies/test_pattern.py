@@ -18,7 +18,7 @@ def askew(tmp_path_factory):
 
 def test_load_over_the_face_is_the_whole_force(askew):
     chosen = gf.load_scene(askew).pair()
-    found = pattern_of(chosen, phases=4)
+    found = pattern_of(chosen.case(), phases=4)
     z, load = gf.face_load(found.contact)
     assert load.mean() * 8.0 == pytest.approx(chosen.force, rel=0.01)  # spur: normal to the flank is along the line of action
     assert np.diff(z).max() < 0.1

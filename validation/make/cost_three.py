@@ -9,7 +9,7 @@ import time
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
+from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import ROOT
 
@@ -36,7 +36,7 @@ def measure(setting):
     pair = gf.GearPair(one, two)
     started = time.process_time()
     run = {"order": setting["order"], "cache": False}
-    pair_stiffness3d(pair, 100 * width, gf.Material(E=206e3, nu=0.3), setting["phases"], **run)
+    solid_contact(pair, 100 * width, gf.Material(E=206e3, nu=0.3), setting["phases"], **run)
     return time.process_time() - started
 
 

@@ -9,9 +9,8 @@ import math
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.files import written
-from geometry.pair.flanks import flank_forms
+from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import TABLES
 
@@ -151,8 +150,7 @@ def _kinks():
         for load in (40.0, 150.0, 400.0):
             run = {"phases": 64, "flanks": flanks}
             plane = gf.mesh_stiffness(pair, 100 * load, STEEL, method="ritz", **run)
-            forms = flank_forms(pair, flanks)
-            solid = pair_stiffness3d(pair, 100 * load, STEEL, plane.phase, face="spur", axial=0, step=20.0, flanks=forms)
+            solid = solid_contact(pair, 100 * load, STEEL, plane.phase, face="spur", axial=0, step=20.0, flanks=flanks)
             away = 100 * np.abs(1e-3 * solid.approach - plane.te) / plane.lte
             lines.append(f"| {name} | {load:g} N/mm | {away.max():.2f} % | {np.median(away):.2f} % |")
     return lines

@@ -24,8 +24,7 @@ def solve(pair, case, refine=1.0):
     """One row: k with lost contact, and by how much the missing material changes it, in the mean and at most, relative."""
     chosen = gf.load_scene(SCENE).pairs[pair]
     phases = damage_cycle(chosen)[EVERY // 2 :: EVERY]
-    options = {"phases": phases, "refine": refine, "removal": True, "face": chosen.face, "groove": chosen.groove}
-    found = pressed_tooth(chosen.pair, chosen.force, chosen.materials, chosen.damage[case], **options)
+    found = pressed_tooth(chosen.case(case), phases=phases, refine=refine, removal=True)
     k, change = found.contact.k, 1 / (1 + found.extra) - 1
     mean = (k * (1 + change)).mean() / k.mean() - 1
     return {"k": float(k.mean()), "mean": float(mean), "largest": float(change.min()), "unknowns": int(found.unknowns)}

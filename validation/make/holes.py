@@ -3,9 +3,9 @@
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
-from gearfe.stiffness.inputs import by_gear, overlap
+from gearfe.case import by_gear, overlap
 from gearfe.stress.holed import pressed_tooth
+from validation.shared.solid_pair import solid_contact
 
 from ..shared import outsider, page
 from ..shared.kept_rows import check, kept, stored
@@ -50,10 +50,10 @@ def row(scene, case):
     pair, run = found.pair, {"face": found.face or "spur", "groove": found.groove}
     phases = (pair.eps_alpha + overlap(pair, **run)) * (np.arange(PHASES) + 0.5) / PHASES
     own = by_gear(pair, pits)[1]
-    k = [pair_stiffness3d(pair, found.force, found.materials, phases, pits=p, **run).k for p in (((), ()), own)]
+    k = [solid_contact(pair, found.force, found.materials, phases, pits=p, **run).k for p in (((), ()), own)]
     refines = REFINES if FINER.get(scene) == case else REFINES[:1]
-    options = {"phases": phases, "removal": True} | run
-    made = [pressed_tooth(pair, found.force, found.materials, pits, refine=refine, **options) for refine in refines]
+    pitted, options = gf.Case(pair, found.force, found.materials, damage=pits, **run), {"phases": phases, "removal": True}
+    made = [pressed_tooth(pitted, refine=refine, **options) for refine in refines]
     wanted, cut, _ = made[-1].sector.removed
     both = " in each half" if len({pit.z > found.pair.gear_1.b / 2 for pit in pits["pinion"]}) > 1 else ""
     size = "{:g} x {:g}".format(*(2 * v for v in pits["pinion"][0].axes))

@@ -65,7 +65,7 @@ def picture(task):
         text = caption(case, pair.damage[case], told)
     else:
         path = FOLDER / f"{name}_{case}_contact.png"
-        told = render_contact(pair, path, case=case, title=f"{name} {pair_name}, {case}")
+        told = render_contact(pair.case(case), path, title=f"{name} {pair_name}, {case}")
         numbers = f"phase {told['phase']:.3g}, k {in_newton_per_um(told['k'])} N/um, {pressure(told)}."
         text = f"`{case}`: contact lines on the unrolled flank and load over the width; {numbers}"
     _small(path)

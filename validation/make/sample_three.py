@@ -11,11 +11,12 @@ import warnings
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import STEP, pair_stiffness3d
+from gearfe.contact.solid import STEP
 from gearfe.energy.ritz.solid import axial_degree
 from geometry.damage.crack import crack_path
 
 from ..shared.kept_rows import kept
+from ..shared.solid_pair import solid_contact
 
 TABLE = "sample_three"
 # by kind: first seed, teeth of the pinion, of the wheel (of a ring: more than the pinion), width [m_n], resolution of `fe3d`,
@@ -115,7 +116,7 @@ def finest(pair, force, material, damage, phases):
     """K [N/m] by the energy model of higher order, on finer triangles and half the cells, with more functions along the width."""
     cracks = tuple(tuple((damage or {}).get(name, ())) for name in ("pinion", "wheel"))
     axial, step = axial_degree(pair.gear_1.b, pair.gear_1.m_n) + FURTHER, STEP * pair.gear_1.m_n / 2
-    return pair_stiffness3d(pair, force, material, phases, cracks=cracks, axial=axial, step=step, cache=False, **FINE).k
+    return solid_contact(pair, force, material, phases, cracks=cracks, axial=axial, step=step, cache=False, **FINE).k
 
 
 def named(pair, damage):

@@ -11,9 +11,9 @@ import time
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.energy.ritz import solid as ritz3d
 from geometry.damage.pit import pit_row
+from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import ROOT
 
@@ -47,7 +47,7 @@ def solve(method, *setting, last=27.0):
     if method == "ritz3d":
         order, axial = map(int, setting)
         damage = {"pits": (pits, ()), "cracks": (tuple(cracks), ())}
-        return pair_stiffness3d(pair, FORCE, steel, PHASES, face="herringbone", order=order, axial=axial, **damage).k
+        return solid_contact(pair, FORCE, steel, PHASES, face="herringbone", order=order, axial=axial, **damage).k
     options = {"refine": float(setting[0])} if setting else {}
     damage = {"pinion": [*cracks, *pits]}
     return gf.mesh_stiffness(pair, FORCE, steel, method=method, phases=PHASES, face="herringbone", damage=damage, **options).k

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 import gearfe as gf
+from gearfe.case import overlap
 from gearfe.scene.verdicts import judge, text
-from gearfe.stiffness.inputs import overlap
 from gearfe.stiffness.methods import fitted
 
 from . import herringbone_layouts as layouts
@@ -65,10 +65,11 @@ def compute(methods=QUICK):
         started, (method, variants) = time.process_time(), METHODS[name]
         chosen = scene.pairs[pair]
         phase = chosen.pair.pitch_phase + overlap(chosen.pair, chosen.face, chosen.groove) / 2 + np.array(OFFSETS)
-        run, _ = fitted(method, chosen.case(None if case == "healthy" else case) | {"phases": phase, "method": method})
-        run |= {"variants": run.get("variants", {}) | variants} if variants else {}
-        run |= {"refine": REFINE[pair]} if method == "fe3d" else {}
-        k, less = (one.k / 1e6 for one in gf.mesh_stiffness(**run | {"force": [chosen.force, LESS * chosen.force]}))
+        loads = (chosen.force, LESS * chosen.force)
+        known, needed, _ = fitted(method, replace(chosen.case(None if case == "healthy" else case), force=loads))
+        refine = REFINE[pair] if method == "fe3d" else 1.0
+        how = gf.Solve(method, phase, variants=(needed or {}) | (variants or {}), refine=refine)
+        k, less = (one.k / 1e6 for one in gf.solve(known, how))
         power = float((np.log(LESS) / np.log(LESS * k / less)).mean())
         keep(path(name), HEADER, [name, pair, case, *(f"{v:.6g}" for v in (*k, power)), f"{time.process_time() - started:.2f}"])
         print(f"{name} {pair} {case}: {time.process_time() - started:.1f} s", flush=True)

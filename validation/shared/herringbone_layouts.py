@@ -17,11 +17,11 @@ from scipy.optimize import least_squares
 from scipy.stats import qmc
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
+from gearfe.case import by_gear, overlap
 from gearfe.flexibility.solved import SolvedGears
-from gearfe.stiffness.inputs import by_gear, overlap
 from geometry.damage.pit import pit_row
 from geometry.pair.pit_lines import in_both_halves, pit_line
+from validation.shared.solid_pair import solid_contact
 
 from . import herringbone_scan_nodes as nodes
 from .herringbone_scan_nodes import PAIRS, SCENE
@@ -122,12 +122,12 @@ class Model:
         phase = self.middle(name) + OFFSETS
         run = {"face": chosen.face, "cache": self.kept, **self.numeric}
         forces = [chosen.force, 0.8 * chosen.force]
-        whole, less = pair_stiffness3d(pair, forces, chosen.materials, phase, **run)
+        whole, less = solid_contact(pair, forces, chosen.materials, phase, **run)
         power = np.log(0.8) / np.log(0.8 * whole.k / less.k)
         out = [whole.k]
         for case in CASES:
             cracks, own = by_gear(pair, {"pinion": self.damage(pair, layout, case)})
-            k = pair_stiffness3d(pair, chosen.force, chosen.materials, phase, cracks=cracks, pits=own, **run).k
+            k = solid_contact(pair, chosen.force, chosen.materials, phase, cracks=cracks, pits=own, **run).k
             out.append(whole.k * (k / whole.k) ** power)
         return np.array(out)
 

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 import gearfe as gf
-from gearfe.stiffness.inputs import overlap
+from gearfe.case import overlap
 from gearfe.studies.case_table import printed_cases
 
 from . import herringbone_scan_nodes as nodes

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
-from gearfe.stiffness.inputs import by_gear, overlap
+from gearfe.case import by_gear, overlap
 from geometry.damage.crack import start_arc
 from geometry.damage.pit import pit_row
 from geometry.tooth.profile import cartesian, root_curve
+from validation.shared.solid_pair import solid_contact
 
 from .places import TABLES
 
@@ -76,7 +76,7 @@ def cycle(pair, face, count=PHASES):
 def coarse(chosen, pair, damage, *, load=1.0):
     """Stiffness ``(PHASES,)`` [N/m] by the coarse energy model."""
     cracks, pits = by_gear(pair, damage)
-    found = pair_stiffness3d(
+    found = solid_contact(
         pair,
         load * chosen.force,
         chosen.materials,

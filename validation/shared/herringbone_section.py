@@ -5,11 +5,11 @@ from functools import partial
 
 import numpy as np
 
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.fe_gear3d import PER_HAT, SIZES
 from gearfe.elements.section_error import plane_hats
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.solved import SolvedGears
+from validation.shared.solid_pair import solid_contact
 
 FINEST = 2.0  # resolution of the section that is taken for exact
 PHASES = 8
@@ -22,7 +22,7 @@ def rows(scene, resolutions):
         chosen, kept = scene.pairs[name], SolvedGears()
         case = chosen.pair, chosen.force, chosen.materials, np.arange(PHASES) / PHASES
         own, stiff = (
-            pair_stiffness3d(*case, face=chosen.face, groove=chosen.groove, cache=kept, model=partial(_body, kept, one)).k
+            solid_contact(*case, face=chosen.face, groove=chosen.groove, cache=kept, model=partial(_body, kept, one)).k
             for one in (None, resolution)
         )
         more = stiff / own - 1

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
+from validation.shared.solid_pair import solid_contact
 
 from . import kept_rows
 from .decks import calculix, digest
@@ -58,7 +58,7 @@ def pair_of(teeth, bores, degrees, width):
 def ours(name):
     """By `ritz3d`: k [N/um], approach [mm], what tooth pair 0 carries at right angles to its flanks [N]; k of the path alone."""
     pair = cases()[name]
-    found, path = (pair_stiffness3d(pair, LOAD * pair.gear_1.b, STEEL, [PHASE], extended=on) for on in (True, False))
+    found, path = (solid_contact(pair, LOAD * pair.gear_1.b, STEEL, [PHASE], extended=on) for on in (True, False))
     cells = found.cells[0]
     return found.k[0] / 1e6, found.approach[0], float(cells.load[cells.order == 0].sum()), path.k[0] / 1e6
 

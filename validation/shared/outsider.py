@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import pair_stiffness3d
 from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
+from validation.shared.solid_pair import solid_contact
 
 from . import kept_rows
 from .decks import calculix, digest
@@ -185,7 +185,7 @@ def ritz3d_row(name):
 
 def sharing(case):
     """Force [N] that each tooth pair carries and the height of its line of action [mm] by `ritz3d`."""
-    cells, out = pair_stiffness3d(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
+    cells, out = solid_contact(case.pair, case.load * case.pair.gear_1.b, STEEL, [case.phase]).cells[0], {}
     for order in sorted(set(cells.order.tolist())):
         load = np.where(cells.order == order, cells.load, 0.0)
         out[str(order)] = [float(load.sum()), float((load * cells.z).sum() / load.sum())]

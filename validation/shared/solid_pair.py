@@ -1,0 +1,24 @@
+"""Contact in three dimensions from loose numbers: a `Case` and the bodies' orders in one call, as trials and tests write it."""
+
+from dataclasses import replace
+
+import gearfe as gf
+from gearfe.contact.bodies import Bodies, energy_bodies
+from gearfe.contact.solid import pair_stiffness3d
+from gearfe.stiffness.provenance import SIDES
+
+STEPS = ("step", "extended", "error", "cache")  # of the contact
+GIVEN = ("face", "groove", "flanks", "misalignment", "supports")  # of the case
+
+
+def solid_contact(pair, force, material, phases=32, *, pits=((), ()), cracks=((), ()), model=None, **options):
+    """`Contact3D` of a pair; pits and cracks of pinion and wheel are numbered in each gear's own frame."""
+    both = [
+        (name, [replace(one, tooth=sense * one.tooth) for one in (*own, *more)])
+        for (name, sense), own, more in zip(SIDES, cracks, pits, strict=True)
+    ]
+    steps = {name: options.pop(name) for name in STEPS if name in options}
+    given = {name: options.pop(name) for name in GIVEN if name in options}
+    bodies = Bodies(model) if model else energy_bodies(**options, cache=steps.get("cache", True))
+    case = gf.Case(pair, force, material, damage={name: own for name, own in both if own}, **given)
+    return pair_stiffness3d(case, phases, bodies, **steps)
