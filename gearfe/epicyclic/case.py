@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ from geometry.pair.gear_pair import GearPair
 from geometry.pair.planetary import PlanetarySet
 from geometry.tooth.modified import Flank
 
+from ..checks import is_number, numbers, truth
 from ..material import Material
-from ..stiffness.limits import numbers, truth
 from ..stiffness.plausible import check_load
 from .rim import check_support
 from .standing import assembled
@@ -91,7 +90,7 @@ class PlanetaryCase:
         put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
         for name, most in (("force", math.inf), ("pin", math.nan)):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) != most:
+            if not is_number(value) or not 0 < float(value) != most:
                 raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
             put(self, name, float(value))
         materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3

@@ -9,9 +9,9 @@ import numpy as np
 from geometry.mesh.both_flanks import both_flanks
 from geometry.tooth.profile import arc_at
 
-from ..elements.deck import held_nodes
+from ..checks import whole
+from ..decks.deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
-from ..signal.given import whole
 from .case import PlanetaryCase
 from .curves import SetCurves
 from .rim import RimSupports

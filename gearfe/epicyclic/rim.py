@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from geometry.tooth.gear import Gear
 
-from ..stiffness.limits import truth
+from ..checks import truth
 from .pads import Pads, among, by_teeth, pads_on
 from .whole_gear import PLACES, WholeGear, between_teeth, motion
 

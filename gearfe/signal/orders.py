@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
-from .given import samples, whole
+from ..checks import whole
+from .given import samples
 from .series import Signal
 from .spectra import Spectrum, amplitudes
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample_poly
 
-from .given import hertz, samples, whole
+from ..checks import whole
+from .given import hertz, samples
 from .indicators import indicators
 from .spectra import analytic
 

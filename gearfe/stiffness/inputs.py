@@ -10,10 +10,10 @@ import numpy as np
 from geometry.damage.crack import Crack, check_apart, check_through
 from geometry.damage.pit import Pit, takes_all
 
-from ..elements.asked import is_number
+from ..checks import is_number, numbers
 from ..energy.closed.plain_sum import plain_sum
 from ..material import Material
-from .limits import check_count, check_range, numbers
+from .limits import check_count, check_range
 from .methods import FACES, METHODS, NAMES, RING_FOUNDATIONS, Method, having
 from .own_flexibility import OwnFlexibility
 from .turns import check_length, cycles_in

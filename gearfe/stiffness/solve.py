@@ -13,7 +13,7 @@ from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
 
-from ..elements.asked import checked_refine
+from ..checks import checked_refine, truth
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import Material, check_state
 from ..steps import part
@@ -34,7 +34,7 @@ from .inputs import (
     said_of_face,
     two_materials,
 )
-from .limits import check_section, check_teeth, truth
+from .limits import check_section, check_teeth
 from .own_flexibility import OwnFlexibility
 from .plane import curve, section_solver, sum_solver, with_error
 from .plausible import answered, as_asked, check_load

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.pair.flanks import flank_forms
 
-from ..elements.asked import checked_refine
+from ..checks import checked_refine
 from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.contact_plot import plot_contact

@@ -18,7 +18,7 @@ from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
-from ..elements.asked import COARSEST
+from ..checks import COARSEST
 from ..markdown import aligned, table_row
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import coarser

@@ -6,8 +6,8 @@ from typing import cast
 
 from geometry.pair.gear_pair import GearPair
 
-from ..elements.loaded_tooth import root_stress
 from ..scene.load import ScenePair
+from ..strength.loaded_tooth import root_stress
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,9 +9,9 @@ from checks import form_mismatch
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.full_contact import full_contact
 from geometry.tooth.profile import cartesian, fillet, flank, form_point
 from validation.shared import reference
+from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.full_contact import full_contact
 from geometry.pair.flanks import flank_forms
 from geometry.tooth.profile import cartesian, flank, flank_normal
+from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -15,7 +15,7 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.contact.solid import pair_stiffness3d
-from gearfe.elements.contact_solid import SolidDeck
+from gearfe.decks.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
