@@ -1,8 +1,8 @@
 """Gear mesh stiffness with its error: finite elements beside energy methods.
 
 Everything public is a name of this package. Inside, a room imports only from floors below its own. From the ground: `geometry`;
-`material`, `files`, `units`, `steps`, `threads`; `supports`; `flexibility`, `signal`, `scene`, `pictures`, `store`; `elements`,
-`energy`; `contact`; `stiffness`; `machine`, `epicyclic`; `motion`, `stress`; `studies`; `surrogates`, `sweeps`; `datasets`;
+`checks`, `files`, `memory`, `units`, `steps`, `threads`; `material`; `supports`; `flexibility`, `signal`, `scene`, `pictures`;
+`elements`, `energy`; `contact`, `decks`; `stiffness`, `strength`; `machine`, `epicyclic`; `motion`, `stress`; `studies`; `many`;
 `reports`; `app`; `cli`.
 """
 
@@ -29,8 +29,8 @@ _HOME = {
     "Pit": "geometry.damage.pit",
     "PlanetaryCase": "gearfe.epicyclic.case",
     "PlanetarySet": "geometry.pair.planetary",
-    "RimBed": "gearfe.epicyclic.rim",
-    "RimSupports": "gearfe.epicyclic.rim",
+    "RimBed": "gearfe.epicyclic.rim_supports",
+    "RimSupports": "gearfe.epicyclic.rim_supports",
     "Response": "gearfe.motion.response",
     "RootStress": "gearfe.strength.root_stress",
     "Samples": "gearfe.machine.gear_mesh",
@@ -49,7 +49,7 @@ _HOME = {
     "demodulate": "gearfe.signal.demodulation",
     "contact_pattern": "gearfe.stiffness.pattern",
     "decimate": "gearfe.signal.series",
-    "envelope": "gearfe.signal.series",
+    "envelope": "gearfe.signal.spectra",
     "build_machine": "gearfe.machine.of_scene",
     "compound_planetary": "gearfe.machine.compound_planetary",
     "dataset": "gearfe.many.datasets.make",
@@ -76,17 +76,17 @@ _HOME = {
     "with_tachometer": "gearfe.signal.tachometer",
     "with_errors": "gearfe.machine.mesh_errors",
     "Speed": "gearfe.machine.speed",
-    "with_speed": "gearfe.machine.speed",
+    "with_speed": "gearfe.machine.run_up",
     "expected_lines": "gearfe.signal.spectral_lines",
     "fit_surrogate": "gearfe.many.surrogates.fit",
     "export_mesh": "gearfe.decks.mesh_file",
     "face_load": "gearfe.studies.pattern",
     "fast_kurtogram": "gearfe.signal.kurtogram",
     "find_lines": "gearfe.signal.spectral_lines",
-    "housing_signal": "gearfe.signal.housing",
-    "ring_window": "gearfe.signal.housing",
+    "housing_signal": "gearfe.motion.housing",
+    "ring_window": "gearfe.motion.housing",
     "stage_lines": "gearfe.signal.stage_lines",
-    "indicator_table": "gearfe.signal.indicators",
+    "indicator_table": "gearfe.signal.indicator_table",
     "integrate": "gearfe.signal.series",
     "iso_root_stress": "gearfe.studies.root_iso",
     "load_scene": "gearfe.scene.load",

@@ -14,6 +14,7 @@ from geometry.mesh.relieved import relieved
 from geometry.mesh.section_mesh import section
 from geometry.pair.flanks import flank_forms
 from geometry.pair.gear_pair import GearPair
+from geometry.pair.modified import flank_contacts
 from geometry.tooth.modified import Flank
 from geometry.tooth.profile import arc_at
 
@@ -83,7 +84,7 @@ def write_contact_section(
 ) -> ContactDeck:
     """The deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
     gears, forms = (pair.gear_1, pair.gear_2), flank_forms(pair, flanks)
-    found = pair.contacts([phase], flanks=forms)
+    found = flank_contacts(pair, [phase], flanks=forms)
     near = np.flatnonzero(found.gap[0] < 1.5 * approach)
     order = found.order[near]
     rolls = found.roll_1[0, near], found.roll_2[0, near]

@@ -15,7 +15,7 @@ from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
-from geometry.pair.contacts import FORM, Contacts
+from geometry.pair.contacts import FORM, Contacts, contacts
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import first_touch
 from geometry.tooth.gear import Gear
@@ -117,7 +117,7 @@ def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> 
 def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials, forms=None) -> Touching:
     """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
     heights = np.linspace(0.0, min(pair.gear_1.b, pair.gear_2.b), SECTIONS)
-    found = pair.contacts((nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
+    found = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
     if forms is not None:
         found = _modified(pair, found, heights, forms)
     out = Touching([], [], ([], []), [], [], ([], []))

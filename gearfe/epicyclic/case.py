@@ -15,7 +15,7 @@ from geometry.tooth.modified import Flank
 from ..checks import is_number, numbers, truth
 from ..material import Material
 from ..stiffness.plausible import check_load
-from .rim import check_support
+from .rim_supports import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..signal.kurtogram import Kurtogram
-    from ..signal.spectra import Spectrum
+    from ..signal.spectrum import Spectrum
     from ..signal.time_frequency import Spectrogram
 
 LETTER = 0.014  # height of a letter, which lines' names need beside each other, over the width of the axes

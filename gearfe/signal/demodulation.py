@@ -6,8 +6,9 @@ import numpy as np
 
 from .kurtogram import Kurtogram, fast_kurtogram
 from .series import Signal
-from .spectra import Spectrum, squared_envelope_spectrum
+from .spectra import squared_envelope_spectrum
 from .spectral_lines import find_lines
+from .spectrum import Spectrum
 
 
 @dataclass(frozen=True, slots=True, eq=False)

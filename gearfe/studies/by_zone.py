@@ -17,7 +17,7 @@ from geometry.pair.gear_pair import GearPair
 from ..markdown import table_row
 from ..material import Material
 from ..scene.load import Scene, ScenePair, load_scene
-from ..steps import part, steps
+from ..steps import steps
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.inputs import by_gear, forces_of, two_materials, why_solid
 from ..stiffness.limits import check_count
@@ -225,9 +225,7 @@ def compare(
         shape = {"face": chosen.face, "groove": chosen.groove}
         phases, cycle = engaged_phases(*which, **shape), damage_phases(*which, **shape)
     run |= {"phases": phases, "span": "cycle"}
-    with part("", 0.0, 0.0):
-        mesh_stiffness(chosen.pair, chosen.force, chosen.materials, method="ritz", phases=1)  # imports what methods load lazily
-    for method in methods:
+    for method in methods:  # imports are no part of its seconds
         METHODS[method].load()
     curves: dict[str, StiffnessCurve] = {}
     seconds, healthy, doubt = {}, {}, {}

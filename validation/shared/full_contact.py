@@ -16,6 +16,8 @@ from gearfe.elements.fe import EDGES, flank_load
 from gearfe.flexibility.hertz import contact_modulus, half_width
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.pair.contacts import approach, opposite
+from geometry.pair.modified import flank_contacts
 from geometry.tooth.profile import arc_at, roll_at_arc
 
 
@@ -36,7 +38,7 @@ class ContactZone:
     arc : tuple of ndarray
         Arcs of their tops on the pinion from the base circle [mm].
     order : ndarray, shape (pairs,)
-        As in `geometry.pair.gear_pair.Contacts`.
+        As in `geometry.pair.contacts.Contacts`.
     """
 
     approach: float
@@ -87,7 +89,7 @@ def full_contact(
     -------
     ContactZone
     """
-    found = pair.contacts([phase], extended=extended, flanks=flanks)
+    found = flank_contacts(pair, [phase], extended=extended, flanks=flanks)
     near = np.flatnonzero(found.gap[0] < 0.02 * pair.gear_1.m_n)
     order = found.order[near]
     first, second, gaps = [], [], []
@@ -122,15 +124,15 @@ def _zone(pair, found, k, line_load, modulus, per_width, reach, flanks):
     arc = arc[(arc <= top + 1e-9 * a) & (arc > arc_at(gear, gear.roll_f))]
     nominal = np.full(arc.shape, found.nominal[0, k])
     if flanks is None:
-        gap, met = pair.opposite(roll_at_arc(gear, arc), nominal, driver=driver)
+        gap, met = opposite(pair, roll_at_arc(gear, arc), nominal, driver=driver)
     else:
         own = {"start": found.gap[0, k], "flanks": flanks, "order": found.order[k]}
-        gap, met = pair.approach(roll_at_arc(gear, arc), nominal, driver=driver, **own)
+        gap, met = approach(pair, roll_at_arc(gear, arc), nominal, driver=driver, **own)[:2]
     other = pair.gear_2 if driver else pair.gear_1
-    opposite = arc_at(other, np.nan_to_num(met, nan=-1.0))
-    there = np.isfinite(met) & (opposite <= arc_at(other, other.roll_a)) & (opposite > arc_at(other, other.roll_f))
-    arc, opposite, gap = arc[there], opposite[there], gap[there]
-    return (arc, opposite, gap) if driver else (opposite[::-1], arc[::-1], gap[::-1])
+    faced = arc_at(other, np.nan_to_num(met, nan=-1.0))
+    there = np.isfinite(met) & (faced <= arc_at(other, other.roll_a)) & (faced > arc_at(other, other.roll_f))
+    arc, faced, gap = arc[there], faced[there], gap[there]
+    return (arc, faced, gap) if driver else (faced[::-1], arc[::-1], gap[::-1])
 
 
 def _influence(gear, material, state, zones, refine):

@@ -9,6 +9,7 @@ from gearfe.contact.plane import PairContact
 from gearfe.energy.closed import coupled, textbook
 from gearfe.material import Material
 from gearfe.stiffness.solve import mesh_stiffness
+from geometry.pair.contacts import contacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +93,7 @@ def ladder(pair, force, material, phases=64):
         solved = PairContact(pair, materials, flexible, phase, extended=False, state="plane strain").solve(force / width)
         curves[name] = force / (solved.closing * 1e-3)
     curves["fe"] = reference.k
-    alone_there = np.isfinite(pair.contacts(phase, extended=False).gap).sum(axis=1) == 1
+    alone_there = np.isfinite(contacts(pair, phase, extended=False).gap).sum(axis=1) == 1
     return [Rung(name, k, _mean(k[alone_there]), _mean(k[~alone_there])) for name, k in curves.items()]
 
 

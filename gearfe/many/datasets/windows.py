@@ -7,9 +7,9 @@ import numpy as np
 
 from ...machine.of_scene import build_machine
 from ...machine.tables import Machine, Stage
+from ...motion.housing import housing_signal
 from ...motion.response import Response
 from ...motion.step_control import default_step
-from ...signal.housing import housing_signal
 from ...signal.series import Signal, decimate
 from ...studies.vibration import recorded
 from ...threads import own_warnings

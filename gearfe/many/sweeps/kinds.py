@@ -11,7 +11,6 @@ from ...machine.of_scene import build_machine
 from ...motion.step_control import default_step
 from ...scene.load import Scene
 from ...scene.strict import NUMBER, TEXT, TRUTH, WHOLE
-from ...signal.indicators import indicators
 from ...signal.series import Signal
 from ...stiffness.curve import StiffnessCurve
 from ...stiffness.solve import mesh_stiffness
@@ -118,7 +117,7 @@ def vibration(
     channel = options["channel"] or f"force {mesh.name}"
     signal = Signal(np.asarray(found[channel], dtype=float), rate, found.unit(channel), name=channel)
     fault = stage.fault or stage.turning
-    seen = indicators(signal, *((stage.mesh, fault) if fault else (None, None)))
+    seen = signal.indicators(*((stage.mesh, fault) if fault else (None, None)))
     row: dict[str, Any] = {name.replace(" ", "_"): seen.get(name) for name in INDICATORS}
     row |= {"rms": seen["rms"], "peak": seen["peak"], "mesh_line": seen.get("mesh line"), "unit": signal.unit}
     row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": found.stats["free"]}

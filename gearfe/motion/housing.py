@@ -2,20 +2,17 @@
 
 import re
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
-from .series import Signal
-
-if TYPE_CHECKING:
-    from ..motion.response import Response
+from ..signal.series import Signal
+from .response import Response
 
 
 def housing_signal(
-    response: "Response",
+    response: Response,
     *,
     kind: str = "planet_ring",
     sensor: float = 0.0,
