@@ -13,12 +13,10 @@ from geometry.damage.crack import Crack, check_apart
 from geometry.damage.pit import Pit, takes_all
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.flank_form import FlankForm
-from geometry.tooth.modified import Flank
+from geometry.tooth.modified import Flank, FlankForm
 
-from .elements.asked import is_number
+from .checks import is_number, numbers
 from .material import Material
-from .stiffness.limits import numbers
 from .supports.held import REFUSE, supports_of
 from .supports.shaft import Shaft
 from .supports.support import Support

@@ -3,7 +3,8 @@
 import math
 import warnings
 from dataclasses import dataclass
-from numbers import Real
+
+from .checks import is_number
 
 STIFFEST = 1.3e6  # MPa, above diamond
 SOFT = 500.0  # MPa, below nearly all gear materials (polyamide and POM: 1500 to 4000): 207 is more likely GPa
@@ -34,7 +35,7 @@ class Material:
         """Refuse constants no stable material has."""
         for name in ("E", "nu"):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real):
+            if not is_number(value):
                 raise ValueError(f"{name} = {value!r}, but a material needs a number here")
             object.__setattr__(self, name, float(value))
         if not (math.isfinite(self.E) and self.E > 0):

@@ -16,6 +16,8 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "flexibility": ("flexibility/test_condense.py", "flexibility/test_hertz.py", "flexibility/test_halfspace.py"),
     "supports": ("supports/test_beam.py",),
     "elements": ("elements/test_elasticity.py", "elements/test_fe3d.py::test_plane_strain_is_the_two_dimensional_fe"),
+    "decks": ("decks/test_mesh_file.py",),
+    "strength": ("strength/test_fracture.py::test_growth_angle",),
     "energy": (
         "energy/test_energy.py",
         "test_literature.py::test_healthy_curves",
@@ -32,10 +34,10 @@ QUICK = {  # room: tests (or whole files) that `-m quick` runs, cheap ones whose
     "signal": ("signal/test_signals.py", "signal/test_spectral_lines.py", "signal/test_demodulation.py"),
     "scene": ("scene/test_scene.py", "scene/test_references.py", "test_golden.py::test_verdicts_follow_from_the_numbers"),
     "studies": ("studies/test_case_table.py",),
-    "datasets": ("datasets/test_dataset_plan.py",),
-    "surrogates": ("surrogates/test_space.py",),
-    "store": ("store/test_store.py",),
-    "sweeps": ("sweeps/test_study.py",),
+    "many": (
+        *("many/datasets/test_dataset_plan.py", "many/surrogates/test_space.py"),
+        *("many/store/test_store.py", "many/sweeps/test_study.py"),
+    ),
     "cli": ("cli/test_cli.py::test_stiffness_writes_curve_and_plot",),
     "validation": ("validation/test_arbiter.py::test_flank_is_the_involute",),
     "literature": (

@@ -191,7 +191,7 @@ def test_results_that_are_kept_are_never_changed():
 
 def test_files_take_the_rights_of_new_files_and_the_mask_is_not_touched(tmp_path, monkeypatch):
     from gearfe.files import written
-    from gearfe.store.folder import durable
+    from gearfe.many.store.folder import durable
 
     (tmp_path / "plain").touch()
     monkeypatch.setattr(os, "umask", None)

@@ -94,7 +94,7 @@ def test_what_public_names_take_and_give_is_typed():
         new = classes_in(waiting.pop()) - known
         known |= new
         waiting += new
-    assert {"Spectrum", "Contacts", "Intensity", "Steady", "Scene"} <= {one.__name__ for one in known}
+    assert {"Spectrum", "Contact3D", "Intensity", "Steady", "Scene"} <= {one.__name__ for one in known}
     assert [text for one in known - named for text in untyped(one)] == []
 
 

@@ -5,8 +5,8 @@ from .progress import working
 
 def dataset(arguments):
     """``gearfe dataset``."""
-    from ..datasets.make import dataset as run
-    from ..datasets.size import size_of
+    from ..many.datasets.make import dataset as run
+    from ..many.datasets.size import size_of
 
     if arguments.dry_run:
         with working("trying one condition"):

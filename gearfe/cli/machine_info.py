@@ -24,7 +24,8 @@ OPTIONAL = {  # package: (module, what it is good for); of the project's extras
 
 def lines():
     """Lines of text, one thing each."""
-    from ..elements.solver import dissects, free_memory
+    from ..elements.solver import dissects
+    from ..memory import free_memory
     from ..stiffness.cache import folder
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"

@@ -5,8 +5,8 @@ from .progress import working
 
 def sweep(arguments):
     """``gearfe sweep``."""
-    from ..sweeps.plan import plan_sweep
-    from ..sweeps.run import sweep as run
+    from ..many.sweeps.plan import plan_sweep
+    from ..many.sweeps.run import sweep as run
 
     if arguments.dry_run:
         with working("trying one block"):

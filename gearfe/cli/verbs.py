@@ -219,7 +219,7 @@ def render(arguments):
 def mesh(arguments):
     """``gearfe mesh``."""
     from ..contact.bodies import seen_gears
-    from ..elements.mesh_file import export_mesh
+    from ..decks.mesh_file import export_mesh
     from ..scene.load import load_scene
 
     _check_outputs(arguments, output="mesh", picture="picture")

@@ -27,7 +27,7 @@ class Cells:
     """Parts of contact lines, usually of one phase, that may carry load, as arrays of n.
 
     `half` 0, or 1 for the second half of a herringbone pair; `order` of the tooth pair (as in
-    `geometry.pair.gear_pair.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
+    `geometry.pair.contacts.Contacts`); `z` their middles along the width from the end at z = 0 [mm], `width` their extent along
     it [mm]; `depth` the distance from the end that touches first [mm]; `nominal` the abscissa on the line of action [mm],
     `roll_1`, `roll_2` roll lengths where they touch [mm], `gap` the unloaded distance in the transverse section [mm]; `corner` as
     of `geometry.pair.contacts.Contacts`; `load` force at right angles to the flanks [N]; `pressure` largest of Hertz's [MPa], nan

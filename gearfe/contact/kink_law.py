@@ -11,6 +11,7 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
+from geometry.pair.modified import flank_contacts
 from geometry.tooth.profile import arc_at
 
 from ..energy.ritz.plane import flexibility
@@ -117,7 +118,7 @@ def _stays(pair, flanks, gear, roll, nominal, sign, modulus, line_load):
     """How far from a kink [mm of abscissa], to one side, contact is on it or so near that it feels it, while gaps can close."""
     reach = SOFT / (math.pi * modulus) * line_load
     away = np.arange(1, SAMPLES + 1) / SAMPLES * pair.p_bt
-    found = pair.contacts((nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
+    found = flank_contacts(pair, (nominal + sign * away - pair.path[0]) / pair.p_bt, extended=True, flanks=flanks)
     column = int(np.flatnonzero(found.order == 0)[0])
     rolls, host = (found.roll_1[:, column], found.roll_2[:, column]), (pair.gear_1, pair.gear_2)[gear]
     beside = REACH * half_width(line_load, np.abs(pair.relative_radius(*rolls)), modulus)

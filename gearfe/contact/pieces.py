@@ -1,7 +1,7 @@
 """Contact lines of one phase in pieces: what pits leave of them (`geometry.pair.lines`), and where corners may touch beyond.
 
 On the path of contact a line runs across both flanks. Where the plane of action has left it, sections may still touch: a corner
-of one gear on the other's side, with a gap that is exact kinematics of the section (`gearfe.GearPair.contacts`).
+of one gear on the other's side, with a gap that is exact kinematics of the section (`geometry.pair.contacts.contacts`).
 """
 
 import math

@@ -10,6 +10,7 @@ import math
 import numpy as np
 from scipy.linalg import block_diag
 
+from geometry.pair.modified import flank_contacts
 from geometry.tooth.profile import arc_at
 
 from ..flexibility.hats import TIP_ZONE
@@ -73,7 +74,7 @@ class PairContact:
         self.pair, self.flexibility, self.flanks = pair, flexibility, flanks
         self.coefficients = [half_plane(m, state) for m in materials]
         self.modulus = contact_modulus(materials, state)
-        self.found = found = pair.contacts(phase, extended=extended, flanks=flanks)
+        self.found = found = flank_contacts(pair, phase, extended=extended, flanks=flanks)
         self.extended = extended
         # the pair ahead of another is on the pinion's next tooth on the loaded side, but on the wheel's on the other side
         matrices = [flexibility[0].matrix(found.roll_1, found.order), flexibility[1].matrix(found.roll_2, -found.order)]

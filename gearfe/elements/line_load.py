@@ -7,10 +7,10 @@ import numpy as np
 from geometry.mesh.solid import Solid
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
-from .asked import check_length
+from ..checks import check_length
 from .fe3d import _points
 from .hexahedron import assemble, face_shapes
-from .loaded_tooth import load_at
+from .one_tooth import load_at
 from .solver import factor, plan
 
 SPREAD = 0.15  # half width of the hat over which a load is spread [m_n]

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,9 @@ from geometry.pair.planetary import PlanetarySet
 from geometry.tooth.modified import Flank
 
 from ..case import check_load
+from ..checks import is_number, numbers, truth
 from ..material import Material
-from ..stiffness.limits import numbers, truth
-from .rim import check_support
+from .rim_supports import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")
@@ -91,7 +90,7 @@ class PlanetaryCase:
         put(self, "angles", tuple(assembled(self.gears, even if self.angles is None else self.angles).tolist()))
         for name, most in (("force", math.inf), ("pin", math.nan)):
             value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) != most:
+            if not is_number(value) or not 0 < float(value) != most:
                 raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
             put(self, name, float(value))
         materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ..pictures.set_plot import draw_curves
 from ..units import NEWTON_PER_UM
-from .rim import RimSupports, rim_angles, rim_moved
+from .rim import rim_angles, rim_moved
+from .rim_supports import RimSupports
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from geometry.mesh.outline import stations
 from geometry.tooth.profile import arc_at
 
-from ..elements.asked import checked_refine, is_number
-from ..elements.contact_deck import TIP, _flank_faces, _posed
-from ..elements.deck import element_nodes, held_nodes
+from ..checks import checked_refine, is_number
+from ..decks.contact_deck import TIP, _flank_faces, _posed
+from ..decks.deck import element_nodes, held_nodes
 from ..elements.fe import EDGES
 from ..files import check_output, written
 from .case import PlanetaryCase

@@ -7,14 +7,15 @@ from typing import Any
 import numpy as np
 
 from geometry.mesh.both_flanks import both_flanks
+from geometry.pair.contacts import contacts
 from geometry.tooth.profile import arc_at
 
-from ..elements.deck import held_nodes
+from ..checks import whole
+from ..decks.deck import held_nodes
 from ..flexibility.hertz import contact_modulus, half_width
-from ..signal.given import whole
 from .case import PlanetaryCase
 from .curves import SetCurves
-from .rim import RimSupports
+from .rim_supports import RimSupports
 from .standing import Standing, directions, standing, tooth_angles
 
 NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed together
@@ -65,7 +66,7 @@ def touching(case, stand, curves, at):
         for i in range(case.planets):
             phase = float(phases[0, i])
             whole = math.floor(phase)
-            found = pair.contacts([phase - whole])
+            found = contacts(pair, [phase - whole])
             load = curves.force[inner, at, i] / case.width
             force = dict(zip(curves.order.tolist(), curves.pair_force[inner, at, i].tolist(), strict=True))
             approach = curves.force[inner, at, i] / curves.k[inner, at, i] * 1e3

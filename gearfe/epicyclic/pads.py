@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -10,10 +9,8 @@ from numpy.typing import NDArray
 
 from ..elements.elasticity import GAUSS_3
 from ..flexibility.hertz import half_plane, hat_logarithm
+from .rim_supports import RimSupports
 from .whole_gear import PLACES, WholeGear
-
-if TYPE_CHECKING:
-    from .rim import RimSupports
 
 TERMS = 10  # polynomials on a pad, radial and tangential
 POINTS = 64  # of their quadrature
@@ -36,7 +33,7 @@ class Pads:
     moved: NDArray[np.complex128]
 
 
-def pads_on(whole: WholeGear, support: "RimSupports", width: float, moved: NDArray[np.complex128]) -> Pads:
+def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray[np.complex128]) -> Pads:
     """`Pads` of a ring, stiffnesses shared by the face `width` [mm]; `moved` as of `WholeGear.loose`."""
     gear, z, nodes = whole.gear, whole.gear.z, whole.angle.size
     step = 4 * math.pi / (z * nodes)  # of an edge of the rim

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from geometry.mesh.outline import stations
 from geometry.tooth.profile import cartesian
 
-from ..elements.asked import is_number
-from ..elements.contact_deck import _posed
+from ..checks import is_number
+from ..decks.contact_deck import _posed
 from ..elements.elasticity import Body
 from ..files import check_output
 from ..pictures.set_plot import draw_set

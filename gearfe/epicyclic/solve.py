@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..elements.asked import checked_refine
+from ..checks import checked_refine, numbers, truth, whole
 from ..flexibility.solved import solved_gears
-from ..signal.given import whole
 from ..steps import steps
-from ..stiffness.limits import FURTHEST, numbers, truth
+from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
 from .curves import SetCurves

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..stiffness.limits import numbers
+from ..checks import numbers
 
 if TYPE_CHECKING:
     from geometry.pair.planetary import PlanetarySet

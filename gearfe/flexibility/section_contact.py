@@ -11,7 +11,7 @@ MARKS = ("crack_closed_phases", "tip_in_fillet_phases")  # what a curve's `meta`
 class Solved:
     """Contact at some phases, per unit width.
 
-    `order` (pairs,) as in `geometry.pair.gear_pair.Contacts`, `closing` (phases,) how far the load moves the gears beyond the
+    `order` (pairs,) as in `geometry.pair.contacts.Contacts`, `closing` (phases,) how far the load moves the gears beyond the
     first touch [mm], `tangent` (phases,) [N/mm per mm], `line_load` (phases, pairs) [N/mm], `pressure` (phases, pairs) [MPa] (nan
     in corner contact, where it is unbounded), `closed` the phases at which crack faces touch and were kept from passing through
     each other, `fillet` those at which a tip presses into its mate's fillet, `unloaded` (phases,) the approach at which the first

@@ -10,8 +10,8 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..elements.solver import free_memory
 from ..machine.tables import Machine
+from ..memory import free_memory
 from ..threads import single
 from . import excitation
 from .fixed_step import fixed_steps

@@ -1,17 +1,12 @@
-"""Plots (matplotlib) of stiffness: curves, error maps, lengths of contact lines."""
+"""Plots (matplotlib) of stiffness: curves, error maps."""
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
 from .look import SQUASHED, look
-
-if TYPE_CHECKING:
-    pass
-
 
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
@@ -153,22 +148,3 @@ def _binned(values, bins):
         return np.searchsorted(few, values), [f"{v:g}" for v in few]
     edges = np.linspace(values.min(), values.max(), bins + 1)
     return np.clip(np.digitize(values, edges) - 1, 0, bins - 1), [f"{v:.3g}" for v in (edges[1:] + edges[:-1]) / 2]
-
-
-def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
-    """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.5, 3.7), layout="constrained")
-    axes = figure.subplots()
-    for number, (name, length) in enumerate(lengths.items()):
-        axes.plot(phase, length, label=name, **look(number))
-        if name in (others or {}):
-            axes.plot(phase, others[name], label=f"{name}, {told}", linewidth=0.7, **look(number))
-    axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
-    axes.set_ylabel("contact line [mm]")
-    axes.set_title(title, fontsize=10)
-    if min(length.min() for length in lengths.values()) < SQUASHED * max(length.max() for length in lengths.values()):
-        axes.set_ylim(bottom=0)
-    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
-    return save_figure(figure, path, dpi=100)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ..signal.kurtogram import Kurtogram
-    from ..signal.spectra import Spectrum
+    from ..signal.spectrum import Spectrum
     from ..signal.time_frequency import Spectrogram
 
 LETTER = 0.014  # height of a letter, which lines' names need beside each other, over the width of the axes
@@ -78,23 +78,6 @@ def _apart(places, least):
         push = np.where(gaps > 0, gaps / 2, 0.0)
         found += np.append(0.0, push) - np.append(push, 0.0)
     return dict(zip(names, found.tolist(), strict=True))
-
-
-def plot_waves(signals, path, seconds=0.25, *, dpi=60, title=""):
-    """Draw the first `seconds` of signals by name below each other, with one scale, under a `title`."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
-    for axes, (name, one) in zip(
-        np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
-    ):
-        values = one.values[: round(seconds * one.rate)]
-        axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7, color=COLOURS[0])
-        axes.set_title(name, fontsize=9)
-        axes.set_ylabel(one.unit)
-    axes.set_xlabel("time [s]")
-    figure.suptitle(title, fontsize=10)
-    return save_figure(figure, path, dpi=dpi)
 
 
 def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
@@ -176,42 +159,3 @@ def plot_phase(
     axes.set_xlabel(f"displacement [{unit}]")
     axes.set_ylabel(f"velocity [{unit}/s]")
     return save_figure(figure, path, dpi=120)
-
-
-def plot_phases(portraits, unit="m", path=None, *, title=""):
-    """Phase portraits with their Poincare points side by side, on common axes.
-
-    Parameters
-    ----------
-    portraits : dict of str to ((ndarray, ndarray), ndarray)
-        By case what `plot_phase` takes as portrait and section.
-    unit : str
-        Of the displacement.
-    path : path, optional
-    title : str
-        What is shown: scene, channel.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
-    from matplotlib.figure import Figure
-
-    columns = min(3, len(portraits))
-    rows = -(-len(portraits) // columns)
-    figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
-    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
-        place.plot(x, v, linewidth=0.3, color=COLOURS[0])
-        place.plot(*np.transpose(points), ".", color=COLOURS[1], markersize=4)
-        place.set_title(name, fontsize=8)
-        place.tick_params(labelsize=7)
-        place.ticklabel_format(scilimits=(-2, 3))
-        place.locator_params(axis="x", nbins=4)
-        place.xaxis.get_offset_text().set_size(7)
-    for place in axes.flat[len(portraits) :]:
-        place.set_visible(False)
-    figure.suptitle(title, fontsize=9)
-    figure.supxlabel(f"displacement [{unit}]", fontsize=8)
-    figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
-    return save_figure(figure, path, dpi=80)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..many.sweeps.effects import curve_bands, main_effects
+from ..many.sweeps.runs import Runs, open_runs
 from ..pictures.look import COLOURS
-from ..sweeps.effects import curve_bands, main_effects
-from ..sweeps.runs import Runs, open_runs
 from .figures import DASH, LOOK
 from .template import page_maker
 

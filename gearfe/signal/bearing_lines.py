@@ -2,7 +2,8 @@
 
 import math
 
-from .given import hertz, whole
+from ..checks import whole
+from .given import hertz
 
 
 def bearing_lines(

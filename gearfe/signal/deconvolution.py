@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solve_toeplitz
 from scipy.signal import correlate, lfilter
 
-from .given import hertz, whole
+from ..checks import whole
+from .given import hertz
 from .series import Signal
 
 RIDGE = 1e-9  # of the signal's power, added to it: keeps the normal equations regular where it has no power at a frequency

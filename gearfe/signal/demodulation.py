@@ -1,13 +1,14 @@
 """Faults under noise: the band with the most impulsive signal, and the spectrum of its squared envelope."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from .kurtogram import Kurtogram, fast_kurtogram
 from .series import Signal
-from .spectra import Spectrum, squared_envelope_spectrum
+from .spectra import squared_envelope_spectrum
 from .spectral_lines import find_lines
+from .spectrum import Spectrum
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,10 +75,3 @@ def demodulate(
     names = {("" if k == 1 else f"{k} ") + "f_fault": k * fault_frequency for k in range(1, count + 1)}
     _, around = spectrum.within(0.5 * fault_frequency, (count + 0.5) * fault_frequency)
     return Demodulated(kurtogram, spectrum, find_lines(spectrum, names), float(np.median(around)))
-
-
-def with_noise(signal: Signal, decibels: float, seed: int = 0) -> Signal:
-    """The signal with white Gaussian noise, its power `decibels` below that of the signal without its mean."""
-    size = np.std(signal.values) * 10 ** (-decibels / 20)
-    noise = np.random.default_rng(seed).standard_normal(signal.values.size)
-    return replace(signal, values=signal.values + size * noise, name=f"{signal.name} with noise {-decibels:+g} dB")

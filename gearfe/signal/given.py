@@ -1,19 +1,14 @@
 """What functions of signals are given, checked at the border: rows of samples, frequencies, whole numbers."""
 
-import math
-from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import is_number
+
 SMALLEST, LARGEST = 1e-30, 1e30  # of what is measured, in any unit: eighth powers of it stay numbers
 HERTZ = (1e-12, 1e15)  # frequencies that clocks have
-
-
-def _real(value: Any) -> bool:
-    """Whether it is a real number: no text, no truth value."""
-    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
 
 
 def samples(name: str, values: Any) -> NDArray[np.float64]:
@@ -44,23 +39,8 @@ def samples(name: str, values: Any) -> NDArray[np.float64]:
 
 def hertz(name: str, value: Any) -> None:
     """Raise ValueError unless it is a frequency: a positive number of Hz, of those that clocks have."""
-    if not (_real(value) and HERTZ[0] <= value <= HERTZ[1]):
+    if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
         raise ValueError(f"{name} = {value!r}, but give a positive number of Hz")
-
-
-def whole(name: str, value: Any, least: int) -> int:
-    """A whole number from `least` on.
-
-    Raises
-    ------
-    ValueError
-        If it is another kind of number, ``24.0``, or smaller.
-    """
-    if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
-        close = _real(value) and math.isfinite(value) and value == int(value) and value >= least
-        told = f": give {name} = {int(value)}" if close else f" from {least} on"
-        raise ValueError(f"{name} = {value!r}, but it is a whole number{told}")
-    return int(value)
 
 
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
@@ -74,7 +54,7 @@ def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
     if band is None:
         return 0.0, rate / 2
     two = band if isinstance(band, (tuple, list, np.ndarray)) else ()
-    fine = len(two) == 2 and all(map(_real, two))
+    fine = len(two) == 2 and all(map(is_number, two))
     if not fine or not 0 <= two[0] < two[1] <= rate / 2 * (1 + 1e-12):
         raise ValueError(f"band = {band!r} Hz, but {name} has 0 to {rate / 2:g} Hz: give (low, high) with low < high inside")
     return float(two[0]), float(two[1])

@@ -1,22 +1,15 @@
-"""Condition indicators of the articles: of the time signal, of the sidebands, and their increments against a healthy signal.
+"""Condition indicators of the articles: of the time signal and of the sidebands.
 
 All but `rms` take the mean out first, as an accelerometer does: with the mean force or displacement left in, they would
 measure the load. S0 ... S4 are the articles.
 """
 
 import math
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..markdown import table_row
 from .given import hertz
-from .spectra import spectrum
 from .spectral_lines import find_lines
-
-if TYPE_CHECKING:
-    from .series import Signal
 
 SOURCES = {
     "rms": "sqrt(mean(x**2)), S4; with the mean",
@@ -31,18 +24,7 @@ SOURCES = {
     "SC (S0)": "sum(f E) / sum(E) from f_m - f_fault to f_m + f_fault, f frequency, E amplitude squared, S0 [Hz]",
     "SC (S1)": "sum(A f) / sum(f) over the same bins, A amplitude, f distance from the origin, S1 [unit of the signal]",
 }
-LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
-    "rms": "rms (with the mean)",
-    "peak": "peak (from the mean)",
-    "crest factor S4": "peak over rms with the mean (article S4)",
-    "mesh line": "amplitude at the mesh frequency",
-    "sideband index": "mean amplitude of the first sidebands",
-    "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
-    "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
-}
 LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
-TENFOLD = 900.0  # percent: from here on growth is told as a factor
-GREAT = 1e8  # percent: beyond, there was nothing to grow from
 
 
 def rms(values):
@@ -172,122 +154,37 @@ def _around(found, mesh_frequency, fault_frequency):
     return frequency, amplitude
 
 
-def indicators(
-    signal: "Signal",
-    mesh_frequency: float | None = None,
-    fault_frequency: float | None = None,
-    *,
-    window: str | tuple[Any, ...] = "hann",
-    tolerance: float | None = None,
-    harmonics: int = 1,
-) -> dict[str, float]:
-    """All indicators of a signal, by the names of `SOURCES`, which states their formulae.
-
-    Parameters
-    ----------
-    signal : Signal
-        Without its transient.
-    mesh_frequency, fault_frequency : float, optional
-        [Hz]; without them only the indicators of the time signal.
-    window, tolerance, harmonics
-        See `gearfe.spectrum`, `find_lines`, `sideband_index`.
-
-    Returns
-    -------
-    dict of str to float
-    """
-    x = signal.values
-    if not np.ptp(x) > 1e-12 * np.abs(x).max():
-        raise ValueError(f"{signal.name} is constant: it has no indicators")
-    out = {
-        "rms": rms(x),
-        "peak": peak(x),
-        "crest factor": crest_factor(x),
-        "crest factor S4": crest_factor_s4(x),
-        "kurtosis": kurtosis(x),
-        "shape factor": shape_factor(x),
-        "impulse factor": impulse_factor(x),
+def of_values(values, name):
+    """Indicators of the samples ``(n,)`` of a signal called `name`."""
+    if not np.ptp(values) > 1e-12 * np.abs(values).max():
+        raise ValueError(f"{name} is constant: it has no indicators")
+    return {
+        "rms": rms(values),
+        "peak": peak(values),
+        "crest factor": crest_factor(values),
+        "crest factor S4": crest_factor_s4(values),
+        "kurtosis": kurtosis(values),
+        "shape factor": shape_factor(values),
+        "impulse factor": impulse_factor(values),
     }
+
+
+def both_given(mesh_frequency, fault_frequency):
+    """Whether both frequencies are given, positive numbers of Hz; ValueError for one alone."""
     if (mesh_frequency is None) != (fault_frequency is None):
         raise ValueError(f"mesh_frequency = {mesh_frequency}, fault_frequency = {fault_frequency}: give both, or neither")
     for name, value in {"mesh_frequency": mesh_frequency, "fault_frequency": fault_frequency}.items():
         if value is not None:
             hertz(name, value)
-    if mesh_frequency is None:
-        return out
-    found = spectrum(signal, window=window)
+    return mesh_frequency is not None
+
+
+def of_lines(found, mesh_frequency, fault_frequency, *, tolerance=None, harmonics=1):
+    """Indicators of the lines of a `Spectrum` of amplitudes, see `find_lines` and `sideband_index`."""
     at = mesh_frequency, fault_frequency
-    return out | {
+    return {
         "mesh line": find_lines(found, {"f_m": mesh_frequency}, tolerance, between=True)["f_m"][1],
         "sideband index": sideband_index(found, *at, tolerance=tolerance, harmonics=harmonics),
         "SC (S0)": sideband_centroid_s0(found, *at),
         "SC (S1)": sideband_centroid_s1(found, *at),
     }
-
-
-def increment(value, healthy):
-    """``(value - healthy) / healthy`` in percent (S4)."""
-    if not healthy:
-        raise ValueError(f"healthy = {healthy}, but an increment in percent needs a value other than 0")
-    return 100 * (value - healthy) / healthy
-
-
-def indicator_table(
-    signals: Mapping[str, "Signal"],
-    mesh_frequency: float | None = None,
-    fault_frequency: float | None = None,
-    *,
-    healthy: str = "healthy",
-    **options: Any,
-) -> dict[str, dict[str, tuple[float, float]]]:
-    """Indicators of several cases, each with its increment against the healthy one.
-
-    Parameters
-    ----------
-    signals : dict of str to Signal
-        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
-    mesh_frequency, fault_frequency, **options
-        See `indicators`.
-    healthy : str
-        The case to compare with.
-
-    Returns
-    -------
-    dict of str to dict of str to (float, float)
-        ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0.
-    """
-    if healthy not in signals:
-        raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
-    first = signals[healthy]
-    for case, signal in signals.items():
-        if (signal.unit, signal.rate, signal.values.size) != (first.unit, first.rate, first.values.size):
-            raise ValueError(
-                f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
-                f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
-            )
-    found = {case: indicators(signal, mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
-    reference = found[healthy]
-    return {
-        case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
-        for case, row in found.items()
-    }
-
-
-def table_text(table):
-    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
-
-    What is a millionth or less in the healthy signal is taken for none there.
-    """
-    names = list(next(iter(table.values())))
-    grown = {case for case, row in table.items() if any(more and not math.isnan(more) for _, more in row.values())}
-    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
-    lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
-    return "\n".join(map(table_row, lines))
-
-
-def _cell(value, more, grown):
-    if not grown or math.isnan(more):
-        return f"{value:.4g}"
-    if abs(more) < TENFOLD:
-        return f"{value:.4g} ({more:+.1f} %)"
-    return f"{value:.4g} ({f'{1 + more / 100:.3g} x healthy' if abs(more) < GREAT else 'healthy: none'})"

@@ -2,16 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import ShortTimeFFT, fftconvolve, firwin, get_window, upfirdn
 
-from .spectra import Spectrum
-
-if TYPE_CHECKING:
-    from .series import Signal
+from .series import Signal
+from .spectrum import Spectrum
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
@@ -20,7 +18,7 @@ EMPTY = 1e-14  # of the power of the signal
 FEWEST = 128  # samples at the deepest level, before the ends are cut
 
 
-def spectral_kurtosis(signal: "Signal", size: int, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
+def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """Kurtosis over time of every bin of a short-time Fourier transform.
 
     ::
@@ -94,7 +92,7 @@ class Kurtogram:
         return centre - width / 2, centre + width / 2
 
 
-def fast_kurtogram(signal: "Signal", levels: int | None = None, *, filters: str = "sharp") -> Kurtogram:
+def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = "sharp") -> Kurtogram:
     """Kurtosis of the complex envelope in the bands of a 1/3-binary tree of quasi-analytic filters.
 
     Level 0 is the whole signal. Each of the ``2**k`` bands of level k, ``rate / 2**(k + 1)`` wide, is halved into level

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft
 
-from .given import samples, whole
+from ..checks import whole
+from .given import samples
 
 EMPTY = 1e-9  # of the average: a mesh line that small is rounding
 

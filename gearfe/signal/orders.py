@@ -8,9 +8,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft, rfft
 from scipy.interpolate import make_interp_spline
 
-from .given import samples, whole
+from ..checks import whole
+from .given import samples
 from .series import Signal
-from .spectra import Spectrum, amplitudes
+from .spectrum import Spectrum, amplitudes
 
 MOST = 10**8  # samples per turn
 SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multiply the samples

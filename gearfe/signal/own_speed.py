@@ -8,7 +8,8 @@ from scipy.interpolate import make_interp_spline
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import fftconvolve, get_window, stft
 
-from .given import hertz, whole
+from ..checks import whole
+from .given import hertz
 from .series import Signal
 
 WIDTH = 4  # bins of a line with Hann's window: how far a line may move from one window to the next half

@@ -1,4 +1,4 @@
-"""`Signal`: a quantity sampled in time, measured or computed; its envelope, its integral over time."""
+"""`Signal`: a quantity sampled in time, measured or computed; at a lower rate, and its integral over time."""
 
 import math
 from dataclasses import dataclass
@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 from scipy.signal import resample_poly
 
-from .given import hertz, samples, whole
-from .indicators import indicators
-from .spectra import analytic
+from ..checks import whole
+from .given import hertz, samples
+from .indicators import both_given, of_lines, of_values
+from .spectrum import amplitudes
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,22 +90,32 @@ class Signal:
         return 2 * math.pi * self.shaft_frequency * self.time
 
     def indicators(
-        self, mesh_frequency: float | None = None, fault_frequency: float | None = None, **options: Any
+        self,
+        mesh_frequency: float | None = None,
+        fault_frequency: float | None = None,
+        *,
+        window: str | tuple[Any, ...] = "hann",
+        tolerance: float | None = None,
+        harmonics: int = 1,
     ) -> dict[str, float]:
-        """Condition indicators by name, see `gearfe.signal.indicators.indicators`."""
-        return indicators(self, mesh_frequency, fault_frequency, **options)
+        """Condition indicators by the names of `gearfe.signal.indicators.SOURCES`, which states their formulae.
 
+        Parameters
+        ----------
+        mesh_frequency, fault_frequency : float, optional
+            [Hz]; without them only the indicators of the time signal, which should be without its transient.
+        window, tolerance, harmonics
+            See `gearfe.spectrum`, `gearfe.find_lines`, `gearfe.signal.indicators.sideband_index`.
 
-def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
-    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
-    return Signal(
-        np.abs(analytic(signal, band)),
-        signal.rate,
-        signal.unit,
-        f"envelope of {signal.name}",
-        signal.angle,
-        signal.shaft_frequency,
-    )
+        Returns
+        -------
+        dict of str to float
+        """
+        out = of_values(self.values, self.name)
+        if not both_given(mesh_frequency, fault_frequency):
+            return out
+        found = amplitudes(self.values, self.rate, window, self.unit, self.name, "Hz")
+        return out | of_lines(found, mesh_frequency, fault_frequency, tolerance=tolerance, harmonics=harmonics)
 
 
 def decimate(signal: Signal, rate: float) -> Signal:

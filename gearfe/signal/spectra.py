@@ -1,60 +1,17 @@
-"""Spectra of signals: amplitude, power density, squared envelope; their type `Spectrum`, and the analytic signal."""
+"""Spectra of signals: amplitude, power density, squared envelope; the analytic signal and the envelope."""
 
-import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import fft, fftfreq, ifft
-from scipy.signal import get_window, periodogram, welch
+from scipy.signal import welch
 
 from .given import band_of
-
-if TYPE_CHECKING:
-    from .series import Signal
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Spectrum:
-    """Values over frequency, or over shaft order.
-
-    Attributes
-    ----------
-    frequency : ndarray, shape (m,)
-        Frequencies from 0 on [Hz], or shaft orders (per turn), or quefrencies [s], as `axis` says.
-    values : ndarray, shape (m,)
-        Values at these frequencies, in `unit`.
-    unit : str
-    resolution : float
-        Distance of two bins.
-    bandwidth : float
-        Equivalent noise bandwidth of a bin, 1.5 times `resolution` with a Hann window.
-    name, axis : str
-        `axis` is ``Hz``, ``order``, or ``s`` of a cepstrum.
-    """
-
-    frequency: NDArray[np.float64]
-    values: NDArray[np.float64]
-    unit: str
-    resolution: float
-    bandwidth: float
-    name: str = "spectrum"
-    axis: str = "Hz"
-
-    def within(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Frequencies and values of the bins from `low` to `high`, both included."""
-        slack = 1e-6 * self.resolution
-        rows = (self.frequency >= low - slack) & (self.frequency <= high + slack)
-        if not rows.any():
-            raise ValueError(
-                f"{self.name} has no bin from {low:g} to {high:g} {self.axis}: it reaches from {self.frequency[0]:g} to "
-                f"{self.frequency[-1]:g} in steps of {self.resolution:g}; sample faster or longer"
-            )
-        return self.frequency[rows], self.values[rows]
+from .series import Signal
+from .spectrum import Spectrum, amplitudes, noise_bins
 
 
-def spectrum(signal: "Signal", *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
+def spectrum(signal: Signal, *, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """One-sided amplitude spectrum: a sine of amplitude A on a bin gives A there.
 
     The mean is taken out first and stands at 0 Hz. With ``hann`` a line between two bins is up to 15 % too low (scalloping),
@@ -87,24 +44,8 @@ def spectrum(signal: "Signal", *, window: str | tuple[Any, ...] = "hann") -> Spe
     return amplitudes(signal.values, signal.rate, window, signal.unit, signal.name, "Hz")
 
 
-def amplitudes(values, rate, window, unit, name, axis):
-    """`Spectrum` of equally spaced values, `rate` of them per second or per turn."""
-    n, mean = values.size, values.mean()
-    frequency, power = periodogram(values - mean, rate, window=window, detrend=False, scaling="spectrum")
-    amplitude = np.sqrt(2 * power)
-    if n % 2 == 0:
-        amplitude[-1] = math.sqrt(power[-1])  # Nyquist's bin has no twin at negative frequencies
-    amplitude[0] = abs(mean)
-    return Spectrum(frequency, amplitude, unit, rate / n, rate / n * _noise_bins(window, n), name, axis)
-
-
-def _noise_bins(window, n):
-    w = get_window(window, n)
-    return round(float(n * (w @ w) / w.sum() ** 2), 9)
-
-
 def power_spectral_density(
-    signal: "Signal", *, resolution: float | None = None, window: str | tuple[Any, ...] = "hann"
+    signal: Signal, *, resolution: float | None = None, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
     """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
 
@@ -133,7 +74,7 @@ def power_spectral_density(
         )
     frequency, power = welch(signal.values, signal.rate, window=window, nperseg=size, detrend="constant")
     step = signal.rate / size
-    return Spectrum(frequency, power, f"({signal.unit})^2/Hz", step, step * _noise_bins(window, size), signal.name)
+    return Spectrum(frequency, power, f"({signal.unit})^2/Hz", step, step * noise_bins(window, size), signal.name)
 
 
 def analytic(signal, band=None):
@@ -152,8 +93,20 @@ def analytic(signal, band=None):
     return ifft(twice * fft(signal.values))
 
 
+def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
+    """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
+    return Signal(
+        np.abs(analytic(signal, band)),
+        signal.rate,
+        signal.unit,
+        f"envelope of {signal.name}",
+        signal.angle,
+        signal.shaft_frequency,
+    )
+
+
 def squared_envelope_spectrum(
-    signal: "Signal", band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
+    signal: Signal, band: tuple[float, float] | None = None, *, window: str | tuple[Any, ...] = "hann"
 ) -> Spectrum:
     """Amplitude spectrum of the squared envelope, unit ``(unit)^2``; best taken of the band that the kurtogram finds.
 

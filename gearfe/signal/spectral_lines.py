@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from .given import hertz
-from .spectra import Spectrum
+from .spectrum import Spectrum
 
 HANN = 1.5  # equivalent noise bandwidth of its window, in bins
 BINS = 2  # on either side of an expected frequency in which a line is looked for

@@ -1,17 +1,15 @@
 """How a spectrum changes with time (spectrogram), and how its lines repeat (cepstrum)."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 from scipy.signal import ShortTimeFFT, get_window
 
-from .spectra import Spectrum
-
-if TYPE_CHECKING:
-    from .series import Signal
+from .series import Signal
+from .spectrum import Spectrum
 
 FLOOR = 1e-12  # of the largest amplitude: what a logarithm takes for zero
 
@@ -38,7 +36,7 @@ class Spectrogram:
     name: str = "spectrogram"
 
 
-def spectrogram(signal: "Signal", size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
+def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[Any, ...] = "hann") -> Spectrogram:
     """Amplitude spectra of frames that overlap by three quarters.
 
     Parameters
@@ -70,7 +68,7 @@ def spectrogram(signal: "Signal", size: int | None = None, *, window: str | tupl
     return Spectrogram(transform.f, time, values, signal.unit, f"spectrogram of {signal.name}")
 
 
-def cepstrum(signal: "Signal") -> Spectrum:
+def cepstrum(signal: Signal) -> Spectrum:
     """Real cepstrum: the inverse Fourier transform of the logarithm of the amplitudes.
 
     ::

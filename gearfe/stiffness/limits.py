@@ -7,41 +7,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..elements.asked import is_number
-from ..elements.solver import free_memory
+from ..checks import is_number
+from ..memory import free_memory
 
 MOST_PHASES = 100_000  # of a cycle: k changes by less than 1e-4 between two of them even where teeth enter
 FURTHEST = 1e6  # cycles: beyond, rounding moves contacts by more than 1e-10 of a pitch
 SECTION = (9_000, 4_200, 3_700)  # unknowns of a whole section of 20 to 30 teeth by powers of refine, measured at 1, 2, 4 and 8
 SECTION_BYTES = (3500.0, 400.0)  # memory of its solve for each unknown by powers of refine, measured at 1, 4 and 8
-
-
-def truth(name: str, value: Any) -> bool:
-    """`value` if it is true or false; text and numbers are refused: ``bool("no")`` is true."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{name} = {value!r}, but give True or False")
-    return bool(value)
-
-
-def numbers(name: str, value: Any, unit: str) -> NDArray:
-    """One number or several as an array of floats; text, truth values and complex numbers are refused."""
-    try:
-        found = np.asarray(value)
-    except ValueError as error:
-        raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}") from error
-    plain = found.dtype.kind in "iuf" and not _has_truth(value)
-    if not plain and not (found.dtype.kind == "O" and found.size and all(is_number(one) for one in found.ravel())):
-        raise ValueError(f"{name} = {value!r}, but give one number or a list of numbers{unit}, not {_kind(value)}")
-    return found.astype(float)
-
-
-def _has_truth(value):
-    """Whether a truth value hides among numbers of a list."""
-    return isinstance(value, (list, tuple)) and any(isinstance(one, (bool, np.bool_)) for one in value)
-
-
-def _kind(value):
-    return "text" if isinstance(value, str) else type(value).__name__
 
 
 def check_count(phases: Any) -> int:

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from geometry.pair.gear_pair import GearPair
 
-from .limits import check_count, check_range, numbers
+from ..checks import numbers
+from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 
 SPANS = ("cycle", "tooth", "revolution", "hunting")

@@ -4,6 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from geometry.pair.modified import flank_contacts
+
 from ..flexibility.section_contact import MARKS
 
 SHIFT = {"mean": 0.0, "pinion": 0.5, "wheel": -0.5}  # of the phase, in approaches over the base pitch
@@ -53,7 +55,7 @@ def in_pose(curve_at, phase, pair, pose, flanks=None):
         lambda curve: np.clip(PART * abs(shift) * 1e3 * curve.lte, LEAST, SETTLED),
     )
     if flanks is not None:
-        least = _settled(lambda p: pair.contacts(p, flanks=flanks).gap.min(axis=1), phase, pose, lambda gap: shift * gap)
+        least = _settled(lambda p: flank_contacts(pair, p, flanks=flanks).gap.min(axis=1), phase, pose, lambda gap: shift * gap)
         unloaded = least[1]
         lte = curve.lte + (curve.unloaded - unloaded * 1e-3)
         curve = replace(curve, lte=lte, unloaded=unloaded * 1e-3, k=curve.meta["force_N"] / lte)

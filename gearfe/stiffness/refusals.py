@@ -6,7 +6,7 @@ from itertools import chain
 
 from geometry.damage.crack import check_through
 
-from ..elements.asked import is_number
+from ..checks import is_number
 from ..energy.closed.plain_sum import plain_sum
 from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having

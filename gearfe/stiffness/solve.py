@@ -11,12 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.pair.gear_pair import GearPair
 
 from ..case import NAMES, Case, case_of
-from ..elements.asked import checked_refine, is_number
+from ..checks import checked_refine, is_number, truth
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import check_state
 from ..threads import one_thread
 from .curve import StiffnessCurve
-from .limits import truth
 from .methods import METHODS, Method
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility

@@ -7,6 +7,7 @@ import numpy as np
 
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
+from geometry.pair.contacts import contacts
 from geometry.tooth.profile import arc_at
 
 from ..elements.elasticity import Body
@@ -94,7 +95,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     if any(case.pits):
         raise ValueError("pits do not run through the whole width: a transverse section cannot show them")
     curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports of a section share no load
-    found = pair.contacts([phase])
+    found = contacts(pair, [phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))
     carrying = [(i, k) for i, k in enumerate(found.order.tolist()) if forces.get(k, 0.0) > 0]
     nominal = found.nominal[0, carrying[0][0]] - carrying[0][1] * pair.p_bt

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..elements.solid_deck import FACES, Part
+from ..decks.solid_deck import FACES, Part
 from ..files import suffix_of, written
 from ..pictures.look import GEARS
 from .window import plotting

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..case import Case
-from ..elements.asked import checked_refine
+from ..checks import checked_refine
 from ..elements.solver import plan
 from ..files import suffix_of, written
 from ..pictures.contact_plot import plot_contact

@@ -19,7 +19,7 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
 from ..case import Case
-from ..elements.asked import COARSEST
+from ..checks import COARSEST
 from ..markdown import aligned, table_row
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.estimate import coarser

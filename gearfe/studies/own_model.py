@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.pair.contacts import contacts
+
 from ..material import Material
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.own_flexibility import OwnFlexibility
@@ -145,7 +147,7 @@ def own_curve(name, model, pair, reference):
         curve = mesh_stiffness(pair, reference.meta["force_N"], materials, method=model, phases=reference.phase)
         _hint(name, model, curve.k, reference)
         return replace(curve, meta=curve.meta | {"method": name})
-    touch = pair.contacts(reference.phase, extended=False)
+    touch = contacts(pair, reference.phase, extended=False)
     touching = np.isfinite(touch.gap)
     meta = {key: reference.meta[key] for key in SHARED_META} | {"method": name, "model": _kind(model)}
     if isinstance(model, PairModel) or getattr(model, "abscissa", None) == "radius":

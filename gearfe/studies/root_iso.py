@@ -7,7 +7,7 @@ from typing import cast
 from geometry.pair.gear_pair import GearPair
 
 from ..case import Case
-from ..elements.loaded_tooth import root_stress
+from ..strength.loaded_tooth import root_stress
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,8 @@ from ..motion.simulate import simulate
 from ..motion.step_control import default_step
 from ..motion.thinned import REACH
 from ..signal.demodulation import Demodulated, demodulate
-from ..signal.indicators import LOBES, indicator_table, table_text
+from ..signal.indicator_table import indicator_table, table_text
+from ..signal.indicators import LOBES
 from ..signal.series import Signal
 from ..signal.spectra import spectrum
 from ..signal.spectral_lines import BINS, expected_lines, find_lines

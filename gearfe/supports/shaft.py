@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..checks import is_number
 from .beam import Section, bending_flexibility, twist_flexibility
 from .hub import Hub
 from .support import Support
@@ -87,8 +88,7 @@ class Shaft:
         if self.torque is not None:
             at["torque"] = self.torque
         for name, value in at.items():
-            number = isinstance(value, Real) and not isinstance(value, bool)
-            if not (number and 0 <= float(value) <= self.length * (1 + 1e-12)):
+            if not (is_number(value) and 0 <= float(value) <= self.length * (1 + 1e-12)):
                 raise ValueError(f"shaft: {name.strip()} = {value!r}, but the shaft reaches from 0 to {self.length:g} mm")
         if self.bearings[0] == self.bearings[1]:
             raise ValueError(f"shaft: both bearings at {self.bearings[0]:g} mm do not hold it: give two positions")
@@ -166,7 +166,7 @@ def _rows(segments):
 
 
 def _segment(i, row):
-    right = len(row) in (2, 3) and all(isinstance(v, Real) and not isinstance(v, bool) and math.isfinite(v) for v in row)
+    right = len(row) in (2, 3) and all(is_number(v) and math.isfinite(v) for v in row)
     if not right:
         raise ValueError(
             f"shaft: part {i + 1} is {row!r}, but give (length, diameter) or (length, diameter, bore), numbers in mm"

@@ -2,10 +2,10 @@
 
 import math
 from dataclasses import dataclass, replace
-from numbers import Real
 
 import numpy as np
 
+from ..checks import number
 from .hub import Hub
 
 UNITS = {"radial": "N/mm", "tilt": "N mm/rad", "torsion": "N mm/rad", "axial": "N/mm"}
@@ -57,10 +57,7 @@ class Support:
     def __post_init__(self) -> None:
         """Refuse springs that do not hold."""
         for name in self.__slots__:
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, Real) or math.isnan(value):
-                raise ValueError(f"support: {name} = {value!r}, but it needs a number")
-            object.__setattr__(self, name, float(value))
+            object.__setattr__(self, name, number(f"support: {name}", getattr(self, name)))
         for name, unit in UNITS.items():
             if not getattr(self, name) > 0:
                 raise ValueError(

@@ -36,7 +36,7 @@ class Crack:
         the root circle, or in the middle of the fillet's arc.
     turning : bool
     tooth : int
-        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (see `GearPair.contacts`).
+        Number of the tooth: tooth k is in the pair that is k base pitches ahead of pair 0 (`geometry.pair.contacts`).
     side : {"loaded", "unloaded"}
         Flank side on which it starts.
     width : (float, float), optional

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..tooth.flank_form import FlankForm
+from ..tooth.modified import FlankForm
 from .section_mesh import Section
 
 

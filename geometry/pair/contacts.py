@@ -30,17 +30,15 @@ mean pose of the nominal abscissa ``n + delta / 2`` or ``n - delta / 2``: a shif
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..tooth.modified import FlankForm
 from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
-
-if TYPE_CHECKING:
-    from ..tooth.flank_form import FlankForm
-    from .gear_pair import GearPair
+from .gear_pair import GearPair
 
 STEPS = 10  # of Newton's method at most: each doubles the correct digits, or adds three where a modified flank slopes
 SETTLED = 1e-7  # last step, in base pitches
@@ -104,8 +102,8 @@ class Met(NamedTuple):
     met_out: NDArray[np.float64]
 
 
-def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Contacts:
-    """Contacts of all tooth pairs of a `GearPair`.
+def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Contacts:
+    """Contacts of all tooth pairs of a `GearPair`, flanks unmodified (others: `geometry.pair.modified.flank_contacts`).
 
     On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of
     one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or the
@@ -136,7 +134,7 @@ def contacts(pair: "GearPair", phase: ArrayLike, *, extended: bool = True) -> Co
 
 
 @lru_cache(maxsize=256)
-def near_pitches(pair: "GearPair") -> tuple[int, int]:
+def near_pitches(pair: GearPair) -> tuple[int, int]:
     """How many base pitches before the start and after the end of the path teeth may touch under load, at least 1.
 
     Teeth of external gears turn out of each other's reach; those of a ring with hardly more teeth than its pinion stay close.
@@ -153,7 +151,7 @@ def near_pitches(pair: "GearPair") -> tuple[int, int]:
     return out[0], out[1]
 
 
-def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> Touching:
+def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touching:
     """Where sections of unmodified teeth first touch, as of `contacts`, at any abscissae `nominal` [mm]."""
     start, end = pair.path
     slack = 1e-9 * pair.p_bt
@@ -177,14 +175,14 @@ def touching(pair: "GearPair", nominal: NDArray, *, extended: bool = True) -> To
     return out
 
 
-def corners_of(pair: "GearPair") -> list[tuple[int, float, bool]]:
+def corners_of(pair: GearPair) -> list[tuple[int, float, bool]]:
     """Corners of the outlines that may touch: number as in `Contacts`, roll length [mm], whether it is the pinion's."""
     gears = (pair.gear_1, pair.gear_2)
     tips = [(number, gear.roll_a, number == 1) for number, gear in zip(TIP, gears, strict=True)]
     return tips + [(number, gear.roll_f, number == 3) for number, gear in zip(FORM, gears, strict=True) if form_corner(gear)]
 
 
-def end_corners(pair: "GearPair") -> tuple[int, int]:
+def end_corners(pair: GearPair) -> tuple[int, int]:
     """Numbers of the corners (as in `Contacts`) that end the path: at its start, at its end.
 
     They are the tip corners of wheel and pinion, unless the mate's flank ends before, at the edge that undercut leaves.
@@ -213,13 +211,13 @@ def _corners(pair, nominal):
 
 
 def approach(
-    pair: "GearPair",
+    pair: GearPair,
     roll: ArrayLike,
     nominal: ArrayLike,
     *,
     driver: bool = True,
     start: ArrayLike = 0.0,
-    flanks: "tuple[FlankForm, FlankForm] | None" = None,
+    flanks: tuple[FlankForm, FlankForm] | None = None,
     order: ArrayLike = 0,
 ) -> Met:
     """Approach, shared by both gears, at which a point of one side touches the other side (see the module).
@@ -267,7 +265,7 @@ def approach(
     return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))
 
 
-def opposite(pair: "GearPair", roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
+def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
     """What a flank point faces when both gears stand as their contact at `nominal` has them.
 
     Parameters

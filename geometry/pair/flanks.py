@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from numbers import Real
 from typing import Any
 
-from ..tooth.flank_form import FlankForm
-from ..tooth.modified import Flank
+from ..tooth.modified import Flank, FlankForm
 
 STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
 

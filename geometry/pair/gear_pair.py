@@ -8,13 +8,10 @@ from numbers import Real
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.flank_form import FlankForm
 from ..tooth.gear import Gear
 from ..tooth.involute import inv, inverse_inv
 from ..tooth.profile import flank
-from .contacts import Contacts, approach, contacts, opposite
 from .interference import overlap, radial_assembly
-from .modified import modified_contacts
 
 OVERLAP = 1e-3  # of a module: deeper cuts of one outline into the other are interference
 
@@ -252,31 +249,6 @@ class GearPair:
         turn_1 = np.arctan2(x, y) - flank(self.gear_1, nominal)[1]
         turn_2 = np.arctan2(x, y - self.centre_2) - self.outward * flank(self.gear_2, self.mate_roll(nominal))[1]
         return turn_1, turn_2
-
-    def contacts(self, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None) -> Contacts:
-        """Contacts of all tooth pairs at `phase` (array), see `geometry.pair.contacts`; `flanks` as of `flank_forms`."""
-        if flanks is not None:
-            return modified_contacts(self, phase, flanks, extended=extended)
-        return contacts(self, phase, extended=extended)
-
-    def opposite(
-        self, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """What a flank point faces when its pair is at `nominal` [mm], see `geometry.pair.contacts.opposite`."""
-        return opposite(self, roll, nominal, driver=driver)
-
-    def approach(
-        self,
-        roll: ArrayLike,
-        nominal: ArrayLike,
-        *,
-        driver: bool = True,
-        start: ArrayLike = 0.0,
-        flanks: tuple[FlankForm, FlankForm] | None = None,
-        order: ArrayLike = 0,
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Approach at which a flank point touches the other flank, see `geometry.pair.contacts.approach`."""
-        return approach(self, roll, nominal, driver=driver, start=start, flanks=flanks, order=order)[:2]
 
 
 def free_centre_distance(one: Gear, two: Gear) -> float:

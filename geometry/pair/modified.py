@@ -13,17 +13,15 @@ a common approximation, errs by up to a quarter of the deflection at corners.
 """
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.flank_form import FlankForm
+from ..tooth.modified import FlankForm
 from ..tooth.profile import arc_at, fillet_length, roll_at_arc
 from .contacts import TIP, Contacts, approach, contacts, corners_of, facing
-
-if TYPE_CHECKING:
-    from .gear_pair import GearPair
+from .gear_pair import GearPair
 
 EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that it cuts away
 FAR = 0.1  # gap before modification [m_n] beyond which only corners are looked at: no gear that holds closes it
@@ -34,18 +32,18 @@ GOLDEN = (math.sqrt(5) - 1) / 2
 FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it flanks conform and no contact is a line
 
 
-def modified_contacts(
-    pair: "GearPair", phase: ArrayLike, forms: tuple[FlankForm, FlankForm], *, extended: bool = True
+def flank_contacts(
+    pair: GearPair, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None
 ) -> Contacts:
-    """`geometry.pair.contacts.contacts` of a pair with modified flanks.
+    """`geometry.pair.contacts.contacts` of a pair whose flanks may be modified.
 
     Parameters
     ----------
     pair : GearPair
     phase : ndarray, shape (phases,)
-    forms : (FlankForm, FlankForm)
-        Of pinion and wheel.
     extended : bool
+    flanks : (FlankForm, FlankForm), optional
+        Of pinion and wheel, as of `geometry.pair.flanks.flank_forms`.
 
     Returns
     -------
@@ -58,11 +56,13 @@ def modified_contacts(
         If flanks are so hollow that they would conform.
     """
     plain = contacts(pair, phase, extended=extended)
+    if flanks is None:
+        return plain
     there = np.isfinite(plain.gap)
     roll_1, roll_2, corner = plain.roll_1.copy(), plain.roll_2.copy(), np.zeros(plain.gap.shape, dtype=int)
     gap, radius = np.full(plain.gap.shape, np.inf), np.ones(plain.gap.shape)
     corner_gap, corner_roll = np.full_like(plain.corner_gap, np.inf), np.full_like(plain.corner_roll, np.nan)
-    touch = first_touch(pair, forms, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
+    touch = first_touch(pair, flanks, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
     for values, found in zip((roll_1, roll_2, gap, radius, corner), touch[:5], strict=True):
         values[there] = found
     corner_gap[:, there], corner_roll[:, :, there] = touch.corner_gap, touch.corner_roll
@@ -82,7 +82,7 @@ class Touch(NamedTuple):
 
 
 def first_touch(
-    pair: "GearPair",
+    pair: GearPair,
     forms: tuple[FlankForm, FlankForm],
     nominal: NDArray[np.float64],
     order: NDArray[np.int64],

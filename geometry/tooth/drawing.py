@@ -74,7 +74,7 @@ def gear_html(gear):
 def pair_html(pair):
     """Table of a pair's numbers beside its drawing, in mesh at the pitch point's phase."""
     one, two = pair.gear_1, pair.gear_2
-    turns = pair.turn(pair.contacts([pair.pitch_phase]).nominal[0, 0])
+    turns = pair.turn(pair.path[0] + pair.pitch_phase * pair.p_bt)
     rows = {
         "teeth": f"{one.z} / {two.z}{' (ring)' if two.internal else ''}",
         "normal module": f"{one.m_n:g} mm",

@@ -13,7 +13,7 @@ import pytest
 import gearfe as gf
 from gearfe.cli import main, shell
 from gearfe.markdown import table_cells
-from gearfe.signal.indicators import table_text
+from gearfe.signal.indicator_table import table_text
 
 STEERS = "\x1b[31m\x1b]0;owned\x07\x9b2J\u202e"
 QUOTED = "\\u001b[31m\\u001b]0;owned\\u0007\\u009b2J\\u202e"  # the same in TOML

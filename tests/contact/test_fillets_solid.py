@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.pieces import cut
 from gearfe.contact.rows import _apart
+from geometry.pair.contacts import contacts
 from validation.shared.solid_pair import solid_contact
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -23,7 +24,7 @@ def pair_of(width, degrees=0.0):
 
 def test_the_tip_cuts_into_the_fillet_at_the_start_of_the_path():
     pair = pair_of(100.0)
-    found = pair.contacts(np.arange(48) / 48)
+    found = contacts(pair, np.arange(48) / 48)
     on = (found.gap < 0) & (found.nominal > pair.path[0])
     assert on.any()
     after, before = cut(pair)

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact.plane import OVERLAP, _closing
 from gearfe.contact.sliding import sliding
+from geometry.pair.contacts import contacts
 from geometry.tooth.profile import arc_at
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
@@ -24,7 +25,7 @@ def softer_upwards(gear, change):
 def test_contacts_slide_to_where_both_flanks_yield_less(changes):
     """Up the pinion is down the wheel: the pair changes by the difference, and what is gained is P S' x + x**2 / (2 R)."""
     pair = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **RACK), gf.Gear(z=31, r_bore=11.4, **RACK))
-    found = pair.contacts([0.2, 0.7], extended=False)
+    found = contacts(pair, [0.2, 0.7], extended=False)
     bodies = [softer_upwards(gear, change) for gear, change in zip((pair.gear_1, pair.gear_2), changes, strict=True)]
     contact = SimpleNamespace(pair=pair, found=found, flexibility=bodies, radius=found.radius, opening_at=lambda *_: None)
     load, along, radius = 100.0, changes[0] - changes[1], found.radius

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import gearfe as gf
+from gearfe.decks.solid_deck import element_lines, holed_part, part_of
 from gearfe.elements.folds import check_folds, jacobians, unfolded
 from gearfe.elements.hexahedron import TWENTY
-from gearfe.elements.solid_deck import element_lines, holed_part, part_of
 from gearfe.elements.tetrahedron import EDGES
 from geometry.mesh.holed_drawing import on_outline
 from geometry.mesh.holes import Holed, holed_sector

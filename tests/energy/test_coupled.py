@@ -13,8 +13,8 @@ from gearfe.elements import fe
 from gearfe.energy.closed import annulus, coupled, textbook
 from gearfe.energy.closed.beam import along_fillet, along_flank
 from gearfe.flexibility.hertz import half_plane
-from gearfe.studies.ladder import ladder, plane_strain_textbook
 from geometry.tooth.profile import cartesian, fillet, flank, form_point, root_half_angle, tangent_point
+from validation.shared.ladder import ladder, plane_strain_textbook
 
 STEEL = gf.Material(E=207e3, nu=0.3)
 WIDTH = 20.0

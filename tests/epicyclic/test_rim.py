@@ -12,7 +12,8 @@ from skfem import Basis, ElementTriP2, ElementVector, asm
 from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from gearfe.epicyclic.pads import among
-from gearfe.epicyclic.rim import RimBed, RimSupports, rim_angles, rim_moved, ring_on
+from gearfe.epicyclic.rim import rim_angles, rim_moved, ring_on
+from gearfe.epicyclic.rim_supports import RimBed, RimSupports
 from gearfe.epicyclic.whole_gear import PLACES, between_teeth, carry, whole_gear
 from geometry.mesh.both_flanks import both_flanks
 from geometry.mesh.outline import stations

@@ -9,7 +9,7 @@ from sets import FORCE, STEEL, case, gears, unequal
 
 import gearfe as gf
 from gearfe.epicyclic.case import PlanetaryCase
-from gearfe.epicyclic.rim import RimBed, RimSupports
+from gearfe.epicyclic.rim_supports import RimBed, RimSupports
 from gearfe.epicyclic.solve import bodies_of, planetary_stiffness
 from gearfe.epicyclic.standing import standing
 from gearfe.epicyclic.whole_gear import carry

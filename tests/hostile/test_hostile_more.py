@@ -7,8 +7,8 @@ import pytest
 from judge import CLEAR, judged, judged_command, tally
 
 import gearfe as gf
+from gearfe.many.sweeps.study import read_study
 from gearfe.scene.load import read_tables, scene_of
-from gearfe.sweeps.study import read_study
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 GEAR = gf.Gear(z=21, r_bore=7.4, **RACK)

@@ -9,8 +9,8 @@ import gearfe as gf
 from gearfe.pictures.error_plots import plot_transmission_error
 from gearfe.pictures.inline import line_svg
 from gearfe.pictures.look import COLOURS, DASHES, MARKS, look
-from gearfe.pictures.stiffness_plots import plot_lengths
-from gearfe.pictures.vibration_plots import plot_phases, plot_spectra
+from gearfe.pictures.vibration_plots import plot_spectra
+from validation.shared.plots import plot_lengths, plot_phases
 
 
 def test_lines_differ_by_colour_and_by_dashes():

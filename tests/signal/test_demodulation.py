@@ -1,6 +1,7 @@
 """Kurtogram and squared envelope together, and measured signals on the command line."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,15 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.cli import main
-from gearfe.signal.demodulation import with_noise
 
 RATE, FAULT = 20480.0, 18.2
+
+
+def with_noise(signal, decibels, seed=0):
+    """The signal with white Gaussian noise, its power `decibels` below that of the signal without its mean."""
+    size = np.std(signal.values) * 10 ** (-decibels / 20)
+    noise = np.random.default_rng(seed).standard_normal(signal.values.size)
+    return replace(signal, values=signal.values + size * noise, name=f"{signal.name} with noise {-decibels:+g} dB")
 
 
 def impulses(seconds=2.0):

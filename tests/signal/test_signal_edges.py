@@ -8,7 +8,7 @@ import gearfe as gf
 from gearfe.signal.demodulation import Demodulated
 from gearfe.signal.indicators import sideband_index
 from gearfe.signal.kurtogram import fast_kurtogram
-from gearfe.signal.spectra import Spectrum
+from gearfe.signal.spectrum import Spectrum
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".mat", ".csv"])

@@ -8,7 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from geometry.pair.contacts import contacts
 from geometry.pair.flanks import flank_forms
+from geometry.pair.modified import flank_contacts
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -181,7 +183,7 @@ def test_a_plain_sum_carries_what_closes_its_gaps():
     phase = [0.1]
     plain, found = (solved(given, method="textbook", phases=phase) for given in (None, flanks))
     springs = plain.force[0] / plain.te[0]  # the law of its contact is linear
-    gap = np.array([PAIR.contacts(phase, flanks=_forms(flanks)).gap[0, k] for k in np.flatnonzero(_on_path(phase))]) * 1e-3
+    gap = np.array([flank_contacts(PAIR, phase, flanks=_forms(flanks)).gap[0, k] for k in np.flatnonzero(_on_path(phase))]) * 1e-3
     te = (LOAD + springs @ gap) / springs.sum()
     assert (te > gap).all()
     assert_allclose(found.te[0], te, rtol=5e-3)  # the touching points have moved a little
@@ -195,4 +197,4 @@ def _forms(flanks):
 
 
 def _on_path(phase):
-    return np.isfinite(PAIR.contacts(phase, extended=False).gap[0])
+    return np.isfinite(contacts(PAIR, phase, extended=False).gap[0])

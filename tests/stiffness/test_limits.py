@@ -11,8 +11,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from gearfe import memory
 from gearfe.cli import main
-from gearfe.elements import solver
 from gearfe.files import read
 from gearfe.stiffness import limits
 
@@ -84,11 +84,11 @@ def test_memory_is_that_of_the_smallest_limit(tmp_path, monkeypatch):
     files = [tmp_path / name for name in ("max", "current", "stat")]
     for file, text in zip(files, ("4000000000", "3000000000", "anon 1\ninactive_file 500000000\n"), strict=True):
         file.write_text(text)
-    monkeypatch.setattr(solver, "CONTROL_GROUP", ((*map(str, files), "inactive_file"),))
-    assert solver._group_free() == 1.5e9
-    assert solver.free_memory() <= 1.5e9
+    monkeypatch.setattr(memory, "CONTROL_GROUP", ((*map(str, files), "inactive_file"),))
+    assert memory._group_free() == 1.5e9
+    assert memory.free_memory() <= 1.5e9
     files[0].write_text("max\n")
-    assert solver._group_free() == math.inf
+    assert memory._group_free() == math.inf
     monkeypatch.setattr(limits, "free_memory", lambda: 1e9)
     with pytest.raises(
         RuntimeError, match=r"refine = 10: about .* unknowns a section, which need about .* GB, but 1 GB are free"
@@ -98,7 +98,7 @@ def test_memory_is_that_of_the_smallest_limit(tmp_path, monkeypatch):
 
 
 def test_a_limit_of_the_shell_is_seen():
-    code = "from gearfe.elements.solver import free_memory; print(free_memory())"
+    code = "from gearfe.memory import free_memory; print(free_memory())"
     limit = 6 * 10**9
 
     def held():

@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.full_contact import full_contact
 from gearfe.elements import fe
 from gearfe.elements.elasticity import Body
+from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 20.0}
 FORCE = 2000.0

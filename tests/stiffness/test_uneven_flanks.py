@@ -7,9 +7,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.full_contact import full_contact
+from geometry.pair.contacts import approach
 from geometry.pair.flanks import flank_forms
+from geometry.pair.modified import flank_contacts
 from geometry.tooth.profile import cartesian, flank, flank_normal
+from validation.shared.full_contact import full_contact
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -71,7 +73,7 @@ def test_an_edge_beyond_the_centre_line_is_refused(edge, fits, crosses):
 def test_gaps_of_rounded_tips_are_the_least_over_both_flanks(size, phase):
     """Every point of both flanks, edges included, brought to touch by `approach`: none is nearer than the gap found."""
     forms = flank_forms(PAIR, both(tip_rounding=size))
-    found = PAIR.contacts([phase], flanks=forms)
+    found = flank_contacts(PAIR, [phase], flanks=forms)
     for k in np.flatnonzero(found.gap[0] < 0.05).tolist():
         least = []
         for driver, gear, other, form in (
@@ -81,9 +83,15 @@ def test_gaps_of_rounded_tips_are_the_least_over_both_flanks(size, phase):
             roll = np.concatenate(
                 [np.linspace(gear.roll_f, form.edge.start, 400), np.linspace(form.edge.start, gear.roll_a, 2000)]
             )
-            gap, met = PAIR.approach(
-                roll, np.full(roll.size, found.nominal[0, k]), driver=driver, flanks=forms, order=int(found.order[k]), start=0.02
-            )
+            gap, met = approach(
+                PAIR,
+                roll,
+                np.full(roll.size, found.nominal[0, k]),
+                driver=driver,
+                flanks=forms,
+                order=int(found.order[k]),
+                start=0.02,
+            )[:2]
             on = np.isfinite(gap) & (met >= other.roll_f) & (met <= other.roll_a)
             least.append(gap[on].min(initial=np.inf))
         assert_allclose(found.gap[0, k], min(least), atol=3e-6)  # [mm]; the points are some um apart

@@ -7,6 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
+from geometry.pair.contacts import approach
 from validation.shared.arbiter.cases import LOADED, loaded_case, random_pair
 from validation.shared.arbiter.cutting import Space
 from validation.shared.arbiter.elements import gradients, solver, stiffness
@@ -77,7 +78,7 @@ def test_rigid_gaps_are_those_of_the_issue(undercut):
     gap = 1e3 * touching(press, stand(undercut, phase, np.zeros(phase.size, dtype=int))).gap
     assert_allclose(gap[:3], 0.0, atol=1e-5)
     nominal = undercut.path[0] + phase[3] * undercut.p_bt
-    assert_allclose(gap[3], 1e3 * float(undercut.approach(undercut.gear_1.roll_a, nominal)[0]), atol=1e-4)
+    assert_allclose(gap[3], 1e3 * float(approach(undercut, undercut.gear_1.roll_a, nominal)[0]), atol=1e-4)
     assert_allclose(gap[4:], [0.30, 1.14], atol=0.03, err_msg="polygons of another solver: 0.30 and 1.14 um")
 
 

@@ -261,7 +261,9 @@ PICTURES = {
 def draw(folder):
     """Pictures of the page."""
     from gearfe.pictures.stiffness_plots import plot_curves
-    from gearfe.pictures.vibration_plots import plot_spectra, plot_waves
+    from gearfe.pictures.vibration_plots import plot_spectra
+
+    from ..shared.plots import plot_waves
 
     chosen, run = scene(NAME).pairs["sun_planet"], {"method": "ritz", "phases": 96, "span": "tooth"}
     curves = {"healthy": gf.mesh_stiffness(**chosen.case(), **run)}

@@ -2,10 +2,9 @@
 
 import numpy as np
 
-from gearfe.studies.ladder import ladder
-
 from ..shared import reference
 from ..shared.kept_rows import kept
+from ..shared.ladder import ladder
 
 
 def section(again=()):

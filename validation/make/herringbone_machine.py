@@ -252,7 +252,9 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.vibration_plots import plot_phases, plot_spectra
+    from gearfe.pictures.vibration_plots import plot_spectra
+
+    from ..shared.plots import plot_phases
 
     lines = gf.expected_lines(*speeds()[2:], count=2, harmonics=2)
     spectra = {name: spectrum(signal(record_of(case), TURNING)) for name, case in STATES.items()}

@@ -209,8 +209,9 @@ PICTURES = {
 
 def draw(folder):
     """Pictures of the page."""
-    from gearfe.pictures.stiffness_plots import plot_lengths
     from gearfe.pictures.vibration_plots import plot_spectra
+
+    from ..shared.plots import plot_lengths
 
     phase, ours, printed = lengths()
     plot_lengths(

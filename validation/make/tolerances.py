@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 import gearfe as gf
-from gearfe.pictures.sweep_plots import plot_states
 
 from ..shared.kept_rows import kept
 from ..shared.places import PAGES
+from ..shared.plots import plot_states
 
 PICTURE = PAGES / "detection.png"
 STATES = {"healthy": "healthy", "10 % crack": "ten", "30 % crack": "thirty"}

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from gearfe.elements.contact_solid import SolidDeck
 
 import gearfe as gf
-from gearfe.elements.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d

@@ -9,12 +9,12 @@ import numpy as np
 import gearfe as gf
 from gearfe.energy.closed import textbook
 from gearfe.energy.closed.beam import load_angle
-from gearfe.energy.closed.iso import theoretical_stiffness, virtual_teeth
 from gearfe.flexibility.hertz import half_plane, linear_hertz, weber_line
 from gearfe.machine.member import Member
 from gearfe.machine.planetary import planetary
 from geometry.tooth.profile import flank
 
+from .iso import theoretical_stiffness, virtual_teeth
 from .places import SOURCES
 
 STEEL = gf.Material(E=206e3, nu=0.3)

@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
+from geometry.pair.contacts import contacts
 from geometry.pair.lines import covered, halves
-from geometry.pair.modified import first_touch
+from geometry.pair.modified import first_touch, flank_contacts
 
 LOST = ("hertz", "slices", "summed")
 RULES = {False: leggauss(1), True: leggauss(24)}
@@ -76,11 +77,11 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
     if lost not in LOST:
         raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
     lag = max(band[2] for band in bands)
-    order = pair.contacts([phase.min() - lag, phase.max()], extended=False).order
+    order = contacts(pair, [phase.min() - lag, phase.max()], extended=False).order
     edges = edges(order) if edges and lag > 0 else {}
     pitted = any(p.side == "loaded" for found in pits for p in found)
     if lag == 0 and not pitted:  # one station for each pair on the path of contact
-        found = pair.contacts(phase, extended=False, flanks=flanks)
+        found = flank_contacts(pair, phase, extended=False, flanks=flanks)
         i, j = np.nonzero(np.isfinite(found.gap))
         whole = np.full(i.size, sum(abs(last - first) for first, last, _ in bands) / min(pair.gear_1.b, pair.gear_2.b))
         gap = None if flanks is None else found.gap[i, j]

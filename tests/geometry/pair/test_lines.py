@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 import gearfe as gf
 from gearfe.energy.closed.slices import faces, stations
 from geometry.damage.pit import lost_width
+from geometry.pair.contacts import contacts
 from geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
 from geometry.tooth.profile import arc_at
 
@@ -75,7 +76,7 @@ def test_a_section_of_a_helical_pair_is_the_spur_pair_at_its_phase():
     lines = contact_lines(pair, phase)
     shift = z * math.tan(pair.gear_1.beta_b) / pair.p_bt
     touching = (lines.low <= z) & (z <= lines.high) & (lines.high > lines.low)
-    own = pair.contacts(phase + shift, extended=False)
+    own = contacts(pair, phase + shift, extended=False)
     assert_allclose(lines.rolls(np.full(lines.low.shape, z))[0][touching], own.roll_1[np.isfinite(own.gap)], rtol=1e-12)
     assert touching.sum() in (1, 2)
 
@@ -90,7 +91,7 @@ def test_hands_are_mirror_images():
 
 def test_small_helix_angle_is_spur():
     spur, nearly = (total_length(helical(beta), np.array([0.1, 0.4, 0.8])) for beta in (0.0, 1e-7))
-    number = np.isfinite(helical(0.0).contacts([0.1, 0.4, 0.8], extended=False).gap).sum(axis=1)
+    number = np.isfinite(contacts(helical(0.0), [0.1, 0.4, 0.8], extended=False).gap).sum(axis=1)
     assert_allclose(spur, 30.0 * number, rtol=1e-12)
     assert_allclose(nearly, spur, rtol=1e-6)
     assert_allclose(total_length(helical(1e-300), np.array([0.1, 0.4, 0.8])), spur, rtol=1e-12)

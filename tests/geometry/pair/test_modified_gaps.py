@@ -7,8 +7,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.pair.contacts import approach, facing
+from geometry.pair.contacts import approach, contacts, facing
 from geometry.pair.flanks import flank_forms
+from geometry.pair.modified import flank_contacts
 
 RACK = {"m_n": 3.0, "alpha_n": math.radians(20), "b": 20.0}
 PAIR = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **RACK), gf.Gear(z=36, r_bore=20.0, **RACK))
@@ -23,7 +24,7 @@ def relieved(amount=0.01, length=4.0, exponent=1.0, **more):
 
 
 def test_the_search_finds_conjugate_contact_again():
-    plain, found = PAIR.contacts(PHASE), PAIR.contacts(PHASE, flanks=flank_forms(PAIR, {"pinion": gf.Flank(slope=1e-13)}))
+    plain, found = contacts(PAIR, PHASE), flank_contacts(PAIR, PHASE, flanks=flank_forms(PAIR, {"pinion": gf.Flank(slope=1e-13)}))
     near = plain.gap < 0.2
     assert_allclose(found.gap[near], plain.gap[near], atol=1e-10)
     assert_allclose(found.roll_1[near], plain.roll_1[near], atol=2e-4)
@@ -33,11 +34,11 @@ def test_the_search_finds_conjugate_contact_again():
 @pytest.mark.parametrize("exponent", [1.0, 2.0])
 def test_the_gap_is_the_least_over_the_flank(exponent):
     forms = flank_forms(PAIR, relieved(0.02, exponent=exponent, crowning=0.004))
-    found = PAIR.contacts(PHASE[::2], flanks=forms)
+    found = flank_contacts(PAIR, PHASE[::2], flanks=forms)
     roll = np.linspace(PAIR.path[0] - 0.5, PAIR.gear_1.roll_a, 40001)
     checked = 0
     for i, k in np.argwhere(found.gap < 0.05):
-        gap, met = PAIR.approach(roll, np.full(roll.size, found.nominal[i, k]), start=found.gap[i, k], flanks=forms)
+        gap, met = approach(PAIR, roll, np.full(roll.size, found.nominal[i, k]), start=found.gap[i, k], flanks=forms)[:2]
         least = np.nanmin(np.where((met >= PAIR.gear_2.roll_f) & (met <= PAIR.gear_2.roll_a), gap, np.inf))
         # a kink or the wheel's tip corner lies between two places of the brute search, which therefore can only be above
         sharp = exponent == 1 or found.roll_2[i, k] == PAIR.gear_2.roll_a
@@ -50,7 +51,7 @@ def test_a_uniform_shift_is_a_turn():
     shift = 0.01
     forms = flank_forms(PAIR, {"pinion": gf.Flank(pitch=[shift] * 24)})
     back = shift * PAIR.gear_1.r_b / PAIR.gear_1.r
-    found, plain = PAIR.contacts(PHASE, flanks=forms), PAIR.contacts(PHASE - back / 2 / PAIR.p_bt)
+    found, plain = flank_contacts(PAIR, PHASE, flanks=forms), contacts(PAIR, PHASE - back / 2 / PAIR.p_bt)
     first, other = found.order.searchsorted(0), plain.order.searchsorted(0)
     for k in (-1, 0, 1):
         at, there = found.gap[:, first + k], plain.gap[:, other + k]
@@ -60,7 +61,7 @@ def test_a_uniform_shift_is_a_turn():
 def test_a_single_tooth_ahead_touches_before_its_place():
     pitch = [0.0] * 24
     pitch[3] = -0.008
-    found = PAIR.contacts(np.array([-2.5]), flanks=flank_forms(PAIR, {"pinion": gf.Flank(pitch=pitch)}))
+    found = flank_contacts(PAIR, np.array([-2.5]), flanks=flank_forms(PAIR, {"pinion": gf.Flank(pitch=pitch)}))
     ahead = -0.008 * PAIR.gear_1.r_b / PAIR.gear_1.r
     assert_allclose(found.gap[0, found.order == 3], ahead, rtol=1e-6)
 
@@ -69,7 +70,7 @@ def test_hollow_flanks_are_refused():
     roll = np.linspace(PAIR.gear_1.roll_f, PAIR.gear_1.roll_a, 40)
     rough = gf.Flank(table=(roll, 0.05 * np.sin(12 * roll) ** 2))
     with pytest.raises(ValueError, match="the modified flanks conform at roll lengths"):
-        PAIR.contacts(PHASE, flanks=flank_forms(PAIR, {"pinion": rough}))
+        flank_contacts(PAIR, PHASE, flanks=flank_forms(PAIR, {"pinion": rough}))
 
 
 @pytest.mark.parametrize("ring", [False, True])
@@ -104,8 +105,8 @@ def test_gaps_are_those_of_exchanged_gears(edge):
         gf.Flank(**{edge: 0.5}),
     )
     pair, other, phase = gf.GearPair(*gears), gf.GearPair(*gears[::-1]), np.linspace(0.4, 0.6, 41)
-    one = pair.contacts(phase, flanks=flank_forms(pair, {"pinion": flank}))
-    two = other.contacts(pair.eps_alpha - phase, flanks=flank_forms(other, {"wheel": flank}))
+    one = flank_contacts(pair, phase, flanks=flank_forms(pair, {"pinion": flank}))
+    two = flank_contacts(other, pair.eps_alpha - phase, flanks=flank_forms(other, {"wheel": flank}))
     first, again = (found.gap[:, found.order.tolist().index(order)] for found, order in ((one, 1), (two, -1)))
     assert 0.02 < first[-1] < 0.5
     assert_allclose(again, first, atol=1e-9)
@@ -125,8 +126,8 @@ def test_the_ridge_of_a_chamfer_is_the_corner_of_a_shorter_tooth(side):
     whole, cut = pair(0.0), pair(chamfer / rack["m_n"])
     forms = flank_forms(whole, {side: gf.Flank(tip_chamfer=chamfer)})
     place = np.linspace(cut.path[0] - 1.5, cut.path[1] + 1.5, 61)
-    found = whole.contacts((place - whole.path[0]) / whole.p_bt, flanks=forms)
-    corner = cut.contacts((place - cut.path[0]) / cut.p_bt)
+    found = flank_contacts(whole, (place - whole.path[0]) / whole.p_bt, flanks=forms)
+    corner = contacts(cut, (place - cut.path[0]) / cut.p_bt)
     ridge, tip = (own.gap[:, own.order.tolist().index(0)] for own in (found, corner))
     assert (tip > 1e-6).sum() >= 10
     assert_allclose(ridge, tip, atol=1e-6)

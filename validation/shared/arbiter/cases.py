@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 
 import gearfe as gf
+from geometry.pair.contacts import contacts
 
 FIRST, COUNT = 260_000, 1000  # seeds of the unloaded comparison: pairs of these seeds, those refused left out, until so many
 PHASES = np.arange(48) / 48
@@ -146,7 +147,7 @@ def fresh():
             continue
         if pair.gear_1.beta or pair.gear_1.z + pair.gear_2.z >= 96:
             continue
-        gap = pair.contacts(PHASES).gap
+        gap = contacts(pair, PHASES).gap
         off = np.flatnonzero(((gap > 1e-6) & (gap < 3e-3)).any(axis=1)).tolist()
         load = pair.gear_1.m_n * 5 * 40 ** np.random.default_rng(seed + 1_000_000).random()
         rows.append((seed, "fresh", float(f"{load:.3g}"), None, tuple(sorted({*off[:1], 12, 30, *off[-1:]}))))

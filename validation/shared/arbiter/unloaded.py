@@ -1,10 +1,12 @@
-"""Gaps of `pair.contacts` beside those of whole outlines, where either is near contact."""
+"""Gaps of `geometry.pair.contacts` beside those of whole outlines, where either is near contact."""
 
 import math
 import time
 import warnings
 
 import numpy as np
+
+from geometry.pair.modified import flank_contacts
 
 from .cases import PHASES, random_pair
 from .outline import Outline
@@ -31,7 +33,7 @@ def compared(pair, flanks=None, phases=PHASES, near=NEAR):
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        known = pair.contacts(phases, flanks=forms)
+        known = flank_contacts(pair, phases, flanks=forms)
     mine = np.full(truth.shape, np.inf)
     for i, number in enumerate(order):
         if number in known.order:

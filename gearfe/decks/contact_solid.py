@@ -1,0 +1,302 @@
+"""A whole gear pair of finite width in nonlinear contact as a CalculiX deck: the second opinion in three dimensions."""
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.damage.crack import Crack
+from geometry.damage.pit import Pit
+from geometry.mesh.holes import SIZES as HOLES
+from geometry.mesh.holes import filled, holed_sector
+from geometry.mesh.relieved_solid import relieved_points
+from geometry.mesh.solid import solid
+from geometry.pair.contacts import FORM, Contacts, contacts
+from geometry.pair.gear_pair import GearPair
+from geometry.pair.modified import first_touch
+from geometry.tooth.gear import Gear
+from geometry.tooth.modified import FlankForm
+from geometry.tooth.profile import arc_at, cartesian, flank
+from geometry.tooth.side import on_fillet
+
+from ..files import written
+from ..flexibility.hertz import contact_modulus, half_width
+from ..material import Material
+from .contact_deck import PINION, ContactDeck, _posed
+from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
+
+# edge lengths in modules, see `geometry.mesh.quads.SIZES`
+SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
+TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `geometry.mesh.holes.SIZES`
+STRETCH = 2.0  # tets are so many times longer along the width
+RIM = 0.6  # edges at pits' rims against those along the contact lines
+SECTIONS = 33  # transverse sections at which the contacts are looked for
+REACH = 1.5  # contacts whose gap is below so many approaches
+STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
+PITS = ("cut", "lost", "filled")
+END = 1.0  # height of the layers at the end faces against that in between
+
+
+@dataclass(frozen=True, slots=True)
+class SolidDeck(ContactDeck):
+    """`ContactDeck` of a pair of finite width: forces in N; both meshes in their place, and the slave flanks by pair.
+
+    `parts` pinion and wheel; `slaves` by number of the tooth pair: gear (0 or 1) and faces ``(corners, k)``.
+    """
+
+    parts: tuple[Part, Part]
+    slaves: dict[int, tuple[int, NDArray[np.int64]]]
+
+    def carried(self, path: str | os.PathLike[str]) -> dict[int, tuple[float, float]]:
+        """What each tooth pair carries, from the ``.dat`` file `path`: force [N] and the height z of its line of action [mm].
+
+        CalculiX prints force F and moment M about the origin; the line is ``F x M / |F|**2 + t F``, and the height is that of its
+        point nearest to the middle of the contact area, which is printed too. Pairs that do not touch are left out.
+        """
+        found = contact_sums(path)
+        out = {}
+        for k, (order, (side, _)) in enumerate(self.slaves.items()):
+            if f"C{side + 1}P{k}" in found:
+                force, moment, middle = found[f"C{side + 1}P{k}"]
+                foot = np.cross(force, moment) / (force @ force)
+                z = (foot + (middle - foot) @ force / (force @ force) * force)[2]
+                out[order] = float(np.linalg.norm(force)), float(z)
+        return out
+
+
+def contact_sums(path: str | os.PathLike[str]) -> dict[str, tuple[NDArray[np.float64], ...]]:
+    """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
+
+    Raises
+    ------
+    RuntimeError
+        If the ``.dat`` file has none.
+    """
+    rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines() if line.strip()]
+    out: dict[str, tuple[NDArray[np.float64], ...]] = {}
+    for k, row in enumerate(rows):
+        if row[:4] == ["statistics", "for", "slave", "set"]:
+            first, middle = (np.array(rows[k + step], dtype=float) for step in (2, 4))
+            if first[:3].any():
+                out[row[4].rstrip(",")] = first[:3], first[3:], middle[:3]
+            else:
+                out.pop(row[4].rstrip(","), None)
+    if not out:
+        raise RuntimeError(f"{path} has no contact forces: CalculiX found no equilibrium, or no flanks touch")
+    return out
+
+
+@dataclass(frozen=True, slots=True)
+class Touching:
+    """Tooth pairs that may touch, n of them.
+
+    `order` their numbers, `heights` of the sections where they do, over the common width [mm], `rolls` by gear the roll lengths
+    there [mm], `width` half of Hertz's [mm], `slave` the gear (0 or 1) that is the slave side, `fillet` by gear whether its
+    fillet touches too: a tip in it, or the corner that undercut leaves between flank and fillet.
+    """
+
+    order: list[int]
+    heights: list[NDArray[np.float64]]
+    rolls: tuple[list[NDArray[np.float64]], list[NDArray[np.float64]]]
+    width: list[float]
+    slave: list[int]
+    fillet: tuple[list[bool], list[bool]]
+
+
+def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> NDArray[np.float64]:
+    """Abscissa [mm] of pair 0 on the line of action at heights z [mm] of the common width; `phase` is that of the end ahead."""
+    slope = math.tan(pair.gear_1.beta_b)
+    origin = min(pair.gear_1.b, pair.gear_2.b) if slope > 0 else 0.0
+    return pair.path[0] + phase * pair.p_bt + slope * (np.asarray(z) - origin)
+
+
+def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials, forms=None) -> Touching:
+    """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
+    heights = np.linspace(0.0, min(pair.gear_1.b, pair.gear_2.b), SECTIONS)
+    found = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
+    if forms is not None:
+        found = _modified(pair, found, heights, forms)
+    out = Touching([], [], ([], []), [], [], ([], []))
+    for k, order in enumerate(found.order.tolist()):
+        near = found.gap[:, k] < REACH * approach
+        if not near.any():
+            continue
+        rolls = found.roll_1[near, k], found.roll_2[near, k]
+        out.order.append(order)
+        out.heights.append(heights[near])
+        out.rolls[0].append(rolls[0])
+        out.rolls[1].append(rolls[1])
+        out.width.append(float(half_width(line_load, float(found.radius[near, k].max()), contact_modulus(materials))))
+        corners = [np.isin(found.corner[near, k], own).any() for own in ((1, 3), (2, 4))]  # a corner of pinion or wheel
+        out.slave.append(int(corners[1] and not corners[0]))
+        for number, gear in enumerate((pair.gear_1, pair.gear_2)):
+            edge = found.corner_gap[FORM[number] - 1, :, k] < REACH * approach  # it may touch as a second place of contact
+            out.fillet[number].append(bool(edge.any() or on_fillet(gear, rolls[number]).any()))
+    return out
+
+
+def _modified(pair, found, heights, forms):
+    """Contacts of the sections at `heights`, with the flanks as they are there."""
+    touches = [
+        first_touch(pair, forms, found.nominal[:, k], np.full(heights.size, order), found.gap[:, k], heights)
+        for k, order in enumerate(found.order.tolist())
+    ]
+    return Contacts(found.order, found.nominal, *(np.stack(values, axis=-1) for values in zip(*touches, strict=True)))
+
+
+def write_contact_solid(
+    path: str | os.PathLike[str],
+    pair: GearPair,
+    phase: float,
+    approach: float,
+    line_load: float,
+    materials: tuple[Material, Material],
+    *,
+    damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
+    pits: str = "cut",
+    forms: tuple[FlankForm, FlankForm] | None = None,
+    pose: str = "mean",
+    per_width: float = 1.0,
+    layers: int = 3,
+    penalty: float = 500.0,
+    refine: float = 1.0,
+) -> SolidDeck:
+    """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame.
+
+    `pits` is what becomes of them: ``cut`` out, their contact ``lost`` with the material left, or ``filled``, as if not there.
+
+    `forms` are the modified flanks of both, which the nodes lie on (`geometry.mesh.relieved_solid`); axes askew are among them.
+    """
+    common = min(pair.gear_1.b, pair.gear_2.b)
+    found = touching(pair, phase, approach, line_load, materials, forms)
+    parts = []
+    for number, own in enumerate(damage):
+        gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
+        low = -(gear.b - common) / 2
+        teeth = [(1, -1)[number] * order % gear.z for order in found.order]
+        if any(isinstance(one, Pit) for one in (own or damage[1 - number])):  # loads change quickly along the width on both
+            cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
+            body = _holed(gear, own, cut, refine, pits)
+        else:
+            patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
+            fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
+            options = {"layer": gear.b / layers, "loaded": teeth, "patches": patches, "fine": fine}
+            made = solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options)
+            body = part_of(made)
+            body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in made.fillets.items()})
+        if forms is not None:
+            body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
+        turn = float(pair.turn(nominal_at(pair, phase, low))[number])
+        mirror = (1, pair.outward)[number]
+        x, y = _posed(body.points[:2], turn, mirror)
+        place = np.array([x, y + (0.0, pair.centre_2)[number], body.points[2] + low])
+        parts.append(placed(body, place, mirrored=mirror < 0))
+    share = PINION[pose]
+    turned = (share * approach / pair.gear_1.r_b, pair.outward * (1 - share) * approach / pair.gear_2.r_b)
+    slaves = {}
+    for k, order in enumerate(found.order):
+        side = found.slave[k]
+        slaves[order] = side, _faces(pair, parts[side], found, side, k)
+    with written(path) as name:
+        Path(name).write_text("\n".join(_text(pair, parts, materials, found, turned, penalty)), encoding="ascii")
+    starts = [0, parts[0].points.shape[1]]
+    held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
+    centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
+    radii = pair.gear_1.r_b, pair.gear_2.r_b
+    return SolidDeck((held[0], held[1]), (centred[0], centred[1]), radii, (parts[0], parts[1]), slaves)
+
+
+def _faces(pair, part, found, number, k):
+    """Faces ``(corners, n)`` of a gear that may touch in a tooth pair: the flank, and of hexahedra the fillet if that touches."""
+    gear = (pair.gear_1, pair.gear_2)[number]
+    tooth = (1, -1)[number] * found.order[k] % gear.z
+    out = part.faces[f"flank {tooth}"]
+    below = part.faces.get(f"fillet {tooth}") if found.fillet[number][k] else None
+    return out if below is None else np.hstack([out, below])
+
+
+def _patch(gear, found, number, k, per_width):
+    """Place on the flank and edge length of the strip that a contact line sweeps [mm]."""
+    rolls = found.rolls[number][k]
+    arcs, a = arc_at(gear, np.append(rolls, gear.roll_f) if found.fillet[number][k] else rolls), found.width[k]
+    return float(arcs.min()) - STRIP * a, float(arcs.max()) + STRIP * a, a / per_width
+
+
+def _strip(gear, found, number, k, tooth, low, per_width):
+    """A contact line in the frame that turns with the helix, how far around it the mesh is finer, the edge length there [mm]."""
+    radius, angle = flank(gear, found.rolls[number][k])
+    line = np.array([*cartesian(radius, angle + 2 * math.pi * tooth / gear.z), found.heights[k] - low])
+    return line, 1.5 * found.width[k], found.width[k] / per_width
+
+
+def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
+    """A whole gear in tets, its pits cut out or not (`PITS`), if it has some; its damaged tooth is tooth 0 while it is meshed."""
+    cracks = [one for one in damage if isinstance(one, Crack)]
+    if len(cracks) > 1 or not all(crack.through for crack in cracks):
+        raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
+    tooth = damage[0].tooth % gear.z if damage else 0
+    turn = 2 * math.pi * tooth / gear.z
+    own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
+    holes = [one for one in damage if isinstance(one, Pit)]
+    least = min((min(pit.axes) for pit in holes), default=1.0)
+    rim = RIM * refine * min(size for *_, size in strips) / least
+    sizes = TETS | {"rim": min(rim, HOLES["rim"])}
+    made = holed_sector(gear, holes, *cracks, teeth=None, refine=refine, sizes=sizes, strips=own, stretch=STRETCH)
+    body = holed_part(made if pits == "cut" else filled(made, teeth=None), own)
+    if pits == "lost":
+        body = replace(body, faces=_uncovered(body.faces))
+    points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
+    faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
+    return replace(body, points=points, faces=faces)
+
+
+def _uncovered(faces):
+    """Faces with the flanks without what lies above the pits."""
+    above = {tuple(face) for face in faces["pits"].T.tolist()}
+    return {name: found[:, [tuple(face) not in above for face in found.T.tolist()]] for name, found in faces.items()}
+
+
+def _renamed(name, tooth, z):
+    """Flank of a mesh whose tooth 0 is tooth `tooth` of the gear."""
+    return f"flank {(int(name.split()[1]) + tooth) % z}" if name.startswith("flank ") else name
+
+
+def _from_centre(pair, part, number):
+    """Places (2, n) of the held nodes from their gear's centre [mm]."""
+    return part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]]
+
+
+def _text(pair, parts, materials, found, turned, penalty):
+    yield "** gearfe: gear pair of finite width in contact; mm, N, MPa"
+    yield "*NODE, NSET=ALL"
+    first, element, ends = 0, 0, []
+    for part in parts:
+        yield from node_lines(part, first)
+        first += part.points.shape[1]
+    first = 0
+    for number, part in enumerate(parts):
+        yield from element_lines(part, number + 1, first, element, materials[number])
+        for k in range(len(found.order)):
+            yield from surface_lines(part, f"C{number + 1}P{k}", _faces(pair, part, found, number, k), element)
+        held = part.held + first + 1
+        yield f"*NSET, NSET=H{number + 1}"
+        yield from (f"{n}," for n in held.tolist())
+        at = _from_centre(pair, part, number)
+        moved = np.array(_posed(at, turned[number], 1)) - at
+        for n, u, v in zip(held.tolist(), *moved, strict=True):
+            ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", f"{n}, 3, 3"]
+        first, element = first + part.points.shape[1], element + part.cells.shape[1]
+    yield "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
+    yield f"{penalty * max(m.E for m in materials):.6e}"
+    for k, slave in enumerate(found.slave):
+        yield "*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE"
+        yield (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[slave]
+    yield from ("*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends)
+    yield "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF"
+    for k, slave in enumerate(found.slave):
+        yield (f"*CONTACT PRINT, SLAVE=C{slave + 1}P{k}, MASTER=C{2 - slave}P{k}\nCF")
+    yield "*CONTACT FILE\nCDIS\n*END STEP\n"

@@ -1,0 +1,110 @@
+"""`export_mesh`: the undeformed mesh of a damaged tooth or a whole gear as a file that other programs read."""
+
+import os
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.damage.crack import Crack
+from geometry.damage.pit import Pit
+from geometry.mesh.holes import holed_sector
+from geometry.mesh.solid import solid
+from geometry.tooth.gear import Gear
+
+from ..checks import checked_refine
+from ..elements.folds import check_folds
+from ..elements.one_tooth import check_gear
+from ..files import check_output, suffix_of, written
+from .solid_deck import Part, holed_part, part_of
+
+KINDS = {"tetrahedra": "tetra10", "hexahedra": "hexahedron20"}
+LAYER = 1.0  # height of the layers of hexahedra [m_n]
+
+
+def export_mesh(
+    path: str | os.PathLike[str],
+    gear: Gear,
+    damage: Sequence[Crack | Pit] = (),
+    *,
+    cells: str | None = None,
+    teeth: int | None = None,
+    refine: float = 1.0,
+) -> Part:
+    """Write the mesh of a gear with its cracks opened and its pits cut out, without any load.
+
+    Hexahedra (20 nodes): the whole gear, cracks of the whole width or a part of it, no pits. Tetrahedra (10 nodes): a sector or
+    the whole gear, pits of one tooth as holes, at most one crack through the whole width, of the same tooth. Second order; faces
+    of a crack have nodes of their own at the same places.
+
+    Parameters
+    ----------
+    path : path
+        ``.msh`` (Gmsh), ``.vtu`` (ParaView) or ``.inp`` (Abaqus, CalculiX). Named places (``held``, ``flank 0``, ``pits``,
+        ``crack 0 body``, ...) are node sets in ``.inp`` and point data of 0 and 1 in the others.
+    gear : Gear
+    damage : sequence of Crack and Pit
+        Of this gear, teeth numbered in its own frame.
+    cells : {"hexahedra", "tetrahedra"}, optional
+        Default: tetrahedra if there are pits, or `teeth` is given.
+    teeth : int, optional
+        Of tetrahedra: an odd number of teeth around the damaged one, which becomes tooth 0; default all.
+    refine : float
+        Divides all edge lengths.
+
+    Returns
+    -------
+    gearfe.decks.solid_deck.Part
+        What was written.
+
+    Raises
+    ------
+    ValueError
+        If the damage cannot be meshed as asked, or the suffix is unknown.
+    """
+    check_output(path, "mesh")
+    check_gear(gear)
+    refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
+    _check_damage(damage)
+    pits = tuple(one for one in damage if isinstance(one, Pit))
+    cracks = tuple(one for one in damage if isinstance(one, Crack))
+    cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
+    if cells not in KINDS:
+        raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
+    made = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
+    _write(path, suffix, made, KINDS[cells])
+    return made
+
+
+def _check_damage(damage):
+    if not isinstance(damage, (list, tuple)) or not all(isinstance(one, (Crack, Pit)) for one in damage):
+        raise ValueError(f"damage = {damage!r}, but give a list of Crack and Pit of this gear, [] for none")
+
+
+def _tets(gear, pits, cracks, teeth, refine):
+    if len(cracks) > 1 or not all(crack.through for crack in cracks):
+        raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without pits")
+    return holed_part(holed_sector(gear, pits, *cracks, teeth=teeth, refine=refine))
+
+
+def _hexes(gear, pits, cracks, teeth, refine):
+    if pits:
+        raise ValueError(f"{len(pits)} pits in hexahedra, but pits are cut out of tetrahedra only: use cells = 'tetrahedra'")
+    if teeth is not None:
+        raise ValueError(f"teeth = {teeth}, but hexahedra are those of the whole gear: use cells = 'tetrahedra'")
+    loaded = sorted({crack.tooth % gear.z for crack in cracks}) or [0]
+    return part_of(solid(gear, layer=min(LAYER * gear.m_n, gear.b / 4), loaded=loaded, cracks=cracks, refine=refine))
+
+
+def _write(path, suffix, part, kind):
+    import meshio
+
+    check_folds(part.points, part.cells)
+    sets = {name.replace(" ", "_"): np.unique(found) for name, found in part.faces.items() if found.size}
+    sets["held"] = part.held
+    if suffix == ".inp":
+        mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_sets=sets)
+    else:
+        marks = {name: np.isin(np.arange(part.points.shape[1]), nodes).astype(np.int32) for name, nodes in sets.items()}
+        mesh = meshio.Mesh(part.points.T, [(kind, part.cells.T)], point_data=marks)
+    with written(path) as name:
+        meshio.write(name, mesh, file_format={".msh": "gmsh", ".vtu": "vtu", ".inp": "abaqus"}[suffix])

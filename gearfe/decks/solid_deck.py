@@ -1,0 +1,130 @@
+"""Parts of a CalculiX / Abaqus deck in three dimensions: hexahedra or tets, their outer faces, material and held nodes."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.mesh.holed_drawing import on_outline
+from geometry.mesh.holes import Holed
+from geometry.mesh.solid import Solid
+from geometry.tooth.profile import cartesian, flank
+
+from ..elements.folds import check_folds, unfolded
+from ..elements.hexahedron import ORDER, TWENTY
+from ..elements.tetrahedron import second_order
+
+MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
+MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
+FACES = {  # corners of the faces, in CalculiX's order
+    20: ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+    10: ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+}
+KINDS = {20: "C3D20R", 10: "C3D10"}
+ROW = 15  # numbers on a line; at most 16 are read
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A meshed body: `points` (3, n) [mm], `cells` (20 or 10, m) in CalculiX's order, `held` nodes, `faces` by name.
+
+    Every face of `faces` is named by its corners ``(4 or 3, k)``.
+    """
+
+    points: NDArray[np.float64]
+    cells: NDArray[np.int64]
+    held: NDArray[np.int64]
+    faces: dict[str, NDArray[np.int64]]
+
+
+def part_of(mesh: Solid) -> Part:
+    """Hexahedra of a gear in its own frame."""
+    return Part(mesh.points, mesh.cells[TWENTY], mesh.held, {name: found[:4] for name, found in mesh.faces.items()})
+
+
+def holed_part(mesh: Holed, strips=()) -> Part:
+    """Second-order tets of a gear without what its pits take, in its own frame.
+
+    Nodes on flanks lie on the involute helicoid, those on the rest of the outline and on the bore on these, save those in the
+    middle of edges whose tets would fold: they are nearer to their chords (`folds.unfolded`). RuntimeError if one of these is
+    in one of the `strips` (as of `holed_sector`), where the gear touches.
+    """
+    nodes, cells, number = second_order(mesh.points, mesh.cells[:, mesh.plug < 0])
+    gear = mesh.gear
+    for name in sorted(mesh.faces, reverse=True):  # flanks last, the most exact
+        if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
+            a, b, c = mesh.faces[name]
+            own = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
+            x, y, z = nodes[:, own]
+            radius, angle = _on_surface(gear, name, np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z)
+            nodes[:2, own] = cartesian(radius, angle + gear.twist_rate * z)
+    bent, nodes = nodes, unfolded(nodes, cells)
+    _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
+    a, b, c = mesh.faces["held"]
+    held = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
+    used, kept = np.unique(cells, return_inverse=True)
+    place = np.full(nodes.shape[1], -1)
+    place[used] = np.arange(used.size)
+    faces = {name: place[found] for name, found in mesh.faces.items()}
+    return Part(nodes[:, used], kept.reshape(cells.shape), place[held], faces)
+
+
+def _on_surface(gear, name, radius, angle):
+    """Places (radius [mm], angle [rad]) of a section on the surface `name` they are near to."""
+    if name == "held":
+        return gear.held, angle
+    if name == "outline":
+        return on_outline(gear, radius, angle)
+    radius = np.clip(radius, *sorted((gear.r_form, gear.r_a)))
+    turn = 2 * np.pi * int(name.split()[1]) / gear.z
+    return radius, flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1] + turn
+
+
+def _check_strips(gear, off, strips):
+    """RuntimeError if nodes ``(3, n)`` that are off the flank lie where it is to touch."""
+    x, y, z = off
+    radius, angle = np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z
+    flat = np.array([*cartesian(radius, angle), z])
+    for line, reach, _ in strips:
+        if (np.linalg.norm(flat[:, :, None] - line[:, None, :], axis=0) < reach).any():
+            raise RuntimeError(
+                f"tets in the contact zone of z = {gear.z} cannot follow the flank without folding: change refine or per_width"
+            )
+
+
+def placed(part: Part, points: NDArray[np.float64], *, mirrored: bool = False) -> Part:
+    """A body with its nodes at `points`; `mirrored` if they are a mirror image of its own."""
+    cells = part.cells[MIRRORED[len(part.cells)]] if mirrored else part.cells
+    return replace(part, points=points, cells=cells)
+
+
+def sides_of(cells, faces):
+    """(element, side) of outer faces, both from 0: ``(2, k)`` for the faces ``(corners, k)``."""
+    corners = np.array(FACES[len(cells)])
+    every = np.sort(cells[corners].transpose(1, 0, 2).reshape(corners.shape[1], -1), axis=0)
+    wanted = np.sort(faces, axis=0)
+    place = np.unique(np.hstack([every, wanted]), axis=1, return_inverse=True)[1]
+    side, element = np.divmod(np.flatnonzero(np.isin(place[: every.shape[1]], place[every.shape[1] :])), cells.shape[1])
+    return np.array([element, side])
+
+
+def node_lines(part, first):
+    """Nodes, numbered from `first` + 1."""
+    return [f"{first + i}, {x:.12e}, {y:.12e}, {z:.12e}" for i, (x, y, z) in enumerate(part.points.T.tolist(), 1)]
+
+
+def element_lines(part, number, first, element, material):
+    """Elements, numbered from `element` + 1, material and section of body `number`; RuntimeError if some fold."""
+    check_folds(part.points, part.cells)
+    out = [f"*ELEMENT, TYPE={KINDS[len(part.cells)]}, ELSET=G{number}"]
+    for j, row in enumerate((part.cells + first + 1).T.tolist(), 1):
+        row = [element + j, *row]
+        out += [",".join(map(str, row[k : k + ROW])) + ("," if k + ROW < len(row) else "") for k in range(0, len(row), ROW)]
+    out += [f"*MATERIAL, NAME=M{number}\n*ELASTIC\n{material.E!r}, {material.nu!r}"]
+    return [*out, f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}"]
+
+
+def surface_lines(part, name, faces, element):
+    """Surface `name` of outer faces ``(corners, k)``."""
+    found = sides_of(part.cells, faces)
+    return [f"*SURFACE, NAME={name}, TYPE=ELEMENT", *(f"{element + j + 1}, S{s + 1}" for j, s in found.T.tolist())]

@@ -1,0 +1,42 @@
+"""A machine whose speed changes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from .speed import Speed
+from .tables import Machine
+
+
+def with_speed(machine: Machine, times: Sequence[float], factors: Sequence[float]) -> Machine:
+    """The machine with a speed that changes: a run-up, a coast-down, a drive that wavers.
+
+    The phases of all meshes are integrated; damaged teeth, errors and the carrier follow them. Loads keep their own histories:
+    give the torque that goes with the profile by ``(times, values)``, what speeds the rotors up included - the machine vibrates
+    about the motion stated here and does not produce it. Stiffness curves are those of one load, and the weights of Coulomb
+    friction those of the nominal speed.
+
+    Parameters
+    ----------
+    machine : Machine
+    times : sequence of float
+        [s]
+    factors : sequence of float
+        Speed over that of the machine at these times; straight between them.
+
+    Returns
+    -------
+    Machine
+
+    Raises
+    ------
+    ValueError
+        If the times do not rise, or a factor is negative or not finite.
+
+    Examples
+    --------
+    >>> import gearfe as gf
+    >>> machine = gf.with_speed(gf.single_mesh(1.0, 1e8, 500.0), [0.0, 1.0], [0.2, 1.2])
+    >>> float(machine.turned(1.0))  # the mean factor is 0.7
+    0.7
+    """
+    return replace(machine, speed=Speed(tuple(map(float, times)), tuple(map(float, factors))))

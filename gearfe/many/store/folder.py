@@ -1,0 +1,148 @@
+"""A folder with a note of what is in it: files that are whole or not there, one writer at a time.
+
+A folder holds ``about.json`` (what made its files), the files, and ``.lock``. A file is written under another name, flushed to
+the disk and then renamed, so that a process that is killed, or a disk that runs full, leaves either the whole file or none.
+"""
+
+import contextlib
+import json
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import IO, Any
+
+from ...files import new_file
+
+ABOUT, LOCK, PART = "about.json", ".lock", ".part-"
+
+
+@contextlib.contextmanager
+def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
+    """File to write into that becomes `path` when the block ends without an error, and is on the disk then.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
+    """
+    path = Path(path)
+    name = None
+    try:
+        handle, name = new_file(path.parent, PART)
+        with os.fdopen(handle, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(name, path)
+        _sync(path.parent)
+    except OSError as error:
+        raise ValueError(f"cannot write {path}: {error.strerror or error}; nothing written before is lost") from error
+    finally:
+        if name is not None:
+            with contextlib.suppress(OSError):
+                os.unlink(name)
+
+
+def _sync(folder):
+    """Flush a folder's list of names to the disk."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+@contextlib.contextmanager
+def locked(folder: str | os.PathLike[str]) -> Iterator[None]:
+    """Be the only one who writes into a folder, until the block ends or the process does; leftovers of killed ones are removed.
+
+    Raises
+    ------
+    ValueError
+        If another process writes into it, or the folder cannot be written.
+    """
+    folder = Path(folder)
+    try:
+        handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o666)
+    except OSError as error:
+        raise ValueError(f"cannot write into {folder}: {error.strerror or error}; give a writable folder") from error
+    try:
+        _take(handle, folder)
+        for left in folder.glob(f"{PART}*"):
+            left.unlink(missing_ok=True)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _take(handle, folder):
+    """Lock an open file, or say that it is taken."""
+    try:
+        import fcntl
+    except ImportError as error:
+        raise RuntimeError(
+            "a folder of shards is locked by fcntl, which this system has not: write it on Linux or macOS"
+        ) from error
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise ValueError(f"another process is writing into {folder}: wait for it, or give another folder") from error
+
+
+def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
+    """What an existing folder says of its shards; a new or empty one is made and says what `about` holds.
+
+    Parameters
+    ----------
+    folder : str or path
+    about : dict
+        JSON; its ``"format"`` is a name such as ``"gearfe sweep 1"``.
+
+    Returns
+    -------
+    dict
+        What stands in the folder, for the caller to compare with `about`.
+
+    Raises
+    ------
+    ValueError
+        If the folder cannot be made or written, or holds anything else.
+    """
+    if not os.fspath(folder):
+        raise ValueError("an empty name of a folder: give one")
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        inside = sorted(one.name for one in folder.iterdir() if one.name != LOCK and not one.name.startswith(PART))
+    except OSError as error:
+        raise ValueError(f"cannot make the folder {folder}: {error.strerror or error}") from error
+    if inside:
+        return read_about(folder, str(about["format"]))
+    with durable(folder / ABOUT) as file:
+        file.write(json.dumps(about, indent=1).encode())
+    return json.loads(json.dumps(about))
+
+
+def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
+    """What a folder of shards of the format `form` says of itself.
+
+    Raises
+    ------
+    ValueError
+        If it is no such folder; nothing in it is touched.
+    """
+    file = Path(folder) / ABOUT
+    if not Path(folder).is_dir():
+        raise ValueError(f"no folder {folder}")
+    if not file.is_file():
+        inside = sorted(one.name for one in Path(folder).iterdir() if one.name != LOCK)
+        told = f"holds other files ({', '.join(inside[:3])}{', ...' if len(inside) > 3 else ''})" if inside else "is empty"
+        raise ValueError(f"{folder} {told} and no {ABOUT}, so it is no {form}: give a new or empty folder, or one of these")
+    try:
+        about = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{file} is damaged: {error}; nothing in the folder was touched") from error
+    if not isinstance(about, dict) or about.get("format") != form:
+        found = about.get("format") if isinstance(about, dict) else about
+        raise ValueError(f"{file} says format = {found!r}, not {form!r}: another program's or version's folder; give a new one")
+    return about

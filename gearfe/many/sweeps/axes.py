@@ -1,0 +1,117 @@
+"""Tables of a study that say what varies: ``[vary]`` and ``[[along]]`` the axes of a grid, ``[sample]`` what is drawn."""
+
+import math
+
+import numpy as np
+
+from ...scene.strict import LARGEST, NUMBER, REQUIRED, TABLES, TEXT, TEXTS, VALUES, WHOLE, checked, shown
+from . import samples
+
+SAMPLE = {"method": (TEXT, "random"), "count": (WHOLE, REQUIRED), "of": (VALUES, REQUIRED), "correlated": (TABLES, [])}
+BETWEEN = {"between": (TEXTS, REQUIRED), "value": (NUMBER, REQUIRED)}
+STEPS = {"from": (NUMBER, REQUIRED), "to": (NUMBER, REQUIRED), "count": (WHOLE, REQUIRED), "spacing": (TEXT, "even")}
+MOST = 10**7  # cases: their values alone take gigabytes
+SPEC = {*STEPS, *samples.SHAPES, "within", "also"}
+
+
+def flat(tables, path=()):
+    """Values of nested tables by dotted key; a table of `SPEC` keys is a value."""
+    out = {}
+    for name, value in tables.items():
+        if isinstance(value, dict) and not (value and set(value) <= SPEC):
+            out |= flat(value, (*path, name))
+        else:
+            out[".".join((*path, name))] = value
+    return out
+
+
+def axes(file, vary, along):
+    """Axes of the grid, in the order of the file: each holds lists of one length by key."""
+    for key, value in flat(vary).items():
+        values = _listed(file, key, value)
+        yield {one: values for one in (key, *also(file, f"vary {key}", value))}
+    for i, table in enumerate(along):
+        lists = {key: _listed(file, key, value) for key, value in flat(table).items()}
+        if len({len(one) for one in lists.values()}) != 1:
+            told = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
+            raise ValueError(f"{file} [along {i + 1}]: lists that go together are of one length, but {told or 'there is none'}")
+        yield lists
+
+
+def also(file, where, value):
+    """Other keys that take the values of one, from ``also`` in its table."""
+    if not isinstance(value, dict) or "also" not in value:
+        return []
+    return checked(file, where, {"also": value["also"]}, {"also": (TEXTS, REQUIRED)})["also"]
+
+
+def _listed(file, key, value):
+    """Values of one key of the grid."""
+    where = f"vary {key}"
+    if isinstance(value, dict):
+        steps = checked(file, where, {name: one for name, one in value.items() if name != "also"}, STEPS)
+        if not 2 <= steps["count"] <= MOST or steps["spacing"] not in ("even", "log"):
+            raise ValueError(f'{file} [{where}]: give count >= 2, at most {MOST:.0e}, and spacing = "even" or "log"')
+        if steps["spacing"] == "even":
+            return np.linspace(steps["from"], steps["to"], steps["count"]).tolist()
+        if not min(steps["from"], steps["to"]) > 0:
+            raise ValueError(f"{file} [{where}]: logarithmic steps need from > 0 and to > 0")
+        return np.geomspace(steps["from"], steps["to"], steps["count"]).tolist()
+    if not isinstance(value, (list, tuple)) or not value:
+        raise ValueError(f"{file} [{where}] = {shown(value)}: give a list of values, or from, to and count")
+    check_values(f"{file} [{where}]", value)
+    if len({repr(one) for one in value}) < len(value):
+        raise ValueError(f"{file} [{where}]: a value stands in the list twice")
+    return list(value)
+
+
+def check_values(where, values):
+    """Raise ValueError for a value that no key of a scene has: a number beyond all bounds, a table, a date."""
+    for one in values:
+        parts = one if isinstance(one, (list, tuple)) else [one]
+        for part in parts:
+            if not isinstance(part, (bool, str)) and not (isinstance(part, (int, float)) and abs(part) < LARGEST):
+                raise ValueError(
+                    f"{where}: {shown(one)} is no value of a scene: give numbers, texts, true or false, or lists of them"
+                )
+
+
+def checked_sample(file, given):
+    """Checked ``[sample]``; empty if none is given."""
+    if not given:
+        return {}
+    out = checked(file, "sample", given, SAMPLE)
+    out["of"] = flat(out["of"])
+    out["correlated"] = [checked(file, f"sample.correlated {i + 1}", one, BETWEEN) for i, one in enumerate(out["correlated"])]
+    method, count = out["method"], out["count"]
+    if method not in samples.METHODS:
+        raise ValueError(f"{file} [sample] method = {method!r}, but it must be one of {', '.join(samples.METHODS)}")
+    if not 1 <= count <= MOST or not out["of"]:
+        raise ValueError(f"{file} [sample]: give count >= 1, at most {MOST:.0e}, and [sample.of] with at least one key")
+    if method in ("sobol", "saltelli") and count & (count - 1):
+        low = 2 ** math.floor(math.log2(count))
+        raise ValueError(f"{file} [sample] count = {count}: a {method} sample has a power of two, such as {low} or {2 * low}")
+    for key, spec in out["of"].items():
+        if not isinstance(spec, dict):
+            raise ValueError(f"{file} [sample.of] {key} = {shown(spec)}: give a distribution, such as {{ uniform = [1, 2] }}")
+        also(file, f"sample.of {key}", spec)
+        samples.check_shape(f"{file} [sample.of] {key}", spec)
+        check_values(f"{file} [sample.of] {key}", spec.get("choice", []))
+    if method == "saltelli" and out["correlated"]:
+        raise ValueError(f"{file} [sample]: Sobol indices part the variance among independent values; leave [[correlated]] out")
+    _check_correlated(file, out)
+    return out
+
+
+def _check_correlated(file, sample):
+    """Raise ValueError unless each correlation is of two keys that have a distribution, and said once."""
+    known, said = [key for key, spec in sample["of"].items() if "choice" not in spec], set()
+    for one in sample["correlated"]:
+        two = frozenset(one["between"])
+        if len(one["between"]) != 2 or len(two) != 2 or not two <= set(known) or not -1 < one["value"] < 1:
+            raise ValueError(
+                f"{file} [[sample.correlated]] {one!r}: give two different keys of {', '.join(known)} and a value in (-1, 1)"
+            )
+        if two in said:
+            raise ValueError(f"{file} [[sample.correlated]]: {' and '.join(one['between'])} are correlated twice; leave one out")
+        said.add(two)

@@ -1,0 +1,203 @@
+"""Cases in blocks: sorted so that those that share gears are together; a block is computed by one process and makes one shard."""
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+from ...scene.load import Scene, scene_of
+from ...steps import listening
+from ...stiffness.cache import program
+from ...threads import own_warnings
+from ..store.shards import Field, encoded, table
+from .keys import placed, rank, trimmed
+from .kinds import KINDS
+from .study import Study, of_case, slim, values
+
+FAILURES = (ValueError, RuntimeError, ArithmeticError, LookupError, TypeError, AssertionError, MemoryError)
+DONE, FAILED, LOST = "done", "failed", "lost"
+FIRST = {"number": Field("whole"), "point": Field("whole"), "draw": Field("whole")}
+LAST = {"status": Field("text"), "error": Field("text"), "notes": Field("text"), "seconds": Field("number", "s")}
+LAST |= {"version": Field("text"), "source": Field("text")}
+_ONE = threading.Lock()  # processor time is counted for a process, not for a thread
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Cases of one shard `name`: their numbers in the study, combination, draw and values by key."""
+
+    name: str
+    numbers: tuple[int, ...]
+    points: tuple[int, ...]
+    draws: tuple[int, ...]
+    cases: tuple[dict[str, Any], ...]
+
+    def part(self, start: int, stop: int) -> "Block":
+        """Some of its cases."""
+        own = slice(start, stop)
+        return Block(self.name, self.numbers[own], self.points[own], self.draws[own], self.cases[own])
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A block with all it takes to compute it in another process."""
+
+    study: Study
+    fields: dict[str, Field]
+    block: Block
+
+
+def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
+    """All cases of a study in blocks, always the same ones, and the columns of its results.
+
+    Cases are sorted by what the healthy gears depend on, then by damage, then by the rest, which shares both. A block holds whole
+    groups of the same gears and damage where they are not larger than it.
+    """
+    columns, point, draw = values(study)
+    order, group = _sorted(columns, point.size)
+    made = []
+    for i, part in enumerate(_parts(group, study.block)):
+        own = order[part]
+        cases = tuple({key: column[j] for key, column in columns.items()} for j in own)
+        made.append(Block(f"block-{i:06d}", tuple(own.tolist()), tuple(point[own].tolist()), tuple(draw[own].tolist()), cases))
+    inputs = {key: Field(_kind(column)) for key, column in columns.items()}
+    return made, FIRST | inputs | KINDS[study.kind].fields | LAST
+
+
+def _sorted(columns, count):
+    """Order of the cases, and for each in it the number of its group of the same gears and damage."""
+    codes = {key: _codes(column) for key, column in columns.items()}
+    names = sorted(codes, key=rank)  # a stable sort: the order of the study among those of one rank
+    order = np.lexsort([codes[name] for name in reversed(names)]) if names else np.arange(count)
+    shared = np.array([codes[name][order] for name in names if rank(name) < 2]).reshape(-1, count)
+    new = np.any(np.diff(shared, axis=1) != 0, axis=0)
+    return order, np.concatenate([[0], np.cumsum(new)])
+
+
+def _codes(column):
+    """Numbers of the distinct values by first appearance."""
+    seen: dict[str, int] = {}
+    return np.array([seen.setdefault(repr(value), len(seen)) for value in column])
+
+
+def _parts(group, size):
+    """Slices of about `size` cases that part no group, unless it is larger."""
+    start, ends = 0, np.append(np.flatnonzero(np.diff(group)) + 1, group.size)
+    for end, following in zip(ends, [*ends[1:], None], strict=True):
+        while end - start >= size:
+            cut = end if end - start < 2 * size else start + size
+            yield slice(start, cut)
+            start = cut
+        if start < end and (following is None or following - start > size):
+            yield slice(start, end)
+            start = end
+
+
+def _kind(column):
+    """Kind of column that holds the values of a key."""
+    if all(isinstance(value, bool) for value in column):
+        return "truth"
+    if all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in column):
+        return "whole" if all(isinstance(value, int) for value in column) else "number"
+    return "text" if all(isinstance(value, str) for value in column) else "json"
+
+
+def jobs(study: Study, todo: Sequence[Block], fields: Mapping[str, Field]) -> list[Job]:
+    """Blocks ready to be sent away."""
+    small = slim(study)
+    return [Job(small, dict(fields), block) for block in todo]
+
+
+def compute(job: Job) -> tuple[str, bytes, str]:
+    """Name and encoded shard of a block, and the source code that made it."""
+    return shard(job, rows(job))
+
+
+def shard(job: Job, made: Sequence[Mapping[str, Any]]) -> tuple[str, bytes, str]:
+    """Name and encoded shard, from the rows of a block, and the source code that made them."""
+    return job.block.name, encoded(table(made, job.fields)), _program()["source"]
+
+
+def rows(job: Job) -> list[dict[str, Any]]:
+    """Rows of a block's cases; a case that cannot be has its error in its row.
+
+    Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
+    alone, so that the row says it to which it belongs.
+    """
+    cases, out = job.block.cases, []
+    built: dict[str, Scene] = {}
+    keys = [_key(job.study, case) for case in cases]
+    with _ONE, listening(lambda text, share: None):  # how far one case is says nothing here
+        for _, same in groupby(range(len(cases)), keys.__getitem__):
+            numbers = list(same)
+            found = _tried(job.study, [cases[i] for i in numbers], built)
+            if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in found):
+                spent = found[0]["seconds"]
+                found = [row for i in numbers for row in _tried(job.study, [cases[i]], built)]
+                found = [row | {"seconds": row["seconds"] + spent} for row in found]
+            out += [_told(job.block, i) | row for i, row in zip(numbers, found, strict=True)]
+    return out
+
+
+def _tried(study, cases, built):
+    """Rows of cases that differ in their load only, their processor time shared, or with the error of all."""
+    started = time.process_time()
+    with own_warnings() as said:
+        try:
+            found = [row | {"status": DONE} for row in _computed(study, cases, built)]
+        except FAILURES as error:
+            found = [{"status": FAILED, "error": f"{type(error).__name__}: {error}"} for _ in cases]
+    notes = "; ".join(dict.fromkeys(str(one.message) for one in said))
+    each = {"notes": notes or None, "seconds": (time.process_time() - started) / len(cases)}
+    return [row | each for row in found]
+
+
+def lost(job: Job) -> list[dict[str, Any]]:
+    """Rows of a block whose worker ended with it, each time it was tried."""
+    error = "the process that computed it ended: killed, or out of memory"
+    return [_told(job.block, i) | {"status": LOST, "error": error} for i in range(len(job.block.cases))]
+
+
+def single(job: Job) -> list[Job]:
+    """One job for each case of a job."""
+    return [replace(job, block=job.block.part(i, i + 1)) for i in range(len(job.block.cases))]
+
+
+def _told(block, i):
+    """What a row says of its case and of the program."""
+    numbers = {"number": block.numbers[i], "point": block.points[i], "draw": block.draws[i]}
+    return numbers | block.cases[i] | _program()
+
+
+@cache
+def _program():
+    """What each row says of the program that made it."""
+    made = program()
+    return {"version": made["gearfe"], "source": made["source"]}
+
+
+def _computed(study, cases, built):
+    """Rows of cases that differ in their load only; `built` keeps their scene."""
+    kind, case, key = KINDS[study.kind], cases[0], _key(study, cases[0])
+    pair, damage, options = of_case(study, case)
+    if key not in built:
+        built.clear()
+        tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
+        built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
+    scene = built[key]
+    forces = [one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases]
+    return kind.work(scene, pair, None if damage == "healthy" else damage, options, forces)
+
+
+def _key(study, case):
+    """What decides the scene of a case but, where that is one pair, its load."""
+    return repr([(name, value) for name, value in case.items() if KINDS[study.kind].whole or not _is_force(name)])
+
+
+def _is_force(key):
+    return key.startswith("pair.") and key.endswith(".force_N")

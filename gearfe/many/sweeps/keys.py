@@ -1,0 +1,103 @@
+"""Any value of a scene by its dotted key, ``crack.cracked.level``: which there are, and how one is set in the scene's tables."""
+
+import copy
+
+from ...scene import machine_table
+from ...scene.load import DAMAGE, TABLES
+
+OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
+BEFORE_LOAD = ("gear", "material")  # what the healthy gears depend on; then damage; the rest shares the gears
+
+
+def check_key(key, tables, options):
+    """Raise ValueError unless `key` names a value that can be set in a scene's `tables`, or an option of the kind of study."""
+    if key in OUTSIDE:
+        return
+    parts = key.split(".")
+    known = _known(parts, tables, options)
+    if len(parts) != len(known) + 1 and not (len(parts) == len(known) + 2 and parts[-1].isdigit()):
+        raise ValueError(
+            f"{key!r} names no single value; write for instance {'.'.join(n[0] if n else 'NAME' for n in known)}.KEY"
+        )
+    for part, names in zip(parts[1:], known, strict=False):
+        if part not in names:
+            raise ValueError(f"{key!r}: there is no {part!r}; there is {', '.join(names) or 'nothing'}")
+
+
+def _known(parts, tables, options):
+    """Names that can stand behind the first part of a key, place by place."""
+    first = parts[0]
+    if first == "options":
+        return [list(options)]
+    if first in TABLES:
+        return [list(tables.get(first, {})), list(TABLES[first])]
+    if first in DAMAGE:
+        return [list(dict.fromkeys(one["case"] for one in tables.get(first, []))), list(DAMAGE[first])]
+    if first == "machine" and "machine" in tables:
+        if parts[1:2] == ["impact"]:
+            return [["impact"], list(machine_table.IMPACT)]
+        if parts[1:2] == ["bodies"]:
+            return [["bodies"], list(tables["machine"].get("bodies", {})), list(machine_table.BODY)]
+        return [[*machine_table.MACHINE, "impact", "bodies"]]
+    there = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
+    raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(there)} or options, or is pair or case")
+
+
+def placed(tables, values):
+    """Copy of a scene's `tables` with `values` by key; keys of other things (`OUTSIDE`, options) are left aside."""
+    out = copy.deepcopy(tables)
+    for key, value in values.items():
+        parts = key.split(".")
+        if key in OUTSIDE or parts[0] == "options":
+            continue
+        if parts[0] in DAMAGE:
+            homes = [one for one in out[parts[0]] if one["case"] == parts[1]]
+            parts = parts[2:]
+        else:
+            deep = 2 if parts[0] in TABLES else len(parts) - 1 - parts[-1].isdigit()
+            home = out
+            for part in parts[:deep]:
+                home = home.setdefault(part, {})
+            homes, parts = [home], parts[deep:]
+        for home in homes:
+            _set(home, parts, value)
+    return out
+
+
+def _set(home, parts, value):
+    """Set a value of a table, or the n-th number of a list in it."""
+    if len(parts) == 1:
+        home[parts[0]] = value
+        return
+    key, at = parts[0], int(parts[1])
+    given = list(home.get(key) or [])
+    if at >= len(given):
+        raise ValueError(f"{key} = {given!r} in the scene has no number {at}; the first is 0")
+    given[at] = value
+    home[key] = given
+
+
+def trimmed(tables, pair, case):
+    """Tables that one pair in one case of damage needs: the rest would be checked for every case of a sweep, for nothing."""
+    chosen = tables["pair"][pair]
+    gears = {chosen.get(name) for name in ("gear_1", "gear_2")}
+    out = {name: tables[name] for name in ("title", "source") if name in tables}
+    out["pair"] = {pair: chosen}
+    out["gear"] = {name: one for name, one in tables["gear"].items() if name in gears}
+    used = {one.get("material") for one in out["gear"].values()}
+    out["material"] = {name: one for name, one in tables["material"].items() if name in used}
+    out["flank"] = {
+        name: one for name, one in tables.get("flank", {}).items() if one.get("gear") in gears and one.get("pair") in (None, pair)
+    }
+    for kind in DAMAGE:
+        found = [one for one in tables.get(kind, []) if one.get("case") == case]
+        out[kind] = [one for one in found if one.get("gear") in gears and one.get("pair") in (None, pair)]
+    return out
+
+
+def rank(key):
+    """Order in which keys are sorted so that cases beside each other share what was solved: 0 gears, 1 damage, 2 the rest."""
+    first = key.partition(".")[0]
+    if first in BEFORE_LOAD or key in OUTSIDE:
+        return 0
+    return 1 if first in DAMAGE else 2

@@ -1,0 +1,60 @@
+"""Memory that a process may still take: of the machine, of its own limit, of its control group (a container)."""
+
+import math
+import os
+from pathlib import Path
+
+GROUP = "/sys/fs/cgroup"  # of this process; version 2, then version 1
+CONTROL_GROUP = (  # files with limit, use [bytes] and details, and the name of cached files in the last
+    (f"{GROUP}/memory.max", f"{GROUP}/memory.current", f"{GROUP}/memory.stat", "inactive_file"),
+    (f"{GROUP}/memory/memory.limit_in_bytes", f"{GROUP}/memory/memory.usage_in_bytes", f"{GROUP}/memory/memory.stat",
+     "total_inactive_file"),
+)  # fmt: skip
+
+
+def free_memory():
+    """Memory [bytes] that can be had without swapping: what the machine has free, less if this process may use less."""
+    return min(_machine_free(), _process_free(), _group_free())
+
+
+def _process_free():
+    """What is left of the limit of this process (``ulimit -v``, ``ulimit -d``)."""
+    try:
+        import resource
+    except ImportError:  # no such limits on this system
+        return math.inf
+    soft = [resource.getrlimit(kind)[0] for kind in (resource.RLIMIT_AS, resource.RLIMIT_DATA)]
+    least = min((float(one) for one in soft if one != resource.RLIM_INFINITY), default=math.inf)
+    if least == math.inf:
+        return least
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            used = float(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        used = 0.0
+    return max(least - used, 0.0)
+
+
+def _group_free():
+    """What is left to the control group of this process (a container); version 2 has two files, version 1 others."""
+    left = math.inf
+    for limit, used, told, cached in CONTROL_GROUP:
+        try:
+            most, taken, lines = (Path(name).read_text(encoding="ascii").strip() for name in (limit, used, told))
+        except OSError:
+            continue
+        files = next((float(line.split()[1]) for line in lines.splitlines() if line.startswith(f"{cached} ")), 0.0)
+        if most.isdigit() and taken.isdigit():  # files that nobody reads now make room when asked
+            left = min(left, max(float(most) - float(taken) + files, 0.0))
+    return left
+
+
+def _machine_free():
+    try:
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            for line in lines:
+                if line.startswith("MemAvailable"):
+                    return 1024.0 * int(line.split()[1])
+    except OSError:
+        pass
+    return float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")) if hasattr(os, "sysconf") else math.inf

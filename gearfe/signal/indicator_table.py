@@ -1,0 +1,88 @@
+"""Condition indicators of several cases side by side, with their increments over the healthy one."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..markdown import table_row
+from .series import Signal
+
+LABELS = {  # in tables: words; rms may be larger than the peak, of a signal with a mean
+    "rms": "rms (with the mean)",
+    "peak": "peak (from the mean)",
+    "crest factor S4": "peak over rms with the mean (article S4)",
+    "mesh line": "amplitude at the mesh frequency",
+    "sideband index": "mean amplitude of the first sidebands",
+    "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
+    "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
+}
+TENFOLD = 900.0  # percent: from here on growth is told as a factor
+GREAT = 1e8  # percent: beyond, there was nothing to grow from
+
+
+def increment(value, healthy):
+    """``(value - healthy) / healthy`` in percent (S4)."""
+    if not healthy:
+        raise ValueError(f"healthy = {healthy}, but an increment in percent needs a value other than 0")
+    return 100 * (value - healthy) / healthy
+
+
+def indicator_table(
+    signals: Mapping[str, Signal],
+    mesh_frequency: float | None = None,
+    fault_frequency: float | None = None,
+    *,
+    healthy: str = "healthy",
+    **options: Any,
+) -> dict[str, dict[str, tuple[float, float]]]:
+    """Indicators of several cases, each with its increment against the healthy one.
+
+    Parameters
+    ----------
+    signals : dict of str to Signal
+        Signals by case, all of the same unit, rate and length: the sideband indicators depend on them.
+    mesh_frequency, fault_frequency, **options
+        See `Signal.indicators`.
+    healthy : str
+        The case to compare with.
+
+    Returns
+    -------
+    dict of str to dict of str to (float, float)
+        ``table[case][indicator]`` is the value and the increment [%], nan where the healthy value is 0.
+    """
+    if healthy not in signals:
+        raise ValueError(f"no case {healthy!r} to compare with; there are {', '.join(signals) or 'none'}: give one as healthy=")
+    first = signals[healthy]
+    for case, signal in signals.items():
+        if (signal.unit, signal.rate, signal.values.size) != (first.unit, first.rate, first.values.size):
+            raise ValueError(
+                f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
+                f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
+            )
+    found = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    reference = found[healthy]
+    return {
+        case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
+        for case, row in found.items()
+    }
+
+
+def table_text(table):
+    """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
+
+    What is a millionth or less in the healthy signal is taken for none there.
+    """
+    names = list(next(iter(table.values())))
+    grown = {case for case, row in table.items() if any(more and not math.isnan(more) for _, more in row.values())}
+    lines = [["indicator", *table], ["---"] * (len(table) + 1)]
+    lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
+    return "\n".join(map(table_row, lines))
+
+
+def _cell(value, more, grown):
+    if not grown or math.isnan(more):
+        return f"{value:.4g}"
+    if abs(more) < TENFOLD:
+        return f"{value:.4g} ({more:+.1f} %)"
+    return f"{value:.4g} ({f'{1 + more / 100:.3g} x healthy' if abs(more) < GREAT else 'healthy: none'})"

@@ -1,0 +1,64 @@
+"""`Spectrum`: values over frequency or shaft order; the one of amplitudes, from samples."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import get_window, periodogram
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Spectrum:
+    """Values over frequency, or over shaft order.
+
+    Attributes
+    ----------
+    frequency : ndarray, shape (m,)
+        Frequencies from 0 on [Hz], or shaft orders (per turn), or quefrencies [s], as `axis` says.
+    values : ndarray, shape (m,)
+        Values at these frequencies, in `unit`.
+    unit : str
+    resolution : float
+        Distance of two bins.
+    bandwidth : float
+        Equivalent noise bandwidth of a bin, 1.5 times `resolution` with a Hann window.
+    name, axis : str
+        `axis` is ``Hz``, ``order``, or ``s`` of a cepstrum.
+    """
+
+    frequency: NDArray[np.float64]
+    values: NDArray[np.float64]
+    unit: str
+    resolution: float
+    bandwidth: float
+    name: str = "spectrum"
+    axis: str = "Hz"
+
+    def within(self, low: float, high: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Frequencies and values of the bins from `low` to `high`, both included."""
+        slack = 1e-6 * self.resolution
+        rows = (self.frequency >= low - slack) & (self.frequency <= high + slack)
+        if not rows.any():
+            raise ValueError(
+                f"{self.name} has no bin from {low:g} to {high:g} {self.axis}: it reaches from {self.frequency[0]:g} to "
+                f"{self.frequency[-1]:g} in steps of {self.resolution:g}; sample faster or longer"
+            )
+        return self.frequency[rows], self.values[rows]
+
+
+def amplitudes(values, rate, window, unit, name, axis):
+    """`Spectrum` of equally spaced values, `rate` of them per second or per turn."""
+    n, mean = values.size, values.mean()
+    frequency, power = periodogram(values - mean, rate, window=window, detrend=False, scaling="spectrum")
+    amplitude = np.sqrt(2 * power)
+    if n % 2 == 0:
+        amplitude[-1] = math.sqrt(power[-1])  # Nyquist's bin has no twin at negative frequencies
+    amplitude[0] = abs(mean)
+    return Spectrum(frequency, amplitude, unit, rate / n, rate / n * noise_bins(window, n), name, axis)
+
+
+def noise_bins(window, n):
+    """Equivalent noise bandwidth of a window over `n` samples, in bins."""
+    w = get_window(window, n)
+    return round(float(n * (w @ w) / w.sum() ** 2), 9)

@@ -1,0 +1,177 @@
+"""Stress intensities along the front of a root crack of a gear of finite width: hexahedra of the whole gear."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.damage.crack import Crack, check_apart, meshed_path, open_part
+from geometry.damage.front import bends, deepest, shallowest, whole
+from geometry.mesh.solid import solid
+from geometry.tooth.gear import Gear
+
+from ..elements.line_load import check_spread, contact_line, strip, under_line
+from ..elements.one_tooth import check_load_along, check_one
+from ..material import Material
+from ..threads import single
+from .front_integral import front_intensity
+
+# edge lengths in modules, see `geometry.mesh.quads.SIZES`
+SIZES = {"flank": 0.3, "corner": 0.2, "fillet": 0.2, "root": 0.4, "near": 0.7, "far": 2.0, "crack": 0.25}
+LAYER, LAYERS, END_LAYER = 0.5, 12, 0.25  # height of the layers [m_n], least number of them, height at the ends against that
+SHALLOW = 0.25  # in the largest depth, below which a front that runs out has no room for the tubes
+LEAST = 0.15, 0.8  # depth and width of a crack [m_n]: edges of its section, one tube to either side
+TUBE = 0.4, 0.5  # radius of the wider tube of the integral [m_n], and at most in the least depth
+TIPS = 1 / 13, 1 / 15, 1 / 11  # edges at the front in that radius, the first that no quad folds by; finer if `refine` > 1
+
+
+@dataclass(frozen=True, slots=True)
+class FrontIntensity:
+    """Stress intensities along a crack front.
+
+    Attributes
+    ----------
+    z : ndarray, shape (n,)
+        Heights [mm].
+    depth : ndarray, shape (n,)
+        Of the crack there, along it in the transverse section [mm].
+    K_I, K_II, K_III : ndarray, shape (n,)
+        [MPa sqrt(mm)]; K_I < 0 means that the faces are pressed together (in truth they touch, and no opening mode exists).
+    unknowns : int
+    """
+
+    z: NDArray[np.float64]
+    depth: NDArray[np.float64]
+    K_I: NDArray[np.float64]
+    K_II: NDArray[np.float64]
+    K_III: NDArray[np.float64]
+    unknowns: int
+
+
+@single
+def stress_intensity_along_front(
+    gear: Gear,
+    crack: Crack,
+    radius: float,
+    line_load: float | Callable[[NDArray[np.float64]], NDArray[np.float64]],
+    material: Material,
+    *,
+    refine: float = 1.0,
+) -> FrontIntensity:
+    """Stress intensities K_I, K_II, K_III along the front of a crack of tooth 0, whose depth may change along the width.
+
+    The load lies on the contact line through `radius` at half the width, as of `gearfe.root_stress_along_width`. The elements
+    follow the front; the interaction integral is taken over two tubes around it and carried to radius zero
+    (`gearfe.strength.front_integral`). Crack faces may pass through each other: where K_I < 0 they would touch.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its bore (of a ring the outside) is held over the whole width.
+    crack : Crack
+        Of tooth 0, straight.
+    radius : float
+        Radius of the loaded flank point at half the width [mm].
+    line_load : float or callable
+        Load normal to the flank per width [N/mm], or as a function of the height z [mm].
+    material : Material
+    refine : float
+        Divides all edge lengths; those at the front only if it is above 1.
+
+    Returns
+    -------
+    FrontIntensity
+        At the layers of elements: a front that runs out is left out where it is less than a quarter as deep as where it is
+        deepest. The values at the first and the last place are means with a one-sided weight; on end
+        faces K_III is not to be used (the unit field of that mode pulls at the face: a few percent of K_I where there is none).
+
+    Raises
+    ------
+    ValueError
+        If the load is not positive, the point is off the flank, or the crack is not a straight one of tooth 0.
+    RuntimeError
+        If the mesh cannot follow the front, or the system does not fit into memory.
+    """
+    check_one(gear, material, refine)
+    check_load_along(line_load, gear, material)
+    if not isinstance(crack, Crack):
+        raise ValueError(f"crack = {crack!r}, but give a Crack")
+    if crack.tooth % gear.z or bends(crack):
+        raise ValueError(f"crack of tooth {crack.tooth}, turning = {crack.turning}: give a straight crack of tooth 0")
+    check_apart(gear, [crack])
+    _check_room(gear, crack)
+    spread, roll = check_spread(gear), contact_line(gear, radius)
+    layer = min(LAYER * gear.m_n, gear.b / LAYERS)
+    fine = [(z, z, END_LAYER * layer) for z in (0.0, gear.b, *(crack.width or ()))]
+    patches = [strip(gear, roll, spread, refine)]
+    mesh = _mesh(gear, crack, refine, layer=layer, patches=patches, fine=fine)
+    moved, unknowns = under_line(mesh, roll, line_load, material, spread)
+    z, part, least = _followed(mesh, crack)
+    mouth, tip = meshed_path(gear, whole(crack)).T
+    length = math.dist(mouth, tip)
+    front, ahead, normal = _axes(gear, mouth, tip, z, part)
+    tube = _tube(gear, crack, least)
+    one, two, three = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
+    return FrontIntensity(z, part[0] * length, one, two, three, unknowns)
+
+
+def _mesh(gear, crack, refine, **options):
+    """Hexahedra of the gear with edges at the front that the tubes need, whatever `refine`."""
+    edge = _tube(gear, crack, shallowest(crack) or SHALLOW) / gear.m_n * min(refine, 1.0)
+    for tip in TIPS:
+        try:
+            return solid(gear, cracks=[crack], refine=refine, sizes=SIZES | {"crack tip": tip * edge}, **options)
+        except RuntimeError as error:
+            failed = error
+    raise failed
+
+
+def _check_room(gear, crack):
+    """ValueError if the crack has no room for the tubes of the integral, or they none beside each other along its front."""
+    depth = deepest(crack) * math.dist(*meshed_path(gear, whole(crack)).T)
+    low, high = crack.width or (0.0, gear.b)
+    if depth < LEAST[0] * gear.m_n or high - low < LEAST[1] * gear.m_n * (1 - 1e-9):
+        raise ValueError(
+            f"crack {depth:.3g} mm deep and open over {high - low:.3g} mm: the integral around its front needs a depth of "
+            f"{LEAST[0]:g} and a width of {LEAST[1]:g} m_n at least ({LEAST[0] * gear.m_n:.3g} and {LEAST[1] * gear.m_n:.3g} mm)"
+        )
+
+
+def _tube(gear, crack, least):
+    """Radius [mm] of the wider tube around the front of a crack that is at least `least` of its depth deep."""
+    return min(TUBE[0] * gear.m_n, TUBE[1] * least * math.dist(*meshed_path(gear, whole(crack)).T))
+
+
+def _followed(mesh, crack):
+    """Heights of the layers at which the mesh follows the front, depth there in the deepest with its slope, and the least."""
+    low, high = crack.width or (0.0, mesh.gear.b)
+    slack = 1e-9 * mesh.gear.b
+    z = mesh.levels[(mesh.levels >= low - slack) & (mesh.levels <= high + slack)]
+    if 0 not in mesh.fronts:
+        return z, np.array([np.ones(z.size), np.zeros(z.size)]), 1.0
+    front = mesh.fronts[0]
+    least = front.least if shallowest(crack) else SHALLOW
+    z = z[open_part(crack, mesh.gear.b, z) >= (1 - 1e-9) * least * deepest(crack)]
+    part = np.array(front.depth(z))
+    return z, part, float(part[0].min())
+
+
+def _axes(gear, mouth, tip, z, part):
+    """Places of the front in space ``(n, 3)``, unit vectors ahead of it in the crack's surface, and at right angles to that."""
+    turn, rate = gear.twist_rate * z, gear.twist_rate
+    cos, sin = np.cos(turn), np.sin(turn)
+
+    def turned(x, y):
+        return np.array([cos * x + sin * y, cos * y - sin * x])
+
+    place = mouth[:, None] + (tip - mouth)[:, None] * part[0]
+    flat, heading = turned(*place), turned(*np.tile((tip - mouth)[:, None], z.size))
+    rise = heading * part[1] + rate * np.array([flat[1], -flat[0]])
+    along = np.vstack([rise, np.ones(z.size)]).T
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    heading = np.vstack([heading, np.zeros(z.size)]).T
+    ahead = heading - (heading * along).sum(axis=1)[:, None] * along
+    ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+    return np.vstack([flat, z]).T, ahead, np.cross(along, ahead)

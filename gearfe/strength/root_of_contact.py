@@ -1,0 +1,115 @@
+"""Root stress along the width under the load that the contact of a pair puts on a tooth."""
+
+from numbers import Integral
+
+import numpy as np
+
+from geometry.pair.gear_pair import GearPair
+
+from ..contact.bodies import seen_gears
+from ..contact.solid import Contact3D
+from ..elements.line_load import check_spread
+from ..elements.one_tooth import check_one
+from ..material import Material
+from ..threads import single
+from .root_stress import RootStress, stress_under_line
+
+SAMPLES = 2001  # heights at which the load is added up
+
+
+@single
+def root_stress_of_contact(
+    pair: GearPair,
+    contact: Contact3D,
+    index: int,
+    material: Material,
+    *,
+    gear: str = "pinion",
+    order: int = 0,
+    half_width: float | None = None,
+    refine: float = 1.0,
+) -> RootStress:
+    """Root stress along the width of one tooth under its part of the contact of a pair, as it is shared along the line.
+
+    The loads of the other tooth pairs are left out. Heights count from the end that touches first. The load of the tooth is that
+    of its cells, line by line; over the face it goes straight from cell to cell.
+
+    Parameters
+    ----------
+    pair : GearPair
+    contact : Contact3D
+        Of `gearfe.contact_pattern`, of a spur or helical pair without damage.
+    index : int
+        Number of the phase in `contact`.
+    material : Material
+        Of the gear.
+    gear : {"pinion", "wheel"}
+    order : int
+        Of the tooth pair, as in ``contact.order``.
+    half_width, refine
+        As of `gearfe.root_stress_along_width`.
+
+    Returns
+    -------
+    RootStress
+
+    Raises
+    ------
+    ValueError
+        If there is no such phase, gear or loaded tooth pair, or the pair is a herringbone pair.
+
+    Examples
+    --------
+    >>> import math, gearfe as gf
+    >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=6.0)
+    >>> pinion, wheel = gf.Gear(z=13, x=0.3, r_bore=8.0, beta=0.26, **rack), gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-0.26, **rack)
+    >>> pair, steel = gf.GearPair(pinion, wheel), gf.Material(E=207e3, nu=0.3)
+    >>> contact = gf.contact_pattern(pair, 1800.0, steel, phases=[0.6])
+    >>> gf.root_stress_of_contact(pair, contact, 0, steel).largest  # doctest: +SKIP
+    """
+    if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
+        given = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
+        raise ValueError(f"{given}: give a GearPair, and what gearfe.contact_pattern gives for it")
+    check_one(pair.gear_1, material, refine)
+    if gear not in ("pinion", "wheel"):
+        raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")
+    if not isinstance(index, Integral) or isinstance(index, bool) or not -len(contact.cells) <= index < len(contact.cells):
+        raise ValueError(f"index = {index!r}, but the contact has {len(contact.cells)} phases")
+    cells = contact.cells[index]
+    if (cells.half != 0).any():
+        raise ValueError("a herringbone pair: root stress is that of one body; give the contact of one half as a helical pair")
+    own = np.flatnonzero((cells.order == order) & (cells.load > 0))
+    if not own.size:
+        raise ValueError(
+            f"order = {order}: this tooth pair carries nothing at that phase; {sorted(set(cells.order.tolist()))} may"
+        )
+    number = 0 if gear == "pinion" else 1
+    body, offset = seen_gears(pair, "helical", 0.0)[number]
+    own = own[np.argsort(cells.depth[own])]
+    z, rolls = cells.depth[own] + offset, (cells.roll_1, cells.roll_2)[number][own]
+    _check_own(body, z, rolls)
+    load = _along(z, cells.width[own], cells.load[own], body.b)
+    slope = np.polyfit(z, rolls, 1, w=cells.load[own]) if own.size > 1 else (0.0, rolls[0])
+    spread = check_spread(body, half_width)
+    return stress_under_line(body, lambda at: np.polyval(slope, at), load, material, spread=spread, refine=refine)
+
+
+def _check_own(gear, z, rolls):
+    """ValueError if lines at heights `z` and roll lengths `rolls` [mm] are not on the flank of the gear: of another pair."""
+    (low, high), slack = sorted((gear.roll_f, gear.roll_a)), 1e-6 * gear.m_n
+    if rolls.min() < low - slack or rolls.max() > high + slack or z.min() < 0 or z.max() > gear.b:
+        raise ValueError(
+            f"contact at roll lengths of {rolls.min():.4g} to {rolls.max():.4g} mm and heights of {z.min():.4g} to "
+            f"{z.max():.4g} mm, but z = {gear.z} has {low:.4g} to {high:.4g} and 0 to {gear.b:g} mm: give the contact "
+            "of this pair"
+        )
+
+
+def _along(z, width, load, b):
+    """Load per width at heights as a function, from cells: straight from middle to middle, 0 beyond, with the cells' sum."""
+    ends = np.concatenate([[z[0] - width[0] / 2], z, [z[-1] + width[-1] / 2]])
+    each = load / width
+    each = np.concatenate([each[:1], each, each[-1:]])
+    at = np.linspace(0.0, b, SAMPLES)
+    scale = load.sum() / np.trapezoid(np.interp(at, ends, each, left=0.0, right=0.0), at)
+    return lambda place: scale * np.interp(place, ends, each, left=0.0, right=0.0)

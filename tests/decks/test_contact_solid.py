@@ -1,0 +1,251 @@
+"""Decks of whole pairs in three dimensions: that the bodies touch, that the deck is whole, and CalculiX's verdict."""
+
+import math
+import shutil
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import gearfe as gf
+from gearfe.decks.contact_solid import SolidDeck, _uncovered
+from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
+from gearfe.elements.hexahedron import gauss, shapes
+from geometry.mesh.relieved_solid import relieved_points
+from geometry.pair.flanks import flank_forms
+from geometry.tooth.profile import flank
+from validation.make import three
+from validation.shared import outsider, page, state
+from validation.shared.decks import digest
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+APPROACH = 0.015  # mm
+COARSE = {"per_width": 0.6}
+PIT = gf.Pit(radius=14.0, z=2.0, axes=(0.4, 0.4), depth=0.2, tooth=1)
+
+
+def pair_of(degrees, *, ring=False):
+    rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.0}
+    beta = math.radians(degrees)
+    first = gf.Gear(z=13, x=0.3, r_bore=8.0, beta=beta, **rack)
+    if ring:
+        return gf.GearPair(first, gf.Gear(z=30, r_rim=39.0, tip_radius=0.2, addendum=0.8, beta=beta, **rack))
+    return gf.GearPair(first, gf.Gear(z=16, x=0.2, r_bore=10.0, beta=-beta, **rack))
+
+
+def written(tmp_path, pair, **options):
+    face = "helical" if pair.gear_1.beta else "spur"
+    return gf.write_contact_inp(tmp_path / "p.inp", pair, 0.45, APPROACH, 300.0, (STEEL, STEEL), face=face, **options)
+
+
+def depth(pair, part, order):
+    """Gap [mm], as a turn of the wheel times r_b2, from the nodes of the wheel's flank of a pair to the pinion's, at equal z.
+
+    A point of the wheel is on the pinion's flank of that pair if its angle about the pinion is that flank's.
+    """
+    gear = pair.gear_1
+    x, y, z = part.points[:, np.unique(part.faces[f"flank {-order % pair.gear_2.z}"])]
+    radius = np.hypot(x, y)
+    there = (radius > gear.r_form) & (radius < gear.r_a)
+    ahead = 0.45 * pair.p_bt + math.tan(gear.beta_b) * (z - (pair.gear_1.b if gear.beta > 0 else 0.0))
+    turn = (pair.path[0] + ahead) / gear.r_b - math.tan(pair.alpha_w)
+    # at the pitch point, n = r_b tan(alpha_w), the flank's point is straight above the centre
+    pitch = flank(gear, np.array(gear.r_b * math.tan(pair.alpha_w)))[1]
+    own = flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1] - pitch + turn + 2 * math.pi * order / gear.z
+    return ((np.arctan2(x, y) - own) * gear.r_b)[there]
+
+
+@pytest.mark.filterwarnings("ignore:the ring's tip:UserWarning")
+@pytest.mark.parametrize(("degrees", "ring"), [(15.0, False), (15.0, True), (-15.0, False), (0.0, False)])
+def test_flanks_touch_along_their_lines_and_nowhere_overlap(tmp_path, degrees, ring):
+    pair = pair_of(degrees, ring=ring)
+    deck = written(tmp_path, pair)
+    for order in deck.slaves:
+        gap = depth(pair, deck.parts[1], order)
+        assert gap.min() > -2e-3 * 0.5  # nodes only; conjugate flanks share their contact line and nothing else
+        assert gap.min() < 5e-3
+    assert sorted(deck.slaves) == ([0, 1] if degrees else [0])
+
+
+def test_hexahedra_of_a_mirrored_ring_are_right_handed(tmp_path):
+    slopes = shapes(gauss(2)[0])[1]
+    for part in written(tmp_path, pair_of(15.0, ring=True)).parts:
+        nodes = part.points[:, part.cells[np.argsort(TWENTY)]]
+        assert np.linalg.det(np.einsum("dkm,kcq->mqdc", nodes, slopes)).min() > 0
+
+
+@pytest.fixture(scope="module")
+def damaged(tmp_path_factory):
+    """Path and deck of a pair with a pit on the pinion's tooth 1 and a crack of half the width in the wheel."""
+    folder = tmp_path_factory.mktemp("deck")
+    damage = {"pinion": [PIT], "wheel": [gf.Crack(level=0.4, width=(0.0, 3.0))]}
+    return folder / "p.inp", written(folder, pair_of(15.0), damage=damage, **COARSE)
+
+
+def test_deck_is_whole(damaged):
+    path, deck = damaged
+    text = path.read_text()
+    tets, bricks = (part.cells.shape[1] for part in deck.parts)
+    assert (len(deck.parts[0].cells), len(deck.parts[1].cells)) == (10, 20)
+    assert text.count("*CONTACT PAIR") == text.count("*CONTACT PRINT") == len(deck.slaves) == 2
+    rows = text.split("*ELEMENT, TYPE=C3D20R")[1].split("*MATERIAL")[0].splitlines()[1::2]
+    assert [int(row.split(",")[0]) for row in rows] == list(range(tets + 1, tets + bricks + 1))
+    for part in deck.parts:  # every face of a flank is a side of one element
+        for name, faces in part.faces.items():
+            if name.startswith("flank"):
+                element, side = sides_of(part.cells, faces)
+                assert element.size == faces.shape[1]
+                corners = np.array(FACES[len(part.cells)])[side].T
+                assert (np.sort(part.cells[corners, element], axis=0).sum() == faces.sum()).all()
+    assert deck.parts[1].faces["crack 0 body"].shape == deck.parts[1].faces["crack 0 tooth"].shape
+    assert deck.parts[1].points[2, deck.parts[1].faces["crack 0 body"]].max() <= 3.0 + 1e-9
+
+
+def test_controls_are_the_same_mesh_with_its_holes_filled(tmp_path, damaged):
+    control = written(tmp_path, pair_of(15.0), damage={"pinion": [PIT]}, pits="filled", **COARSE)
+    assert len(control.parts[1].cells) == 10  # an undamaged mate is in tets too, whose surface follows the pits' rims
+    cut, whole = damaged[1].parts[0], control.parts[0]
+
+    def places(part):
+        return set(map(tuple, np.round(part.points[:, np.unique(part.cells[:4])].T, 9).tolist()))
+
+    assert places(cut) < places(whole)
+    assert cut.cells.shape[1] < whole.cells.shape[1]
+    assert cut.faces["flank 1"].shape[1] < whole.faces["flank 1"].shape[1]
+    assert cut.faces["flank 2"].shape == whole.faces["flank 2"].shape
+    assert control.slaves[1][1].shape == whole.faces["flank 1"].shape
+    lost = _uncovered(whole.faces)["flank 1"]
+
+    def triangles(part, faces):
+        return set(map(tuple, np.round(np.sort(part.points[:, faces].sum(axis=1).T, axis=1), 9).tolist()))
+
+    assert triangles(whole, lost) == triangles(cut, cut.faces["flank 1"])
+
+
+def test_nodes_of_tets_lie_on_the_involute(damaged):
+    part, gear = damaged[1].parts[0], pair_of(15.0).gear_1
+    element, side = sides_of(part.cells, part.faces["flank 1"])
+    middle = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
+    nodes = []
+    for e, corners in zip(element.tolist(), np.array(FACES[10])[side].tolist(), strict=True):
+        edges = zip(corners, corners[1:] + corners[:1], strict=True)
+        nodes += [part.cells[middle[min(a, b), max(a, b)], e] for a, b in edges]
+    x, y, z = part.points[:, np.unique(nodes)]
+    radius = np.hypot(x, y)
+    angle = np.arctan2(x, y) - gear.twist_rate * z - flank(gear, np.sqrt(np.maximum(radius**2 - gear.r_b**2, 0.0)))[1]
+    assert np.ptp(angle) * gear.r_b < 1e-9  # all of them turned alike
+    assert "pits" in part.faces
+    assert part.faces["pits"].shape[1] > 10
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"face": "spur"}, "as they are"),
+        ({"face": "herringbone"}, "as they are"),
+        ({"pose": "left"}, "must be one of"),
+        ({"damage": {"ring": []}}, "pinion and wheel"),
+        ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
+        ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
+        ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
+        ({"pits": "filled", "damage": {"pinion": [gf.Crack(level=0.3)]}}, "no pit in damage"),
+        ({"pits": "holes", "damage": {"pinion": [PIT]}}, "must be one of"),
+    ],
+)
+def test_impossible_decks_are_refused(tmp_path, options, message):
+    run = {"face": "helical"} | options
+    with pytest.raises(ValueError, match=message):
+        gf.write_contact_inp(tmp_path / "p.inp", pair_of(15.0), 0.45, APPROACH, 300.0, (STEEL, STEEL), **run)
+
+
+def test_a_line_load_has_its_resultant_and_stays_on_the_flank(tmp_path):
+    gear = pair_of(15.0).gear_1
+    deck = gf.write_line_inp(tmp_path / "g.inp", gear, 14.0, 100.0, STEEL, half_width=0.4, refine=0.4)
+    assert abs(np.linalg.norm(deck.load.sum(axis=0)) / 600.0 - 1) < 2e-3
+    axial = deck.load.sum(axis=0)[2] / np.linalg.norm(deck.load.sum(axis=0))
+    assert abs(axial - math.sin(gear.beta_b)) < 2e-3
+    with pytest.raises(ValueError, match="leaves the flank"):
+        gf.write_line_inp(tmp_path / "g.inp", gear, gear.r_a, 100.0, STEEL)
+    with pytest.raises(RuntimeError, match="is not there"):
+        deck.deflection(tmp_path / "none.dat")
+
+
+@pytest.mark.parametrize("name", list(outsider.lines()))
+def test_line_loads_on_file_are_of_the_decks_written_today(name, tmp_path):
+    """A rule of the mesh that changes makes rows of another mesh of them, which do not repeat."""
+    mesh = outsider.LINE_MESHES[0]  # the coarser, in which rules of least numbers of edges decide
+    row = outsider.stored()[name, outsider.told(mesh)]
+    assert outsider.line_deck(tmp_path, name, mesh).part.points.shape[1] == row["nodes"]
+    assert digest(tmp_path / "gear.inp") == row["deck"]
+
+
+def test_page_is_made_from_its_table():
+    assert state.without_first_line("three") == page.text("three", *three.text())
+
+
+PRINTED = """ statistics for slave set C1P{k}, master set C2P{k} and time  0.1000000E+01
+
+   total surface force (fx,fy,fz) and moment about the origin (mx,my,mz)
+
+   {wrench}
+
+   center of gravity and mean normal
+
+   {middle} 8.81E-01  4.05E-01 -2.43E-01
+"""
+
+
+def test_what_pairs_carry_is_read_from_forces_and_moments(tmp_path):
+    """A force at a place has its moment; where the line of action is nearest to the area's middle is that place's height."""
+    place, force, middle = np.array([-1.6, 13.1, 2.9]), np.array([-1070.0, -490.0, 296.0]), np.array([-1.6, 13.1, 2.9])
+    aside = np.cross(force, [1.0, 2.0, 3.0])  # the area's middle is off the line, at right angles
+    wrench = [*force, *np.cross(place, force)]
+    rows = [PRINTED.format(k=k, wrench=" ".join(f"{v:.6E}" for v in own), middle="{:.6E} {:.6E} {:.6E}".format(*(middle + aside)))
+            for k, own in ((0, wrench), (1, 6 * [0.0]))]  # fmt: skip
+    (tmp_path / "p.dat").write_text("\n".join(rows), encoding="ascii")
+    deck = SolidDeck((), (), (), (), {0: (0, None), 1: (0, None)})
+    found = deck.carried(tmp_path / "p.dat")
+    assert list(found) == [0]  # the other does not touch
+    np.testing.assert_allclose(found[0], (np.linalg.norm(force), 2.9), rtol=1e-5)
+    (tmp_path / "p.dat").write_text("")
+    with pytest.raises(RuntimeError, match="no contact forces"):
+        deck.carried(tmp_path / "p.dat")
+
+
+needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed: apt-get install calculix-ccx")
+
+
+def test_nodes_of_modified_flanks_lie_on_them():
+    """On the involute helicoid each node turns by what is removed at its place, on the loaded flank of the teeth asked for."""
+    pair = pair_of(15.0)
+    flanks = {"pinion": gf.Flank(lead_crowning=0.01, twist=0.004, tip_relief=0.02, tip_start_roll=pair.gear_1.roll_a - 2.0)}
+    form = flank_forms(pair, flanks, gf.Misalignment(F_beta=0.01))[0]
+    gear, rng = pair.gear_1, np.random.default_rng(0)
+    roll, z = rng.uniform(gear.roll_f, gear.roll_a, 50), rng.uniform(0, gear.b, 50)
+    for tooth, loaded in ((0, True), (3, True), (0, False), (1, None)):
+        radius, angle = flank(gear, roll)
+        angle = (angle if loaded is not False else -angle) + 2 * math.pi * tooth / gear.z + gear.twist_rate * z
+        points = relieved_points(np.array([radius * np.sin(angle), radius * np.cos(angle), z]), gear, form, (0, 3))
+        moved = (np.arctan2(points[0], points[1]) - angle + math.pi) % (2 * math.pi) - math.pi
+        removed = form.at(z).removed(roll) + form.at(z).shift(np.full(50, tooth))
+        np.testing.assert_allclose(-moved * gear.r_b, removed if loaded else 0.0, atol=1e-9)
+        np.testing.assert_allclose(np.hypot(*points[:2]), radius, rtol=1e-12)
+
+
+def test_a_deck_carries_the_modified_flanks(tmp_path):
+    """The pinion's flanks that may touch lie behind their involutes by what is removed there, in the place of their phase."""
+    pair = pair_of(15.0)
+    flanks, askew = {"pinion": gf.Flank(lead_crowning=0.02, tip_relief=0.01, tip_start_roll=5.0)}, gf.Misalignment(F_beta=0.01)
+    deck = written(tmp_path, pair, flanks=flanks, misalignment=askew)
+    form, part, gear = flank_forms(pair, flanks, askew)[0], deck.parts[0], pair.gear_1
+    assert deck.slaves
+    for order in deck.slaves:
+        faces = part.faces[f"flank {order % gear.z}"]
+        x, y, z = part.points[:, np.unique(faces)]
+        radius = np.hypot(x, y)
+        there = (radius > gear.r_form) & (radius < gear.r_a)
+        roll = np.sqrt(radius[there] ** 2 - gear.r_b**2)
+        removed = form.at(z[there]).removed(roll) + form.at(z[there]).shift(np.zeros(roll.size, dtype=int))
+        seen = SimpleNamespace(points=part.points, faces={f"flank {-order % pair.gear_2.z}": faces})
+        np.testing.assert_allclose(-depth(pair, seen, order), removed, atol=1e-6)
+        assert np.ptp(removed) > 0.01

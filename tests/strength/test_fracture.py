@@ -1,0 +1,141 @@
+"""Stress intensity on strips with known answers, and on a cracked tooth."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import gearfe as gf
+from gearfe.elements.elasticity import Body, edge_shapes
+from gearfe.strength.fracture import growth_angle, tip_intensity
+from geometry.mesh.outline import along
+from geometry.mesh.section_mesh import fill
+from geometry.tooth.profile import arc_at
+
+STEEL = gf.Material(E=207e3, nu=0.3)
+GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), beta=math.radians(16), b=30.0, r_bore=9.0)
+
+
+def strip(width, height, a, angle, near):
+    """Rectangle pulled at its ends [1 MPa] with an edge crack of length a from the middle of its left side."""
+
+    def leg(start, stop, first, last, largest):
+        return along(np.array([start, stop]).T, first, last, largest)[:, :-1]
+
+    coarse = width / 8
+    corners = [(0, 0), (0, -height), (width, -height), (width, height), (0, height), (0, 0)]
+    sizes = [near, coarse, coarse, coarse, coarse, near]
+    legs = [leg(corners[i], corners[i + 1], sizes[i], sizes[i + 1], coarse) for i in range(5)]
+    vertices = np.hstack(legs)
+    middles = (vertices + np.roll(vertices, -1, axis=1)) / 2
+    rim = np.empty((2, 2 * vertices.shape[1]))
+    rim[:, ::2], rim[:, 1::2] = vertices, middles
+    tip = a * np.array([math.cos(angle), math.sin(angle)])
+    inner = along(np.array([(0, 0), tip]).T, near, a / 40, near)[:, 1:]
+    mesh, faces = fill(rim, np.empty((2, 0)), [(0, inner)])
+    ends = {
+        name: mesh.facets_satisfying(lambda x, y=y: np.isclose(x[1], y)) for name, y in (("top", height), ("bottom", -height))
+    }
+    held = ends["bottom"][:1]  # far from the crack; the load is in balance
+    body = Body(mesh.with_boundaries(mesh.boundaries | {"held": held}), STEEL)
+    force = np.zeros((2 * mesh.doflocs.shape[1], 1))
+    t, w = np.polynomial.legendre.leggauss(3)
+    for name, sign in (("top", 1), ("bottom", -1)):
+        for facet in ends[name]:
+            nodes = np.append(mesh.facets[:, facet], mesh.nvertices + facet)
+            length = np.ptp(mesh.doflocs[0, nodes[:2]]) / 2
+            force[2 * nodes + 1, 0] += sign * (edge_shapes(t)[0] @ w) * length
+    return tip_intensity(body, body.solve(force)[:, 0], faces[0])
+
+
+@pytest.mark.parametrize(("ratio", "factor"), [(0.2, 1.367), (0.4, 2.112), (0.5, 2.827)])
+def test_edge_cracked_strip(ratio, factor):
+    """Tension of a long strip: F = 1.367, 2.112, 2.827 at a/W = 0.2, 0.4, 0.5 (Tada, Paris, Irwin 2000, p. 2.11)."""
+    found = strip(1.0, 3.0, ratio, 0.0, 0.02)
+    assert_allclose(found.K_I, factor * math.sqrt(math.pi * ratio), rtol=0.01)
+    assert abs(found.K_II) < 0.01 * found.K_I
+
+
+def test_slanted_edge_crack():
+    """45 degrees at the edge of a half-plane: F_I = 0.705, F_II = 0.364 (Murakami 1987, p. 3.2)."""
+    found = strip(40.0, 40.0, 1.0, math.radians(45), 0.05)
+    assert_allclose([found.K_I, abs(found.K_II)], np.array([0.705, 0.364]) * math.sqrt(math.pi), rtol=0.015)
+
+
+def test_growth_angle():
+    assert growth_angle(1.0, 0.0) == 0.0
+    assert math.isnan(growth_angle(-1.0, 0.3))
+    t = growth_angle(1.0, 0.4)
+    assert_allclose(1.0 * math.sin(t) + 0.4 * (3 * math.cos(t) - 1), 0, atol=1e-12)
+
+
+def test_tooth_crack_opens_and_grows_with_depth():
+    small, deep = (gf.stress_intensity(GEAR, gf.Crack(level=p), 19.5, 100.0, STEEL) for p in (0.1, 0.4))
+    assert deep.K_I > small.K_I > 0
+    doubled = gf.stress_intensity(GEAR, gf.Crack(level=0.4), 19.5, 200.0, STEEL)
+    assert_allclose(doubled.K_I, 2 * deep.K_I, rtol=1e-9)
+    fine = gf.stress_intensity(GEAR, gf.Crack(level=0.4), 19.5, 100.0, STEEL, refine=1.5)
+    assert_allclose([deep.K_I, deep.K_II], [fine.K_I, fine.K_II], rtol=0.01, atol=0.01 * fine.K_I)
+
+
+def compliance(flexible, roll):
+    """S(s, s) of the cracked tooth, glued part and opening."""
+    opening = flexible.seam.at([float(arc_at(GEAR, roll))], [0])
+    glued = flexible.matrix(np.array([roll]), [0])[0, 0]
+    return glued + (opening @ flexible.seam.stiffness @ opening.T)[0, 0]
+
+
+@pytest.mark.parametrize("method", ["fe", "ritz"])
+def test_stress_intensity_is_the_energy_released(method):
+    """dC/da = 2 (K_I**2 + K_II**2) (1 - nu**2) / E for a unit load (Irwin), by differences of the tooth's compliance."""
+    from gearfe.elements import fe
+    from gearfe.energy.ritz import plane as ritz
+
+    radius, lengths = 19.5, (1.0, 1.1)
+    roll = math.sqrt(radius**2 - GEAR.r_b**2)
+    cracks = [(gf.Crack(length=a),) for a in lengths]
+    if method == "fe":
+        healthy = fe.flexibility(GEAR, STEEL, neighbours=1)
+        cracked = [fe.cracked_flexibility(GEAR, STEEL, crack, healthy, refine=1.5) for crack in cracks]
+    else:
+        cracked = [ritz.flexibility(GEAR, STEEL, crack) for crack in cracks]
+    values = [compliance(one, roll) for one in cracked]
+    k = gf.stress_intensity(GEAR, gf.Crack(length=1.05), radius, 1.0, STEEL)
+    released = 2 * (k.K_I**2 + k.K_II**2) * (1 - STEEL.nu**2) / STEEL.E
+    assert_allclose(np.diff(values)[0] / 0.1, released, rtol=0.02)
+
+
+def test_the_whole_load_acts_at_the_tip_too(tmp_path):
+    near, at = (gf.stress_intensity(GEAR, gf.Crack(level=0.3), r, 100.0, STEEL).K_I for r in (GEAR.r_a - 0.05, GEAR.r_a))
+    assert abs(at / near - 1) < 0.1
+    for radius in (GEAR.r_a, GEAR.r_form):
+        _, load = gf.write_inp(tmp_path / "tip.inp", GEAR, radius, 100.0, STEEL, refine=0.6)
+        assert_allclose(np.hypot(load[0::2].sum(), load[1::2].sum()), 100.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, -1.0, STEEL), "line_load = -1.0"),
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 25.0, 1.0, STEEL), "not on the involute flank"),
+        (lambda: gf.stress_intensity(GEAR, 0.3, 19.5, 1.0, STEEL), "give a Crack"),
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.3), 19.5, 1.0, STEEL, refine=0), "refine = 0"),
+        (lambda: gf.write_inp("x.inp", GEAR, 19.5, math.nan, STEEL), "line_load = nan"),
+        (lambda: gf.Crack(level="a"), "finite number"),
+        (lambda: gf.Crack(level=0.3, tooth=0.5), "whole number"),
+        (lambda: gf.Crack(), "give one of them"),
+        (lambda: gf.Crack(level=0.3, length=1.0), "give one of them"),
+        (lambda: gf.Crack(level=1.0), "between 0 and 1"),
+        (lambda: gf.Crack(length=-1.0), "positive length"),
+        (lambda: gf.Crack(level=0.3, angle=45.0), "radians"),
+        (lambda: gf.Crack(level=0.3, start="foot"), "30deg, root, middle"),
+        (lambda: gf.Crack(level=0.3, side="left"), "loaded"),
+        (lambda: gf.Crack(length=1.0, turning=True), "level"),
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(length=20.0), 19.5, 1.0, STEEL), "sector|held edge"),
+        (lambda: gf.stress_intensity(GEAR, gf.Crack(level=0.995, turning=True), 19.5, 1.0, STEEL), "opposite fillet"),
+    ],
+)
+def test_bad_input(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()

@@ -1,0 +1,121 @@
+"""Pictures that only pages of validation show: waves, phase portraits side by side, contact lines, states of sweeps."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from gearfe.files import save_figure
+from gearfe.pictures.look import COLOURS, SQUASHED, look
+
+STATES = ("#0072b2", "#e69f00", "#cc3311", "#009e73")  # of states of a gear, told apart by the colour-blind, too
+
+
+def plot_waves(signals, path, seconds=0.25, *, dpi=60, title=""):
+    """Draw the first `seconds` of signals by name below each other, with one scale, under a `title`."""
+    figure = Figure(figsize=(9, 1.7 * len(signals) + 0.4), layout="constrained")
+    for axes, (name, one) in zip(
+        np.atleast_1d(figure.subplots(len(signals), sharex=True, sharey=True)), signals.items(), strict=True
+    ):
+        values = one.values[: round(seconds * one.rate)]
+        axes.plot(np.arange(values.size) / one.rate, values, linewidth=0.7, color=COLOURS[0])
+        axes.set_title(name, fontsize=9)
+        axes.set_ylabel(one.unit)
+    axes.set_xlabel("time [s]")
+    figure.suptitle(title, fontsize=10)
+    return save_figure(figure, path, dpi=dpi)
+
+
+def plot_phases(portraits, unit="m", path=None, *, title=""):
+    """Phase portraits with their Poincare points side by side, on common axes.
+
+    Parameters
+    ----------
+    portraits : dict of str to ((ndarray, ndarray), ndarray)
+        By case what `plot_phase` takes as portrait and section.
+    unit : str
+        Of the displacement.
+    path : path, optional
+    title : str
+        What is shown: scene, channel.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    columns = min(3, len(portraits))
+    rows = -(-len(portraits) // columns)
+    figure = Figure(figsize=(3 * columns, 2.6 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for place, (name, ((x, v), points)) in zip(axes.flat, portraits.items(), strict=False):
+        place.plot(x, v, linewidth=0.3, color=COLOURS[0])
+        place.plot(*np.transpose(points), ".", color=COLOURS[1], markersize=4)
+        place.set_title(name, fontsize=8)
+        place.tick_params(labelsize=7)
+        place.ticklabel_format(scilimits=(-2, 3))
+        place.locator_params(axis="x", nbins=4)
+        place.xaxis.get_offset_text().set_size(7)
+    for place in axes.flat[len(portraits) :]:
+        place.set_visible(False)
+    figure.suptitle(title, fontsize=9)
+    figure.supxlabel(f"displacement [{unit}]", fontsize=8)
+    figure.supylabel(f"velocity [{unit}/s]", fontsize=8)
+    return save_figure(figure, path, dpi=80)
+
+
+def plot_lengths(phase, lengths, others=None, path=None, *, title="", told="otherwise"):
+    """Lengths of contact lines [mm] over the phase, by case; `others`, thin in the same look, as `told` says."""
+    figure = Figure(figsize=(7.5, 3.7), layout="constrained")
+    axes = figure.subplots()
+    for number, (name, length) in enumerate(lengths.items()):
+        axes.plot(phase, length, label=name, **look(number))
+        if name in (others or {}):
+            axes.plot(phase, others[name], label=f"{name}, {told}", linewidth=0.7, **look(number))
+    axes.set_xlabel("mesh phase (0: the pitted tooth enters)")
+    axes.set_ylabel("contact line [mm]")
+    axes.set_title(title, fontsize=10)
+    if min(length.min() for length in lengths.values()) < SQUASHED * max(length.max() for length in lengths.values()):
+        axes.set_ylim(bottom=0)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1, 0.5))
+    return save_figure(figure, path, dpi=100)
+
+
+def plot_states(
+    curves: dict[str, tuple[NDArray, NDArray]],
+    values: dict[str, NDArray],
+    path: str | Path | None = None,
+    *,
+    labels: tuple[str, str, str] = ("mesh phase", "k [N/um]", "mean k [N/um]"),
+) -> Figure:
+    """Bands of curves beside histograms of a number, by state of the gear.
+
+    Parameters
+    ----------
+    curves : dict of str to (ndarray, ndarray)
+        By state: places ``(n,)``, and low, middle and high percentile ``(3, n)``.
+    values : dict of str to ndarray
+        By state: a number of each machine.
+    path : str or path, optional
+    labels : (str, str, str)
+        Of the places, the curves and the number.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for (state, (place, low_middle_high)), colour in zip(curves.items(), STATES, strict=False):
+        low, middle, high = low_middle_high
+        left.fill_between(place, low, high, color=colour, alpha=0.3, linewidth=0)
+        left.plot(place, middle, color=colour, label=state)
+    edges = np.histogram_bin_edges(np.concatenate(list(values.values())), 20)
+    for (state, own), colour in zip(values.items(), STATES, strict=False):
+        right.hist(own, edges, color=colour, alpha=0.2, density=True)
+        right.hist(own, edges, color=colour, histtype="step", linewidth=1.8, label=state, density=True)
+    left.set(xlabel=labels[0], ylabel=labels[1])
+    right.set(xlabel=labels[2], yticks=[], ylabel="machines")
+    left.legend(frameon=False)
+    right.legend(frameon=False)
+    return save_figure(figure, path, 150)
