@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.damage.crack import check_single, crack_in_band
+from geometry.damage.crack import check_single
+from geometry.damage.front import crack_in_band
 
 from ..steps import steps
 

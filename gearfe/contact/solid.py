@@ -12,7 +12,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.pit import check_pits
+from geometry.damage.hollow import check_hollows
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..flexibility.solved import solved_gears
@@ -146,7 +146,7 @@ def pair_stiffness3d(
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
     materials = material if isinstance(material, tuple) else (material, material)
     for gear, found in zip((pair.gear_1, pair.gear_2), pits, strict=True):
-        check_pits(gear, found)
+        check_hollows(gear, found)
     cache = solved_gears(cache)
     options = {"pits": pits, "face": face, "groove": groove, "step": step, "extended": extended, "cache": cache}
     shafts = [held if held and held.integral else None for held in supports or (None, None)]  # part of the bodies

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from geometry.damage.crack import Crack
+from geometry.damage.kinds import are
 from geometry.tooth.gear import Gear
 
 from ..material import Material
@@ -94,5 +95,5 @@ def check_load_along(line_load, gear, material):
 
 def check_cracks(cracks):
     """ValueError unless they are a sequence of `Crack`."""
-    if isinstance(cracks, Crack) or not isinstance(cracks, (list, tuple)) or not all(isinstance(one, Crack) for one in cracks):
+    if not are(cracks, Crack):
         raise ValueError(f"cracks = {cracks!r}, but give a list of Crack, [] for none")

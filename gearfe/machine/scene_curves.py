@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-from geometry.damage.pit import Pit
 from geometry.pair.planetary import PlanetarySet
 
 from ..stiffness.solve import mesh_stiffness
@@ -47,7 +46,7 @@ def curves(name, pair, case, options):
     given = options["loads"]
     damage = {} if given is None else pair.damage.get(case, {})
     options = {key: value for key, value in options.items() if key != "loads"}
-    if options["method"] == "auto" and any(isinstance(one, Pit) or not one.through for found in damage.values() for one in found):
+    if options["method"] == "auto" and not all(one.through for found in damage.values() for one in found):
         options = options | {"method": "ritz3d"}
     made = []
     for what, span in ((None, "cycle"), (case, "tooth"))[: 2 if damage else 1]:

@@ -7,8 +7,8 @@ from inspect import signature
 
 import numpy as np
 
-from geometry.damage.crack import Crack, check_apart, check_through
-from geometry.damage.pit import Pit, takes_all
+from geometry.damage.crack import check_apart, check_through
+from geometry.damage.kinds import listed, split, why_wide
 
 from ..elements.asked import is_number
 from ..energy.closed.plain_sum import plain_sum
@@ -70,12 +70,10 @@ def why_solid(pair, face, damage):
     pair : GearPair
     face : str or None
         How the teeth run; None: as their helix angle says.
-    damage : sequence of Crack and Pit
+    damage : sequence of damage
     """
-    if not all(one.through for one in damage if isinstance(one, Crack)):
-        return "cracks change along the width"
-    if any(isinstance(one, Pit) for one in damage):
-        return "pits change along the width"
+    if why := why_wide(damage):
+        return why
     if (face or ("helical" if pair.gear_1.beta else "spur")) != "spur":
         return "contact lines run across helical teeth"
     return ""
@@ -138,7 +136,9 @@ def refuse(row, pair, cracks, pits, teeth, variants, face, groove, flanks=None):
     if any(cracks) and not row.cracks:
         raise ValueError(f"cracks with {method}, which has none: use {having('cracks')}")
     if any(pits) and not row.pits:
-        raise ValueError(f"pits with {method}, a transverse section: use {having('pits')}")
+        raise ValueError(
+            f"{next(one for own in pits for one in own).nouns[1]} with {method}, a transverse section: use {having('pits')}"
+        )
     found = [crack for own in cracks for crack in own]
     if row.cracks != "any":
         check_through(found, method)
@@ -206,7 +206,7 @@ def said_of_face(pair, face):
 
 
 def by_gear(pair, damage):
-    """Cracks and pits of pinion and wheel, numbered in each gear's own frame."""
+    """What weakens pinion and wheel (cracks) and what takes their contact away (pits), numbered in each gear's own frame."""
     damage = {} if damage is None else damage
     if not isinstance(damage, dict):
         kind = type(damage).__name__
@@ -218,21 +218,11 @@ def by_gear(pair, damage):
         raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
     cracks, pits = [], []
     for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
-        given = damage.get(name) or ()
-        if not isinstance(given, (Crack, Pit, list, tuple)):
-            raise ValueError(f"damage of the {name}: {given!r}, but give a Crack, a Pit or a list of them")
-        given = (given,) if isinstance(given, (Crack, Pit)) else tuple(given)
-        for one in given:
-            if not isinstance(one, (Crack, Pit)):
-                raise ValueError(f"damage of the {name}: {one!r} is neither a Crack nor a Pit")
-            if isinstance(one, Pit) and takes_all(gear, one):
-                warnings.warn(
-                    f"pit with semi-axes {one.axes[0]:g} x {one.axes[1]:g} mm takes the whole flank of z = {gear.z}: nothing "
-                    f"of it is left to carry, but the pit's floor, {one.depth:g} mm lower; lengths are in mm",
-                    stacklevel=4,
-                )
-        check_apart(gear, [one for one in given if isinstance(one, Crack)])
-        own = [replace(one, tooth=sense * one.tooth) for one in given]
-        cracks.append(tuple(one for one in own if isinstance(one, Crack)))
-        pits.append(tuple(one for one in own if isinstance(one, Pit)))
+        given = listed(damage.get(name), f"damage of the {name}")
+        for text in filter(None, (one.doubts(gear) for one in given)):
+            warnings.warn(text, stacklevel=4)
+        weakens, removes = split(replace(one, tooth=sense * one.tooth) for one in given)
+        check_apart(gear, split(given)[0])
+        cracks.append(weakens)
+        pits.append(removes)
     return tuple(cracks), tuple(pits)

@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
@@ -29,7 +28,7 @@ def contact_pattern(
     flanks: Mapping[str, Flank] | None = None,
     misalignment: Misalignment | None = None,
     supports: Mapping[str, Support | Shaft] | None = None,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    damage: Mapping[str, Sequence[Damage]] | None = None,
     phases: int | ArrayLike = 24,
     face: str | None = None,
     groove: float = 0.0,

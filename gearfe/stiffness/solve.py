@@ -7,8 +7,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
@@ -55,7 +54,7 @@ def mesh_stiffness(
     method: str | OwnFlexibility = ...,
     phases: int | ArrayLike = ...,
     span: str = ...,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    damage: Mapping[str, Sequence[Damage]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
     misalignment: Misalignment | None = ...,
     supports: Mapping[str, Support | Shaft] | None = ...,
@@ -84,7 +83,7 @@ def mesh_stiffness(
     method: str | OwnFlexibility = ...,
     phases: int | ArrayLike = ...,
     span: str = ...,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = ...,
+    damage: Mapping[str, Sequence[Damage]] | None = ...,
     flanks: Mapping[str, Flank] | None = ...,
     misalignment: Misalignment | None = ...,
     supports: Mapping[str, Support | Shaft] | None = ...,
@@ -113,7 +112,7 @@ def mesh_stiffness(
     method: str | OwnFlexibility = "auto",
     phases: int | ArrayLike = 64,
     span: str = "cycle",
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    damage: Mapping[str, Sequence[Damage]] | None = None,
     flanks: Mapping[str, Flank] | None = None,
     misalignment: Misalignment | None = None,
     supports: Mapping[str, Support | Shaft] | None = None,

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from geometry.damage.kinds import why_wide
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import arc_at
@@ -96,7 +97,7 @@ def stressed_gears(scene_pair, phase=0.0, refine=1.0, damage=None):
     pair, materials = scene_pair.pair, scene_pair.materials
     cracks, pits = by_gear(pair, damage)
     if any(pits):
-        raise ValueError("pits do not run through the whole width: a transverse section cannot show them")
+        raise ValueError(f"{why_wide([*pits[0], *pits[1]])}: a transverse section cannot show them")
     case = scene_pair.case() | {"phases": [phase], "damage": damage, "supports": None}  # those of a section share no load
     curve = mesh_stiffness(**case, method="ritz")
     found = pair.contacts([phase])

@@ -88,7 +88,7 @@ def render_stress(
     if suffix == ".png":
         drawing_library()
     damage = scene_pair.case(case).get("damage")
-    pitted = any(hasattr(one, "axes") for found in (damage or {}).values() for one in found)
+    pitted = any(one.removes_contact for found in (damage or {}).values() for one in found)
     wide = bool(scene_pair.pair.gear_1.beta) or scene_pair.wide or pitted
     _check_size(wide, refine)
     with part("", 0.0, 0.85):

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import listed
 from geometry.pair.gear_pair import GearPair
 
 from ..markdown import table_row
@@ -298,7 +297,7 @@ def _own(pair, *, force, torque, material, damage, face, groove):
     if len(forces) > 1:
         raise ValueError(f"force = {force!r}, torque = {torque!r}, but one load is compared at a time")
     by_gear(pair, damage)
-    damage = {side: [one] if isinstance(one, (Crack, Pit)) else list(one or ()) for side, one in (damage or {}).items()}
+    damage = {side: listed(one, f"damage of the {side}") for side, one in (damage or {}).items()}
     cases = {"given": damage} if any(damage.values()) else {}
     made = ScenePair(pair, two_materials(material), forces[0], face, groove, cases)
     return made, f"{pair.gear_1.z}/{pair.gear_2.z}", "given" if cases else None

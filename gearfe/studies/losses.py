@@ -12,11 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.front import bends, path_length
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage, called, told
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.gear import Gear
 
 from ..elements.asked import COARSEST
 from ..markdown import aligned, table_row
@@ -31,8 +28,8 @@ ALONE = {"single": "carries alone", "double": "carries with one neighbour", "tri
 LARGEST = "most at a phase"  # row of the phase at which most is lost
 
 
-def damaged_tooth(damage: Mapping[str, Iterable[Crack | Pit]] | None) -> int:
-    """Number of the tooth that the first crack or pit of a case is in; 0 without damage."""
+def damaged_tooth(damage: Mapping[str, Iterable[Damage]] | None) -> int:
+    """Number of the tooth that the first damage of a case is in; 0 without damage."""
     return next((one.tooth for own in (damage or {}).values() for one in own), 0)
 
 
@@ -140,7 +137,7 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, method: str, case
     return away
 
 
-def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
+def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]]) -> str:
     """Damage in words.
 
     Examples
@@ -150,26 +147,12 @@ def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Crack | Pit]]) -> 
     >>> told_damage(scene.pair, scene.damage["crack30"])
     '3.07 mm crack at 45 degrees (level 0.3)'
     """
-    gears = {"pinion": pair.gear_1, "wheel": pair.gear_2}
-    cracks = [(gears[side], one) for side, own in damage.items() for one in own if isinstance(one, Crack)]
-    pits = sum(isinstance(one, Pit) for own in damage.values() for one in own)
-    said = [_told_crack(*cracks[0])] if len(cracks) == 1 else [f"{len(cracks)} cracks"] if cracks else []
-    return " and ".join([*said, *([f"{pits} pit{'s' if pits > 1 else ''}"] if pits else [])])
+    return told({"pinion": pair.gear_1, "wheel": pair.gear_2}, damage)
 
 
-def _told_crack(gear: Gear, crack: Crack) -> str:
-    angle = f"at {math.degrees(crack.angle):.3g} degrees"
-    if crack.length is not None:
-        return f"{crack.length:.3g} mm crack {angle}"
-    if bends(crack):
-        return f"turning crack of level {crack.level:.3g} {angle}"
-    return f"{path_length(gear, crack):.3g} mm crack {angle} (level {crack.level:.3g})"
-
-
-def kind_of(damage: Mapping[str, Iterable[Crack | Pit]]) -> str:
-    """What a tooth with such damage is called: cracked, pitted, or damaged if it is both."""
-    kinds = {type(one) for own in damage.values() for one in own}
-    return {frozenset([Crack]): "cracked", frozenset([Pit]): "pitted"}.get(frozenset(kinds), "damaged")
+def kind_of(damage: Mapping[str, Iterable[Damage]]) -> str:
+    """What a tooth with such damage is called: `geometry.damage.kinds.called`."""
+    return called(one for own in damage.values() for one in own)
 
 
 def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:
@@ -202,7 +185,7 @@ def percent_with_doubt(value: float, doubt: float) -> str:
     return f"{100 * value:.1f} ± {max(math.ceil(1000 * doubt), 1) / 10:.1f} %"
 
 
-def why_not(row: Method, pair: GearPair, damage: Iterable[Crack | Pit], solid: str) -> str:
+def why_not(row: Method, pair: GearPair, damage: Iterable[Damage], solid: str) -> str:
     """Why a comparison has no column of a method; `solid` says why the pair needs three dimensions, if it does."""
     if pair.gear_2.internal and row.rings != "yes" and row.rings not in RING_FOUNDATIONS:
         return "not for rings"
