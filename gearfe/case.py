@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack, check_apart
-from geometry.damage.pit import Pit, takes_all
+from geometry.damage.kinds import Damage, listed, split, why_wide
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank, FlankForm
@@ -95,7 +95,7 @@ class Case(Mapping[str, Any]):
     material: Material | tuple[Material, Material] | None = None
     _: KW_ONLY
     torque: float | Sequence[float] | NDArray[np.float64] | None = None
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None
+    damage: Mapping[str, Sequence[Damage]] | None = None
     flanks: Mapping[str, Flank] | None = None
     misalignment: Misalignment | None = None
     supports: Mapping[str, Support | Shaft] | None = None
@@ -104,7 +104,7 @@ class Case(Mapping[str, Any]):
     forces: tuple[float, ...] = field(init=False, repr=False, compare=False)
     materials: tuple[Material, Material] = field(init=False, repr=False, compare=False)
     cracks: tuple[tuple[Crack, ...], ...] = field(init=False, repr=False, compare=False)
-    pits: tuple[tuple[Pit, ...], ...] = field(init=False, repr=False, compare=False)
+    pits: tuple[tuple[Any, ...], ...] = field(init=False, repr=False, compare=False)
     forms: tuple[FlankForm, FlankForm] | None = field(init=False, repr=False, compare=False)
     held: tuple[Support | Shaft | None, ...] | None = field(init=False, repr=False, compare=False)
 
@@ -126,7 +126,7 @@ class Case(Mapping[str, Any]):
         cracks, pits = by_gear(pair, self.damage)
         made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
         if self.damage:
-            hurt = {name: [own] if isinstance(own, (Crack, Pit)) else list(own or ()) for name, own in self.damage.items()}
+            hurt = {name: listed(own, f"damage of the {name}") for name, own in self.damage.items()}
             made |= {"damage": hurt}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
         made |= {"held": supports_of(pair, self.supports, forces, self.face)}
@@ -175,10 +175,8 @@ class Case(Mapping[str, Any]):
     @property
     def why_wide(self) -> str:
         """Why the case needs three dimensions; empty if its transverse section is the whole truth."""
-        if not all(crack.through for own in self.cracks for crack in own):
-            return "cracks change along the width"
-        if any(self.pits):
-            return "pits change along the width"
+        if why := why_wide([one for own in (*self.cracks, *self.pits) for one in own]):
+            return why
         if self.runs != "spur":
             return "contact lines run across helical teeth"
         if any(form.wide for form in self.forms or ()):
@@ -262,8 +260,8 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
         )
 
 
-def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Pit, ...], ...]]:
-    """Cracks and pits of pinion and wheel, numbered in each gear's own frame."""
+def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Any, ...], ...]]:
+    """What weakens pinion and wheel (cracks) and what takes their contact away (pits), numbered in each gear's own frame."""
     damage = {} if damage is None else damage
     if not isinstance(damage, Mapping):
         kind = type(damage).__name__
@@ -275,21 +273,11 @@ def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...],
         raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
     cracks, pits = [], []
     for (name, sense), gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
-        given = damage.get(name) or ()
-        if not isinstance(given, (Crack, Pit, list, tuple)):
-            raise ValueError(f"damage of the {name}: {given!r}, but give a Crack, a Pit or a list of them")
-        given = (given,) if isinstance(given, (Crack, Pit)) else tuple(given)
-        for one in given:
-            if not isinstance(one, (Crack, Pit)):
-                raise ValueError(f"damage of the {name}: {one!r} is neither a Crack nor a Pit")
-            if isinstance(one, Pit) and takes_all(gear, one):
-                warnings.warn(
-                    f"pit with semi-axes {one.axes[0]:g} x {one.axes[1]:g} mm takes the whole flank of z = {gear.z}: nothing "
-                    f"of it is left to carry, but the pit's floor, {one.depth:g} mm lower; lengths are in mm",
-                    stacklevel=5,
-                )
-        check_apart(gear, [one for one in given if isinstance(one, Crack)])
-        own = [replace(one, tooth=sense * one.tooth) for one in given]
-        cracks.append(tuple(one for one in own if isinstance(one, Crack)))
-        pits.append(tuple(one for one in own if isinstance(one, Pit)))
+        given = listed(damage.get(name), f"damage of the {name}")
+        for text in filter(None, (one.doubts(gear) for one in given)):
+            warnings.warn(text, stacklevel=5)
+        weakens, removes = split(replace(one, tooth=sense * one.tooth) for one in given)
+        check_apart(gear, split(given)[0])
+        cracks.append(weakens)
+        pits.append(removes)
     return tuple(cracks), tuple(pits)

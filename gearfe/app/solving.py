@@ -11,10 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.damage.crack import Crack, crack_path
-from geometry.damage.pit import rolls
 from geometry.tooth.drawing import outline_points
-from geometry.tooth.profile import cartesian, flank
 
 from ..flexibility.solved import PROCESS
 from ..markdown import table_cells
@@ -142,7 +139,8 @@ def picture(scene: Scene) -> dict[str, Any]:
     for i, gear in enumerate((pair.gear_1, pair.gear_2)):
         points = outline_points(gear, points=9)
         step = (float(later[i] - starts[i]) + math.pi) % (2 * math.pi) - math.pi
-        hurt = [_mark(gear, one) for own in chosen.damage.values() for one in own.get(("pinion", "wheel")[i], [])]
+        own = [one for case in chosen.damage.values() for one in case.get(("pinion", "wheel")[i], [])]
+        hurt = [{"kind": one.nouns[0], "line": one.outline(gear).T.round(5).tolist()} for one in own]
         gears.append({
             "z": gear.z, "tooth": points[:, : points.shape[1] // gear.z].T.round(5).tolist(), "held": gear.held,
             "mirror": (1, pair.outward)[i], "turn": float(starts[i]), "rate": step / 0.01, "damage": hurt,
@@ -154,11 +152,6 @@ def picture(scene: Scene) -> dict[str, Any]:
         "told": f"centre distance {pair.a:.5g} mm, contact ratio {pair.eps_alpha:.3f}"
         + (f", overlap ratio {pair.eps_beta:.3f}" if pair.eps_beta else ""),
     }  # fmt: skip
-
-
-def _mark(gear, one):
-    line = crack_path(gear, one) if isinstance(one, Crack) else cartesian(*flank(gear, np.linspace(*rolls(gear, one), 9)))
-    return {"kind": type(one).__name__.lower(), "line": line.T.round(5).tolist()}
 
 
 def stress(state: dict[str, Any]) -> dict[str, Any]:

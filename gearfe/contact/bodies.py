@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
-from geometry.damage.crack import check_single, crack_in_band
+from geometry.damage.crack import check_single
+from geometry.damage.front import crack_in_band
 
 from ..energy.ritz.solid import axial_degree, flexibility3d
 from ..steps import steps

@@ -12,7 +12,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.pit import check_pits
+from geometry.damage.hollow import check_hollows
 
 from ..flexibility.solved import solved_gears
 from ..steps import part, steps
@@ -103,7 +103,7 @@ def pair_stiffness3d(case, phases=32, bodies=None, *, step=None, extended=True, 
         raise ValueError(f"step = {step} mm, but it is the longest cell: give step > 0")
     phase = np.arange(phases) / phases if np.ndim(phases) == 0 else np.asarray(phases, dtype=float)
     for gear, found in zip((pair.gear_1, pair.gear_2), case.pits, strict=True):
-        check_pits(gear, found)
+        check_hollows(gear, found)
     bodies = bodies or energy_bodies(cache=cache)
 
     def contacts_of(longer):

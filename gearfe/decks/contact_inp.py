@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
@@ -29,7 +28,7 @@ def write_contact_inp(
     materials: tuple[Material, Material],
     *,
     face: str | None = None,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    damage: Mapping[str, Sequence[Damage]] | None = None,
     pits: str = "cut",
     pose: str = "mean",
     flanks: Mapping[str, Flank] | None = None,
@@ -120,7 +119,7 @@ def write_contact_inp(
         raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
     if pits not in PITS:
         raise ValueError(f"pits = {pits!r}, but it must be one of {', '.join(PITS)}")
-    if pits != "cut" and not any(isinstance(one, Pit) for own in (damage or {}).values() for one in own):
+    if pits != "cut" and not any(one.removes_contact for own in (damage or {}).values() for one in own):
         raise ValueError(f"pits = {pits!r}, but there is no pit in damage: give pits, which the mesh follows")
     rest |= {"damage": damage_by_gear(damage), "pits": pits, "forms": flank_forms(pair, flanks, misalignment)}
     return write_contact_solid(
@@ -128,7 +127,7 @@ def write_contact_inp(
     )
 
 
-def damage_by_gear(damage: Mapping[str, Sequence[Crack | Pit]] | None) -> tuple[tuple[Crack | Pit, ...], tuple[Crack | Pit, ...]]:
+def damage_by_gear(damage: Mapping[str, Sequence[Damage]] | None) -> tuple[tuple[Damage, ...], tuple[Damage, ...]]:
     """Damage of pinion and wheel with the teeth numbered in each gear's own frame, the wheel's against the pairs."""
     given = dict(damage or {})
     unknown = set(given) - set(SIDES)

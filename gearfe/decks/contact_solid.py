@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage, split
 from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
@@ -156,7 +155,7 @@ def write_contact_solid(
     line_load: float,
     materials: tuple[Material, Material],
     *,
-    damage: tuple[Sequence[Crack | Pit], Sequence[Crack | Pit]] = ((), ()),
+    damage: tuple[Sequence[Damage], Sequence[Damage]] = ((), ()),
     pits: str = "cut",
     forms: tuple[FlankForm, FlankForm] | None = None,
     pose: str = "mean",
@@ -178,7 +177,7 @@ def write_contact_solid(
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
-        if any(isinstance(one, Pit) for one in (own or damage[1 - number])):  # loads change quickly along the width on both
+        if any(one.removes_contact for one in (own or damage[1 - number])):  # loads change quickly along the width on both
             cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
             body = _holed(gear, own, cut, refine, pits)
         else:
@@ -235,13 +234,12 @@ def _strip(gear, found, number, k, tooth, low, per_width):
 
 def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
     """A whole gear in tets, its pits cut out or not (`PITS`), if it has some; its damaged tooth is tooth 0 while it is meshed."""
-    cracks = [one for one in damage if isinstance(one, Crack)]
+    cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
-    holes = [one for one in damage if isinstance(one, Pit)]
     least = min((min(pit.axes) for pit in holes), default=1.0)
     rim = RIM * refine * min(size for *_, size in strips) / least
     sizes = TETS | {"rim": min(rim, HOLES["rim"])}

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import NAMES, Damage, are, split
 from geometry.mesh.holes import holed_sector
 from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
@@ -24,7 +23,7 @@ LAYER = 1.0  # height of the layers of hexahedra [m_n]
 def export_mesh(
     path: str | os.PathLike[str],
     gear: Gear,
-    damage: Sequence[Crack | Pit] = (),
+    damage: Sequence[Damage] = (),
     *,
     cells: str | None = None,
     teeth: int | None = None,
@@ -42,7 +41,7 @@ def export_mesh(
         ``.msh`` (Gmsh), ``.vtu`` (ParaView) or ``.inp`` (Abaqus, CalculiX). Named places (``held``, ``flank 0``, ``pits``,
         ``crack 0 body``, ...) are node sets in ``.inp`` and point data of 0 and 1 in the others.
     gear : Gear
-    damage : sequence of Crack and Pit
+    damage : sequence of damage
         Of this gear, teeth numbered in its own frame.
     cells : {"hexahedra", "tetrahedra"}, optional
         Default: tetrahedra if there are pits, or `teeth` is given.
@@ -65,8 +64,7 @@ def export_mesh(
     check_gear(gear)
     refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
     _check_damage(damage)
-    pits = tuple(one for one in damage if isinstance(one, Pit))
-    cracks = tuple(one for one in damage if isinstance(one, Crack))
+    cracks, pits = split(damage)
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
         raise ValueError(f"cells = {cells!r}, but they are one of {', '.join(KINDS)}")
@@ -76,8 +74,8 @@ def export_mesh(
 
 
 def _check_damage(damage):
-    if not isinstance(damage, (list, tuple)) or not all(isinstance(one, (Crack, Pit)) for one in damage):
-        raise ValueError(f"damage = {damage!r}, but give a list of Crack and Pit of this gear, [] for none")
+    if not are(damage):
+        raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
 
 
 def _tets(gear, pits, cracks, teeth, refine):
@@ -88,7 +86,8 @@ def _tets(gear, pits, cracks, teeth, refine):
 
 def _hexes(gear, pits, cracks, teeth, refine):
     if pits:
-        raise ValueError(f"{len(pits)} pits in hexahedra, but pits are cut out of tetrahedra only: use cells = 'tetrahedra'")
+        noun = pits[0].nouns[1]
+        raise ValueError(f"{len(pits)} {noun} in hexahedra, but {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'")
     if teeth is not None:
         raise ValueError(f"teeth = {teeth}, but hexahedra are those of the whole gear: use cells = 'tetrahedra'")
     loaded = sorted({crack.tooth % gear.z for crack in cracks}) or [0]

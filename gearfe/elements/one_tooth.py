@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from geometry.damage.crack import Crack
+from geometry.damage.kinds import are
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
@@ -62,7 +63,7 @@ def check_load_along(line_load, gear, material):
 
 def check_cracks(cracks):
     """ValueError unless they are a sequence of `Crack`."""
-    if isinstance(cracks, Crack) or not isinstance(cracks, (list, tuple)) or not all(isinstance(one, Crack) for one in cracks):
+    if not are(cracks, Crack):
         raise ValueError(f"cracks = {cracks!r}, but give a list of Crack, [] for none")
 
 

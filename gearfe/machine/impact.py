@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.damage.pit import Pit
 from geometry.pair.lines import contact_lines, lost_length
 
 from ..scene.machine_table import IMPACT
@@ -91,7 +90,7 @@ def pits_of(damage):
         If there is other damage.
     """
     found = list(damage.get("pinion", ()))
-    if damage.get("wheel") or not all(isinstance(one, Pit) for one in found) or len({one.tooth for one in found}) > 1:
+    if damage.get("wheel") or not all(one.removes_contact for one in found) or len({one.tooth for one in found}) > 1:
         raise ValueError("the impact law knows pits on one tooth of the pinion (sun) only: use contact = 'linear'")
     return found
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.damage.pit import Pit, centre_arc
+from geometry.damage.hollow import flank_edge
+from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.profile import roll_at_arc
 
 from ..files import save_figure
 
@@ -58,8 +58,8 @@ def plot_contact(
     drawn = _draw_lines(top, pair, [contact.cells[i] for i in shown])
     offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     for pit in pits:
-        z, radius = _pit_edge(pair.gear_1, pit)
-        label = {"label": f"pits, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
+        z, radius = flank_edge(pair.gear_1, pit)
+        label = {"label": f"{pit.nouns[1]}, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
         top.fill(z - offset, radius, facecolor="0.85", edgecolor="black", linewidth=0.9, zorder=1, **label)
     for limit, name in ((pair.gear_1.r_form, "form circle"), (pair.gear_1.r_a, "tip circle")):
         top.axhline(limit, color="gray", linewidth=0.8)
@@ -152,12 +152,3 @@ def _stairs(z, width, value):
         place += [low[k], high[k]]
         height += [value[k], value[k]]
     return np.array([*place, high[-1]]), np.array([*height, 0.0])
-
-
-def _pit_edge(gear, pit):
-    """Heights [mm] and radii [mm] of a pit's edge."""
-    turn = np.linspace(0, 2 * np.pi, 90)
-    p, q = pit.axes[0] * np.cos(turn), pit.axes[1] * np.sin(turn)
-    u = p * np.cos(pit.angle) - q * np.sin(pit.angle)
-    w = p * np.sin(pit.angle) + q * np.cos(pit.angle)
-    return pit.z + w, np.hypot(gear.r_b, roll_at_arc(gear, centre_arc(gear, pit) + u))

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.damage.crack import Crack, crack_path
-from geometry.damage.pit import Pit, rolls
+from geometry.damage.kinds import Damage
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.drawing import outline_points
-from geometry.tooth.profile import cartesian, flank
+from geometry.tooth.profile import cartesian
 
 from ..files import save_figure
 from .look import COLOURS, GEARS
@@ -19,13 +18,13 @@ from .look import COLOURS, GEARS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HURT = COLOURS[1]  # cracks and pits
+HURT = COLOURS[1]  # damage
 NEAR = 3.6  # half height of the close-up [modules]
 
 
 def plot_pair(
     pair: GearPair,
-    damage: Mapping[str, Sequence[Crack | Pit]] | None = None,
+    damage: Mapping[str, Sequence[Damage]] | None = None,
     path: str | os.PathLike[str] | None = None,
     title: str = "",
 ) -> "Figure":
@@ -77,7 +76,7 @@ def plot_pair(
         centre = [[0.0], [(0.0, pair.centre_2)[i]]]
         shapes = [frame @ points + centre for points in (outline_points(gear, points=24), _edge(gear))]
         ahead = (1, -1)[i] * 2 * math.pi / gear.z  # from a tooth to that of the pair ahead
-        marks = [frame @ _turned(ahead * one.tooth) @ _drawn(gear, one) + centre for one in hurt[i]]
+        marks = [frame @ _turned(ahead * one.tooth) @ one.outline(gear) + centre for one in hurt[i]]
         for axes in both:
             _fill(axes, shapes, GEARS[i])
             for line in marks:
@@ -85,8 +84,8 @@ def plot_pair(
     along = np.array(pair.path) - pitch
     line = np.array([along * math.cos(pair.alpha_w), pair.pitch_radius_1 + along * math.sin(pair.alpha_w)])
     both[1].plot(*line, color="#222222", linestyle="--", linewidth=1.2, zorder=3, label="path of contact")
-    for kind in sorted({type(one).__name__ for own in hurt for one in own}):
-        both[1].plot([], [], color=HURT, linewidth=2.5, label=kind.lower())
+    for noun in sorted({one.nouns[0] for own in hurt for one in own}):
+        both[1].plot([], [], color=HURT, linewidth=2.5, label=noun)
     half = NEAR * pair.gear_1.m_n
     both[1].set(xlim=(-1.15 * half, 1.15 * half), ylim=(pair.pitch_radius_1 - half, pair.pitch_radius_1 + half))
     both[1].legend(loc="lower right")
@@ -102,11 +101,6 @@ def plot_pair(
     both[1].set_title(f"the teeth in mesh{seen}; contact ratio {pair.eps_alpha:.2f}")
     figure.suptitle(title)
     return save_figure(figure, path, dpi=110)
-
-
-def _drawn(gear, one):
-    """Line ``(2, n)`` [mm] of a crack or a pit in the frame of its tooth."""
-    return crack_path(gear, one) if isinstance(one, Crack) else cartesian(*flank(gear, np.linspace(*rolls(gear, one), 9)))
 
 
 def _turned(angle):

@@ -7,8 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from geometry.damage.crack import Crack
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage
 from geometry.pair.flanks import Misalignment
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
@@ -18,12 +17,12 @@ from ..case import Case
 from ..material import Material
 from ..supports.shaft import Shaft
 from ..supports.support import Support
-from . import assumed, strict
+from . import assumed, damage_tables, strict
+from .damage_tables import DAMAGE
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .machine_table import checked_machine
-from .pit_table import PITS, pits_of
 from .references import Reference, read_references
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TEXTS, TRUTH, TWO, VALUES, WHOLE, checked, known, placed
+from .strict import NUMBER, REQUIRED, TEXT, TEXTS, VALUES, WHOLE, checked, known, placed
 from .support_table import SUPPORTS, supports_of
 from .toml_file import read_toml
 
@@ -57,23 +56,6 @@ TABLES = {
     "flank": FLANK,
     **SUPPORTS,
 }
-DAMAGE = {
-    "crack": {
-        "case": (TEXT, REQUIRED),
-        "gear": (TEXT, REQUIRED),
-        "level": (NUMBER, None),
-        "length_mm": (NUMBER, None),
-        "angle_deg": (NUMBER, 45.0),
-        "start": (TEXT, "30deg"),
-        "turning": (TRUTH, False),
-        "tooth": (WHOLE, 0),
-        "pair": (TEXT, None),
-        "width_mm": (TWO, None),
-        "ends": (NUMBERS, [1.0, 1.0]),
-        "rounded": (TRUTH, False),
-    },
-    "pits": PITS,
-}
 ASSUMPTION = {"what": (TEXT, REQUIRED), "why": (TEXT, REQUIRED), "depends": (TEXT, ""), "holds": (VALUES, {})}
 
 
@@ -89,7 +71,7 @@ class ScenePair:
     force: float
     face: str | None = None
     groove: float = 0.0
-    damage: dict[str, dict[str, list[Crack | Pit]]] = field(default_factory=dict)
+    damage: dict[str, dict[str, list[Damage]]] = field(default_factory=dict)
     flanks: dict[str, Flank] = field(default_factory=dict)
     misalignment: Misalignment | None = None
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
@@ -240,7 +222,7 @@ def _by_case(tables):
 
 
 def _cases(file, damage, gears, name, pairs, made):
-    """Damage of the pair `name` by case, from the scene's [[crack]] and [[pits]] tables.
+    """Damage of the pair `name` by case, from the scene's tables of damage.
 
     Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
     """
@@ -256,18 +238,10 @@ def _cases(file, damage, gears, name, pairs, made):
                     raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
             for which, (side, key) in enumerate((("pinion", "gear_1"), ("wheel", "gear_2"))):
                 if pair[key] == row["gear"] and row["pair"] in (None, name):
-                    own = placed(
-                        file, where, lambda r=row, k=kind, n=which: _crack(r) if k == "crack" else pits_of(r, made, n, pair)
-                    )
+                    table = damage_tables.TABLES[kind]
+                    own = placed(file, where, lambda r=row, t=table, n=which: t.made(r, made, n, pair))
                     out.setdefault(row["case"], {}).setdefault(side, []).extend(own)
     return out
-
-
-def _crack(row):
-    numbers = {"level": row["level"], "length": row["length_mm"], "angle": math.radians(row["angle_deg"])}
-    return [
-        Crack(**numbers, width=row["width_mm"], **{key: row[key] for key in ("start", "turning", "tooth", "ends", "rounded")})
-    ]
 
 
 def _gear(row):

@@ -4,8 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from geometry.damage.crack import Crack, crack_path
-from geometry.damage.front import path_length
+from geometry.damage.crack import Crack, crack_path, path_length
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 

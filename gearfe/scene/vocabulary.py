@@ -8,6 +8,8 @@ import re
 
 from geometry.pair.gear_pair import GearPair
 
+from .damage_tables import TABLES
+
 PAIR = """\
 #a_mm = {a:.4f}  # centre distance; left out: the one without backlash
 # Misalignment, as deviations over the face width, um along the line of action: positive lets z = b come apart, z = 0 is pressed.
@@ -15,49 +17,6 @@ PAIR = """\
 #f_sigma_delta_um = 0.0  # inclination, in the plane of the axes
 #f_sigma_beta_um = 0.0  # skew, out of that plane
 #bearing_span_mm = {span:.1f}
-"""
-CRACK = """\
-# Cracks. A case may hold several, and pits; tables that name the same case belong together.
-#
-#        | centre-line      Each starts on the fillet below the loaded flank, and runs down to the centre-line of the tooth at
-#     ___|___              angle_deg, the angle between crack and centre-line: 90 runs straight across, 45 is usual, small
-#    /   |   \\             angles run down into the rim.
-#   /    |    \\
-#  /\\    |     \\           start: "30deg", where the fillet's tangent makes 30 degrees with the centre-line (ISO 6336-3);
-# /  \\   |      \\                 "root", where the fillet meets the root circle; "middle" of the fillet's arc.
-#     \\  |
-#      \\ | angle_deg
-#
-#[[crack]]
-#case = "cracked_part"
-#gear = "pinion"
-#length_mm = {crack:.2f}  # or level = 0.3: at 0.5 it reaches the centre-line
-#angle_deg = 60.0
-#start = "30deg"
-#tooth = 0  # which: tooth 0 is the one whose engagement is looked at
-#turning = false  # true, with level: at the centre-line it turns to the opposite fillet, level 1 is a tooth broken off
-#width_mm = [0.0, {half:.2f}]  # open from height z to z; left out: over the whole width
-#ends = [1.0, 0.0]  # part of its length that is open at both ends of width_mm: [1, 0] runs out; three numbers: a parabola
-#rounded = false  # true: the front is parabolic, of three ends elliptic
-#pair = "stage"  # only in this pair; left out: in all pairs of the gear
-
-# Pits: a row of ellipses.
-#[[pits]]
-#case = "pitted"
-#gear = "pinion"
-#radius_mm = {pitch:.3f}  # of the circle their centres lie on; this is the pitch circle
-#count = 5
-#first_mm = {first:.2f}  # height of the first centre over z = 0
-#last_mm = {last:.2f}  # and of the last
-# or instead of these two, about the point at radius_mm and height middle_mm = {half:.2f}: with pitch_mm = {apart:.2f} from
-# centre to centre, or span_mm from first to last, and along = "axis", "profile" (from root to tip) or "contact_line" (where
-# the teeth touch at one moment; mirrored = true: inclined the other way)
-#both_halves = false  # true: the mirrored row in the other half of a herringbone gear too
-#axes_mm = [{axis:.2f}, {axis:.2f}]  # semi-axes along the profile and along the width
-#depth_mm = {depth:.2f}
-#angle_deg = 0.0  # of the axes, turned in the flank
-#tooth = 0
-#pair = "stage"
 """
 FLANK = """\
 # What the flanks of a gear have less than the involute: um, positive is removed.
@@ -159,7 +118,7 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
     }  # fmt: skip
     mate = MATE.format(**numbers)
-    parts = (CRACK, FLANK, HELD) if pair.gear_2.internal else (CRACK, FLANK, HELD, MACHINE)
+    parts = (*(table.words for table in TABLES.values()), FLANK, HELD, *([] if pair.gear_2.internal else [MACHINE]))
     words = "\n".join(part.format(mate=mate, **numbers) for part in parts)
     return PAIR.format(a=pair.a, span=3 * b), _relieved(words, *relief) if relief else words
 

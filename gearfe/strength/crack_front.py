@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack, check_apart, meshed_path, open_part
-from geometry.damage.front import bends, deepest, shallowest, whole
+from geometry.damage.crack import Crack, check_apart, deepest, meshed_path
+from geometry.damage.front import open_part, shallowest, whole
+from geometry.damage.kinds import check_crack
 from geometry.mesh.solid import solid
 from geometry.tooth.gear import Gear
 
@@ -96,9 +97,8 @@ def stress_intensity_along_front(
     """
     check_one(gear, material, refine)
     check_load_along(line_load, gear, material)
-    if not isinstance(crack, Crack):
-        raise ValueError(f"crack = {crack!r}, but give a Crack")
-    if crack.tooth % gear.z or bends(crack):
+    check_crack(crack)
+    if crack.tooth % gear.z or crack.bends:
         raise ValueError(f"crack of tooth {crack.tooth}, turning = {crack.turning}: give a straight crack of tooth 0")
     check_apart(gear, [crack])
     _check_room(gear, crack)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.damage.crack import Crack
+from geometry.damage.kinds import check_crack
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
@@ -72,8 +73,7 @@ def stress_intensity(
     """
     check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
-    if not isinstance(crack, Crack):
-        raise ValueError(f"crack = {crack!r}, but give a Crack")
+    check_crack(crack)
     edge = edge_lengths(gear, EDGES, refine)
     arc, width = load_at(gear, radius), 0.05 * gear.m_n
     roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from geometry.damage.kinds import why_wide
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.pair.contacts import contacts
@@ -93,7 +94,7 @@ def stressed_gears(case, phase=0.0, refine=1.0):
     """
     pair, materials = case.pair, case.materials
     if any(case.pits):
-        raise ValueError("pits do not run through the whole width: a transverse section cannot show them")
+        raise ValueError(f"{why_wide([*case.pits[0], *case.pits[1]])}: a transverse section cannot show them")
     curve = solve(replace(case, supports=None), Solve("ritz", [phase]))  # supports of a section share no load
     found = contacts(pair, [phase])
     forces = dict(zip(curve.order.tolist(), curve.force[0] / curve.meta["width_mm"], strict=True))

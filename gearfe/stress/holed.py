@@ -5,7 +5,7 @@ the gear is held at the bore (or the outside of a ring) and where it was cut off
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -185,8 +185,7 @@ def _mirrored(gear, lower, upper):
     """Whether the pits of one half are the mirror images of those of the other."""
 
     def rounded(pit):
-        numbers = (pit.radius, pit.z, pit.angle, *pit.axes, pit.depth)
-        return tuple(round(value, 9) for value in numbers), pit.tooth, pit.side
+        return pit.called, [value if isinstance(value, str) else np.round(value, 9).tolist() for value in astuple(pit)]
 
     return sorted(map(rounded, lower)) == sorted(map(rounded, in_both_halves(gear, upper, "herringbone")))
 

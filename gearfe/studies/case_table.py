@@ -8,6 +8,7 @@ import numpy as np
 
 from ..case import overlap
 from ..markdown import table_row
+from ..scene.damage_tables import DAMAGE
 from ..scene.stored import read_curves
 from ..scene.verdicts import judge, text
 from ..steps import steps
@@ -223,7 +224,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
         If the scene has no damage.
     """
     if not any(pair.damage for pair in scene.pairs.values()):
-        raise ValueError(f"scene {scene.name} has no cases of damage: add [[crack]] or [[pits]] tables")
+        names = " or ".join(f"[[{name}]]" for name in DAMAGE)
+        raise ValueError(f"scene {scene.name} has no cases of damage: add {names} tables")
     wide = any(is_wide(pair) for pair in scene.pairs.values())
     stored = read_curves(scene) if wide else {}
     wanted = [(name, case) for name, pair in scene.pairs.items() for case in (None, *pair.damage)]

@@ -12,11 +12,8 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.crack import Crack
-from geometry.damage.front import bends, path_length
-from geometry.damage.pit import Pit
+from geometry.damage.kinds import Damage, called, told
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.gear import Gear
 
 from ..case import Case
 from ..checks import COARSEST
@@ -28,7 +25,6 @@ from ..stiffness.phases import phase_array
 from ..stiffness.solve import Solve, solve
 from ..units import in_newton_per_um
 
-Damage = Mapping[str, Iterable[Crack | Pit]] | None
 ALONE = {"single": "carries alone", "double": "carries with one neighbour", "triple": "carries with two neighbours"}
 LARGEST = "most at a phase"  # row of the phase at which most is lost
 
@@ -133,7 +129,7 @@ def loss_errors(healthy: StiffnessCurve, hurt: StiffnessCurve, case: Case, how: 
     return away
 
 
-def told_damage(pair: GearPair, damage: Damage) -> str:
+def told_damage(pair: GearPair, damage: Mapping[str, Iterable[Damage]] | None) -> str:
     """Damage in words.
 
     Examples
@@ -143,27 +139,12 @@ def told_damage(pair: GearPair, damage: Damage) -> str:
     >>> told_damage(scene.pair, scene.damage["crack30"])
     '3.07 mm crack at 45 degrees (level 0.3)'
     """
-    gears = {"pinion": pair.gear_1, "wheel": pair.gear_2}
-    damage = damage or {}
-    cracks = [(gears[side], one) for side, own in damage.items() for one in own if isinstance(one, Crack)]
-    pits = sum(isinstance(one, Pit) for own in damage.values() for one in own)
-    said = [_told_crack(*cracks[0])] if len(cracks) == 1 else [f"{len(cracks)} cracks"] if cracks else []
-    return " and ".join([*said, *([f"{pits} pit{'s' if pits > 1 else ''}"] if pits else [])])
+    return told({"pinion": pair.gear_1, "wheel": pair.gear_2}, damage or {})
 
 
-def _told_crack(gear: Gear, crack: Crack) -> str:
-    angle = f"at {math.degrees(crack.angle):.3g} degrees"
-    if crack.length is not None:
-        return f"{crack.length:.3g} mm crack {angle}"
-    if bends(crack):
-        return f"turning crack of level {crack.level:.3g} {angle}"
-    return f"{path_length(gear, crack):.3g} mm crack {angle} (level {crack.level:.3g})"
-
-
-def kind_of(damage: Damage) -> str:
-    """What a tooth with such damage is called: cracked, pitted, or damaged if it is both."""
-    kinds = {type(one) for own in (damage or {}).values() for one in own}
-    return {frozenset([Crack]): "cracked", frozenset([Pit]): "pitted"}.get(frozenset(kinds), "damaged")
+def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
+    """What a tooth with such damage is called: `geometry.damage.kinds.called`."""
+    return called(one for own in (damage or {}).values() for one in own)
 
 
 def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:

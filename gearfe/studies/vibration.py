@@ -7,8 +7,6 @@ from numbers import Real
 
 import numpy as np
 
-from geometry.damage.pit import Pit
-
 from ..machine.of_scene import build_machine
 from ..markdown import table_row
 from ..motion.reference import SOLVERS
@@ -193,7 +191,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
     found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
     damage = [] if scene.machine.get("contact") == "impact" else found
-    along = any(isinstance(one, Pit) or not one.through for one in damage)
+    along = not all(one.through for one in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):

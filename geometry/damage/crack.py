@@ -1,14 +1,17 @@
 """`Crack`: a root crack of one tooth, where it starts, how it runs, and how far it is open along the width."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from numbers import Integral, Real
+from typing import ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from ..kept import keeping
+from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
 
 STARTS = ("30deg", "root", "middle")
@@ -69,6 +72,10 @@ class Crack:
     ends: tuple[float, ...] = (1.0, 1.0)
     rounded: bool = False
 
+    nouns: ClassVar[tuple[str, str]] = ("crack", "cracks")
+    called: ClassVar[str] = "cracked"
+    removes_contact: ClassVar[bool] = False
+
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("level", "length", "angle"):
@@ -122,6 +129,28 @@ class Crack:
         """Whether it is as deep at every height between its ends."""
         return len(set(self.ends)) == 1
 
+    @property
+    def bends(self) -> bool:
+        """Whether it has turned at the tooth's centre-line: its path is not straight."""
+        return self.turning and self.level is not None and self.level > 0.5
+
+    def outline(self, gear: Gear) -> NDArray[np.float64]:
+        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth: `crack_path`."""
+        return crack_path(gear, self)
+
+    def told(self, gear: Gear) -> str:
+        """Its size and angle in words."""
+        angle = f"at {math.degrees(self.angle):.3g} degrees"
+        if self.length is not None:
+            return f"{self.length:.3g} mm crack {angle}"
+        if self.bends:
+            return f"turning crack of level {self.level:.3g} {angle}"
+        return f"{path_length(gear, self):.3g} mm crack {angle} (level {self.level:.3g})"
+
+    def doubts(self, gear: Gear) -> str:
+        """What to warn of when it meets its gear: nothing."""
+        return ""
+
 
 def _numbers(name, values, counts):
     try:
@@ -152,10 +181,10 @@ def extremes(crack):
     return min(values), max(values)
 
 
-def open_part(crack, b, z):
-    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
-    low, high = crack.width or (0.0, b)
-    return np.where((z >= low) & (z <= high), front(crack, b, z)[0], 0.0)
+def deepest(crack):
+    """Largest open part of a crack's length."""
+    high = extremes(crack)[1]
+    return math.sqrt(high) if crack.rounded else high
 
 
 def front(crack, b, z):
@@ -170,36 +199,6 @@ def front(crack, b, z):
         return part, slope
     root = np.sqrt(part)
     return root, slope / (2 * np.maximum(root, SLACK))
-
-
-def crack_in_band(crack, b, first, last):
-    """The crack of a gear of width `b` as a band of it sees it, heights counted from the band's end at z = `first` to `last`.
-
-    Parameters
-    ----------
-    crack : Crack
-    b, first, last : float
-        [mm]; `first` may be the higher one.
-
-    Returns
-    -------
-    Crack or None
-        None if it is not open anywhere in the band.
-    """
-    if crack.through:
-        return crack
-    low, high = crack.width or (0.0, b)
-    low, high = max(low, min(first, last)), min(high, max(first, last))
-    ends = crack.ends
-    if (low, high) != (crack.width or (0.0, b)):
-        ends = tuple(open_part(crack, b, np.linspace(low, high, len(ends))).tolist())
-    if not (low < high and max(ends) > 0):
-        return None
-    width, band = (low - first, high - first), abs(last - first)
-    if last < first:
-        width, ends = (first - high, first - low), ends[::-1]
-    whole = width[0] <= 1e-9 * band and width[1] >= (1 - 1e-9) * band
-    return replace(crack, width=None if whole else width, ends=ends)
 
 
 @lru_cache(maxsize=256)
@@ -228,15 +227,24 @@ def crack_path(gear, crack):
     """
     first = cartesian(*root_curve(gear, start_arc(gear, crack)))
     heading = np.array([-math.sin(crack.angle), -gear.outward * math.cos(crack.angle)])
-    half = first[0] / math.sin(crack.angle)
-    length = crack.length if crack.length is not None else 2 * half * min(crack.level, 0.5 if crack.turning else 1.0)
-    corners = [first, first + heading * length]
-    if crack.turning and crack.level > 0.5:
+    corners = [first, first + heading * _straight(crack, first)]
+    if crack.bends:
         goal = first * [-1, 1]
         corners.append(corners[1] + (goal - corners[1]) * (2 * crack.level - 1))
     path = np.array(corners).T
     _check_inside(gear, crack, path)
     return path if crack.side == "loaded" else path * [[-1], [1]]
+
+
+def _straight(crack, first):
+    """Length [mm] of a crack from where it starts, (x, y) [mm], to its end or bend."""
+    half = first[0] / math.sin(crack.angle)
+    return crack.length if crack.length is not None else 2 * half * min(crack.level, 0.5 if crack.turning else 1.0)
+
+
+def path_length(gear, crack):
+    """Length of a straight crack where it is deepest [mm]."""
+    return float(deepest(crack) * _straight(crack, cartesian(*root_curve(gear, start_arc(gear, crack)))))
 
 
 def meshed_path(gear, crack):

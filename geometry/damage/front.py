@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import brentq
 
-from .crack import SLACK, Crack, crack_path, extremes, front
+from .crack import SLACK, Crack, deepest, extremes, front
 
 # Down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold.
 LEAST = 0.1, 0.15, 0.2, 0.25
@@ -21,10 +21,10 @@ STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a
 SAMPLES = 801  # heights at which a front is looked at first
 
 
-def deepest(crack):
-    """Largest open part of a crack's length."""
-    high = extremes(crack)[1]
-    return math.sqrt(high) if crack.rounded else high
+def open_part(crack, b, z):
+    """Part of its length over which a crack is open at heights `z` [mm] of a face of width `b` [mm]; 0 beyond its ends."""
+    low, high = crack.width or (0.0, b)
+    return np.where((z >= low) & (z <= high), front(crack, b, z)[0], 0.0)
 
 
 def shallowest(crack):
@@ -45,7 +45,7 @@ def whole(crack):
     part, even = deepest(crack), replace(crack, width=None, ends=(1.0, 1.0), rounded=False)
     if part == 1 and crack.even:
         return even
-    if bends(crack):
+    if crack.bends:
         raise ValueError(
             f"turning crack of level {crack.level} over parts {crack.ends} of its length: only straight cracks change their "
             "depth along the width; give turning = False, or ends = (1, 1)"
@@ -58,14 +58,34 @@ def shallower(crack, part):
     return replace(crack, **({"length": part * crack.length} if crack.level is None else {"level": part * crack.level}))
 
 
-def bends(crack):
-    """Whether a crack has turned at the tooth's centre-line: its path is not straight."""
-    return crack.turning and crack.level > 0.5
+def crack_in_band(crack, b, first, last):
+    """The crack of a gear of width `b` as a band of it sees it, heights counted from the band's end at z = `first` to `last`.
 
+    Parameters
+    ----------
+    crack : Crack
+    b, first, last : float
+        [mm]; `first` may be the higher one.
 
-def path_length(gear, crack):
-    """Length of a straight crack where it is deepest [mm]."""
-    return float(np.hypot(*np.diff(crack_path(gear, whole(crack)), axis=1)).sum())
+    Returns
+    -------
+    Crack or None
+        None if it is not open anywhere in the band.
+    """
+    if crack.through:
+        return crack
+    low, high = crack.width or (0.0, b)
+    low, high = max(low, min(first, last)), min(high, max(first, last))
+    ends = crack.ends
+    if (low, high) != (crack.width or (0.0, b)):
+        ends = tuple(open_part(crack, b, np.linspace(low, high, len(ends))).tolist())
+    if not (low < high and max(ends) > 0):
+        return None
+    width, band = (low - first, high - first), abs(last - first)
+    if last < first:
+        width, ends = (first - high, first - low), ends[::-1]
+    whole = width[0] <= 1e-9 * band and width[1] >= (1 - 1e-9) * band
+    return replace(crack, width=None if whole else width, ends=ends)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,12 +1,16 @@
-"""`Pit`: an elliptic pit on a flank, the width it takes away, and where a contact line crosses it."""
+"""`Pit`: an elliptic pit on a flank, and where lines cross it."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from numbers import Integral, Real
+from typing import ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..tooth.profile import arc_at, flank, roll_at_arc
+from ..tooth.gear import Gear
+from .hollow import centre_arc, doubts, profile
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -42,7 +46,8 @@ class Pit:
     Raises
     ------
     ValueError
-        If the description is contradictory; a pit beside its flank is refused when it meets its gear, see `check_pits`.
+        If the description is contradictory; a pit beside its flank is refused when it meets its gear, see
+        `geometry.damage.hollow.check_hollows`.
 
     >>> Pit(radius=21.0, z=10.0, axes=(1.0, 2.0), depth=0.2).reach
     (1.0, 2.0)
@@ -55,6 +60,11 @@ class Pit:
     angle: float = 0.0
     tooth: int = 0
     side: str = "loaded"
+
+    nouns: ClassVar[tuple[str, str]] = ("pit", "pits")
+    called: ClassVar[str] = "pitted"
+    removes_contact: ClassVar[bool] = True
+    through: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
@@ -94,57 +104,98 @@ class Pit:
         area = self.axes[0] * self.axes[1]
         return math.sqrt(across) * area, math.sqrt(along) * area
 
+    def outline(self, gear: Gear) -> NDArray[np.float64]:
+        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
+        return profile(gear, self)
+
+    def told(self, gear: Gear) -> str:
+        """It in words."""
+        return "1 pit"
+
+    def doubts(self, gear: Gear) -> str:
+        """What to warn of when it meets its gear; empty if nothing."""
+        return doubts(gear, self, f"semi-axes {self.axes[0]:g} x {self.axes[1]:g}")
+
+    def mirrored(self, b: float) -> Self:
+        """Its mirror image in the other half of a face of width `b` [mm]."""
+        return replace(self, z=b - self.z, angle=-self.angle)
+
+    def covers(self, u: NDArray[np.float64], w: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
+        across, mixed, along = self.form
+        return across * w**2 + 2 * mixed * w * u + along * u**2 <= 1
+
+    def span(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
+        across, mixed, along = self.form
+        root = across - (across * along - mixed**2) * u**2
+        half = np.sqrt(np.where(root > 0, root, 0.0)) / across
+        middle = self.z - mixed * np.where(root > 0, u, 0.0) / across
+        return middle - half, middle + half
+
+    def edge(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Its outline: places along the profile and along the width from its centre [mm]."""
+        turn = np.linspace(0, 2 * np.pi, 90)
+        p, q = self.axes[0] * np.cos(turn), self.axes[1] * np.sin(turn)
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        return p * c - q * s, p * s + q * c
+
+    def drawn(self, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Half axes ``(3, 2)`` at right angles of the ellipse that two other half axes span."""
+        turned, size, _ = np.linalg.svd(axes, full_matrices=False)
+        return turned * size
+
+    def along(self, p, q, dp, dq):
+        """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
+        a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
+        root = np.sqrt(np.maximum(half * half - a * c, 0.0))
+        hit = half * half - a * c > 0
+        flat = 1e-12 / min(self.axes) ** 2
+        wall = np.where(a > flat, a, 1.0)
+        inside = c < 0
+        low = np.where(a > flat, (-half - root) / wall, np.where(inside, -np.inf, 0.0))
+        high = np.where(a > flat, (-half + root) / wall, np.where(inside, np.inf, 0.0))
+        return np.where(hit, low, 0.0), np.where(hit, high, 0.0)
+
+    def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
+        """Where a straight contact line runs through it.
+
+        Parameters
+        ----------
+        gear : Gear
+        roll, z : (float, float)
+            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
+
+        Returns
+        -------
+        list of (float, float)
+            Ranges of t inside the pit; at most two, because the profile arc is quadratic in t.
+        """
+        across, mixed, along = self.form
+        slope = z[1] - z[0]
+        reach = self.reach[1]
+        # in v = (z - self.z) / reach, which is between -1 and 1 in the pit, whatever the line's length
+        change = (roll[1] - roll[0]) / slope
+        at = roll[0] + change * (self.z - z[0])
+        sign = gear.outward / (2 * gear.r_b)
+        u = np.array([sign * at**2 - centre_arc(gear, self), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
+        w = np.array([0.0, reach])
+        inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
+        inside[0] -= 1.0
+        inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
+        found = np.polynomial.polynomial.polyroots(inside)
+        found = found.real[np.abs(found.imag) < 1e-9]
+        places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
+        parts = zip(places[:-1], places[1:], strict=True)
+        kept = [(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0]
+        ends = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
+        return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
+
 
 def _number(name, value):
     if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
         raise ValueError(f"{name} = {value!r}, but a pit needs a finite number here")
     return float(value)
-
-
-def centre_arc(gear, pit):
-    """Arc of the pit's centre [mm], as `geometry.tooth.profile.arc_at` counts it."""
-    return gear.outward * (pit.radius**2 - gear.r_b**2) / (2 * gear.r_b)
-
-
-def rolls(gear, pit):
-    """Roll lengths [mm] of the pit's ends nearest the root and nearest the tip, on the involute between form and tip circle."""
-    middle, reach = centre_arc(gear, pit), pit.reach[0]
-    low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    return roll_at_arc(gear, np.clip([middle - reach, middle + reach], low, high))
-
-
-def takes_all(gear, pit):
-    """Whether a pit takes its whole flank: all four corners of it lie within the ellipse."""
-    u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, pit)
-    w = np.array([0.0, gear.b]) - pit.z
-    across, mixed, along = pit.form
-    return bool((across * w[:, None] ** 2 + 2 * mixed * w[:, None] * u + along * u**2 <= 1).all())
-
-
-def check_pits(gear, pits):
-    """Raise ValueError for a pit whose centre is off the flank, or that is as deep as half the tooth where it lies.
-
-    Pits may cross the tip edge and the end faces, and may overlap; what reaches below the form circle is not on the flank and
-    is left out.
-    """
-    for pit in pits:
-        if not isinstance(pit, Pit):
-            raise ValueError(f"{pit!r} is not a Pit")
-        low, high = sorted((gear.r_form, gear.r_a))
-        if not low <= pit.radius <= high:
-            raise ValueError(
-                f"pit at radius = {pit.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
-                "put the pit's centre there"
-            )
-        if not 0 <= pit.z <= gear.b:
-            raise ValueError(f"pit at z = {pit.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
-        radius, angle = flank(gear, rolls(gear, pit)[1])
-        half = float(radius * math.sin(angle))
-        if pit.depth >= half:
-            raise ValueError(
-                f"pit of depth = {pit.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
-                "upper end: make it shallower or put it nearer the root"
-            )
 
 
 def pit_row(count, first, last, **numbers):
@@ -158,85 +209,6 @@ def pit_row(count, first, last, **numbers):
     if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
         raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
     return [Pit(z=float(z), **numbers) for z in np.linspace(first, last, count)]
-
-
-def intervals(gear, pits, arc):
-    """Axial intervals the pits take from the flank at profile arcs `arc`.
-
-    Parameters
-    ----------
-    gear : Gear
-    pits : sequence of Pit
-    arc : ndarray
-        As of `geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
-
-    Returns
-    -------
-    low, high : ndarray, shape (pits, *arc.shape)
-        Ends [mm] within 0..b, equal where the pit takes nothing.
-    """
-    arc = np.asarray(arc, dtype=float)
-    low, high = np.zeros((2, len(pits), *arc.shape))
-    for k, pit in enumerate(pits):
-        across, mixed, along = pit.form
-        u = arc - centre_arc(gear, pit)
-        root = across - (across * along - mixed**2) * u**2
-        half = np.sqrt(np.where(root > 0, root, 0.0)) / across
-        middle = pit.z - mixed * np.where(root > 0, u, 0.0) / across
-        low[k], high[k] = np.clip(middle - half, 0, gear.b), np.clip(middle + half, 0, gear.b)
-    return low, high
-
-
-def union_length(low, high):
-    """Length covered by intervals ``[low, high]`` along the first axis, overlaps counted once; ``low <= high``."""
-    if len(low) == 0:
-        return np.zeros(np.shape(low)[1:])
-    order = np.argsort(low, axis=0, kind="stable")
-    low, high = np.take_along_axis(low, order, axis=0), np.take_along_axis(high, order, axis=0)
-    before = np.concatenate([low[:1], np.maximum.accumulate(high, axis=0)[:-1]])
-    return np.maximum(high - np.maximum(low, before), 0.0).sum(axis=0)
-
-
-def lost_width(gear, pits, arc):
-    """Width [mm] the pits of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
-    return union_length(*intervals(gear, pits, arc))
-
-
-def crossing(gear, pit, roll, z):
-    """Where a straight contact line runs through a pit.
-
-    Parameters
-    ----------
-    gear : Gear
-    pit : Pit
-    roll, z : (float, float)
-        Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
-
-    Returns
-    -------
-    list of (float, float)
-        Ranges of t inside the pit; at most two, because the profile arc is quadratic in t.
-    """
-    across, mixed, along = pit.form
-    slope = z[1] - z[0]
-    reach = pit.reach[1]
-    # in v = (z - pit.z) / reach, which is between -1 and 1 in the pit, whatever the line's length
-    change = (roll[1] - roll[0]) / slope
-    at = roll[0] + change * (pit.z - z[0])
-    sign = gear.outward / (2 * gear.r_b)
-    u = np.array([sign * at**2 - centre_arc(gear, pit), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
-    w = np.array([0.0, reach])
-    inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
-    inside[0] -= 1.0
-    inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
-    found = np.polynomial.polynomial.polyroots(inside)
-    found = found.real[np.abs(found.imag) < 1e-9]
-    places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
-    kept = [
-        (a, b) for a, b in zip(places[:-1], places[1:], strict=True) if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0
-    ]
-    ends = [np.clip((pit.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
-    return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
 
 
 def _times(a, b, size):

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..damage.crack import meshed_path, start_arc
-from ..damage.pit_volume import pit_frame
+from ..damage.hollow_volume import hollow_frame
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 
@@ -126,16 +126,9 @@ def fine(gear, crack, size, teeth):
     return out
 
 
-def tool(gear, pit):
-    """Disk above the flank and the push that makes it the pit's cylinder."""
-    centre, axes, push, _ = pit_frame(gear, pit)
-    roll = math.sqrt(pit.radius**2 - gear.r_b**2)
-    above = (0.2 + (max(pit.axes) ** 2 / roll if gear.internal else 0.0) / pit.depth) * push
-    return centre - above, axes, push + above
-
-
-def squeezed(tool, squeeze):
-    """A disk and its push after the width was squeezed: again a disk, with other half axes."""
-    centre, axes, push = tool
-    turned, size, _ = np.linalg.svd(squeeze * axes, full_matrices=False)
-    return centre * squeeze[:, 0], turned * size, push * squeeze[:, 0]
+def tool(gear, hollow, squeeze):
+    """Centre, half axes and push of the cylinder that cuts a hollow, from above the flank, where the width is squeezed."""
+    centre, axes, push, _ = hollow_frame(gear, hollow)
+    roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
+    above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push
+    return (centre - above) * squeeze[:, 0], hollow.drawn(squeeze * axes), (push + above) * squeeze[:, 0]

@@ -12,12 +12,13 @@ from numbers import Integral
 
 import numpy as np
 
-from ..damage.crack import Crack, meshed_path
-from ..damage.pit import centre_arc, check_pits
-from ..damage.pit_volume import removed_volume
+from ..damage.crack import meshed_path
+from ..damage.hollow import centre_arc, check_hollows
+from ..damage.hollow_volume import removed_volume
+from ..damage.kinds import check_crack
 from ..tooth.gear import Gear
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve
-from .holed_drawing import fine, numbers_of, on_outline, section, squeezed, tool
+from .holed_drawing import fine, numbers_of, on_outline, section, tool
 from .mesher import UnmeshedError, tetrahedra
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
@@ -96,10 +97,10 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
         raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0")
-    if crack is not None and not isinstance(crack, Crack):
-        raise ValueError(f"crack = {crack!r}, but give a Crack or None")
+    if crack is not None:
+        check_crack(crack)
     pits = tuple(dict.fromkeys(pits))
-    check_pits(gear, pits)
+    check_hollows(gear, pits)
     _check_place(gear, pits, crack)
     size = {name: value * gear.m_n / refine for name, value in (SIZES | (sizes or {})).items()}
     for finer in FINER:
@@ -142,7 +143,7 @@ def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     points, curves, faces = section(gear, crack, teeth)
     squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
-        points, curves, faces, gear.b / stretch, [squeezed(tool(gear, pit), squeeze) for pit in pits],
+        points, curves, faces, gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
         fine=fine(gear, crack, size, teeth), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
     )  # fmt: skip
     made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})
@@ -164,8 +165,8 @@ def _check_place(gear, pits, crack):
         least = centre_arc(gear, pit) - pit.reach[0]
         if least < arc_at(gear, gear.roll_f):
             raise ValueError(
-                f"pit at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the form circle "
-                f"({gear.r_form:.6g} mm): holes are cut into the involute only; move it towards the tip or make it smaller"
+                f"{pit.nouns[0]} at radius = {pit.radius:.6g} mm reaches {arc_at(gear, gear.roll_f) - least:.3g} mm below the "
+                f"form circle ({gear.r_form:.6g} mm): holes are cut into the involute only; move it to the tip or make it smaller"
             )
 
 

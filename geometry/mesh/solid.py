@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..damage.crack import check_apart, check_single, open_part
-from ..damage.front import bends, deepest, whole
+from ..damage.crack import check_apart, check_single, deepest
+from ..damage.front import open_part, whole
 from ..tooth.gear import Gear
 from .front import follow
 from .outline import spaced
@@ -109,9 +109,9 @@ def solid(gear, *, layer, loaded=(0,), cracks=(), patches=(), refine=1.0, sizes=
         raise ValueError(f"layer = {layer} mm, but it must be positive")
     check_apart(gear, cracks)
     check_single(gear, cracks)
-    shapes = [crack if bends(crack) else whole(crack) for crack in cracks]
+    shapes = [crack if crack.bends else whole(crack) for crack in cracks]
     section = quad_section(gear, loaded=loaded, cracks=shapes, patches=patches, refine=refine, sizes=sizes)
-    moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or bends(crack))}
+    moves = {k: follow_front(section, k, crack) for k, crack in enumerate(cracks) if not (crack.even or crack.bends)}
     breaks = [z for crack in cracks for z in crack.width or ()]
     breaks += [z for _, front in moves.values() for z in (*front.kinks(), *np.ravel(front.open()))]
     fine = [*fine, *(place for _, front in moves.values() for place in front.steep())]
@@ -235,7 +235,7 @@ def _open(made, cut, part, cracks):
             reach = sum((height > low) & (height < high) for low, high in made.fronts[number].open())
         else:
             crack = cracks[number]
-            reach = open_part(crack, made.gear.b, height) / (1.0 if bends(crack) else deepest(crack))
+            reach = open_part(crack, made.gear.b, height) / (1.0 if crack.bends else deepest(crack))
         opened |= own[:, None] & (cut.depth[:, None] <= length * reach * (1 + 1e-9))
     opened = opened.ravel()
     if not opened.any():

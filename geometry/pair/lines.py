@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..damage.pit import crossing, rolls, union_length
+from ..damage.hollow import rolls, union_length
 from ..kept import keeping
 from .gear_pair import GearPair
 
@@ -258,7 +258,7 @@ def covered(pair, pits, order, rolls, z):
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)
         for i, k in np.argwhere(meets).tolist():
-            rows += [(i, which, s, t) for s, t in crossing(gear, found[k], rolls[which][i], height[i])]
+            rows += [(i, which, s, t) for s, t in found[k].crossing(gear, rolls[which][i], height[i])]
     piece, gear, first, last = np.array(rows, dtype=float).reshape(-1, 4).T
     return piece.astype(int), gear.astype(int), first, last
 

@@ -6,7 +6,8 @@ from numbers import Integral
 
 import numpy as np
 
-from ..damage.pit import MOST, Pit, centre_arc
+from ..damage.hollow import centre_arc
+from ..damage.pit import MOST, Pit
 from ..tooth.profile import roll_at_arc
 from .lines import Band, bands_of
 
@@ -51,7 +52,7 @@ def pit_line(
     ------
     ValueError
         If what is asked for cannot be, or a row along a contact line leaves its half. Pits off their flank are refused when they
-        meet their gear, see `geometry.damage.pit.check_pits`.
+        meet their gear, see `geometry.damage.hollow.check_hollows`.
 
     >>> from geometry.tooth.gear import Gear
     >>> from geometry.pair.gear_pair import GearPair
@@ -99,7 +100,7 @@ def in_both_halves(gear, pits, face):
     """Mirror images of pits of a herringbone gear, in its other half."""
     if face != "herringbone":
         raise ValueError(f"pits in both halves, but teeth of face = {face!r} have none: only herringbone gears do")
-    return [replace(pit, z=gear.b - pit.z, angle=-pit.angle) for pit in pits]
+    return [pit.mirrored(gear.b) for pit in pits]
 
 
 def _band(pair, gear, face, groove, middle):

@@ -14,7 +14,8 @@ from gearfe.energy.ritz.bent import bent
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.solved import solved_gears
-from geometry.damage.front import Front, deepest, shallowest
+from geometry.damage.crack import deepest
+from geometry.damage.front import Front, shallowest
 from geometry.mesh.quads import quad_section
 from geometry.mesh.sector import sector
 from geometry.mesh.solid import follow_front

@@ -16,7 +16,8 @@ from gearfe.energy.closed.beam import load_angle
 from gearfe.energy.closed.plain_sum import plain_sum
 from gearfe.energy.closed.section import limits, section
 from geometry.damage.crack import crack_path
-from geometry.damage.pit import centre_arc, pit_row
+from geometry.damage.hollow import centre_arc
+from geometry.damage.pit import pit_row
 from geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
 
 STEEL = gf.Material(E=207e3, nu=0.3)

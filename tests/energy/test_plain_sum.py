@@ -15,7 +15,8 @@ from gearfe.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.energy.closed.plain_sum import plain_sum
 from gearfe.energy.closed.slices import faces
 from gearfe.flexibility import hertz
-from geometry.damage.pit import centre_arc, lost_width, pit_row
+from geometry.damage.hollow import centre_arc, lost_width
+from geometry.damage.pit import pit_row
 from geometry.tooth.profile import arc_at, root_half_angle
 
 STEEL = gf.Material(E=207e3, nu=0.3)
@@ -62,7 +63,7 @@ def test_damage_belongs_to_its_tooth():
 
 
 def test_cracks_and_pits_that_leave_nothing_are_refused():
-    with pytest.raises(ValueError, match="leave nothing of the tooth of z = 21"):
+    with pytest.raises(ValueError, match="leaves nothing of the tooth of z = 21"):
         stiffness(gf.Crack(level=0.9))
     assert (stiffness(gf.Crack(level=0.9), crack_model="straight") < stiffness(gf.Crack(level=0.3))).any()
     with pytest.raises(ValueError, match="no contact is left at phase"):

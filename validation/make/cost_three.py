@@ -9,9 +9,9 @@ import time
 import numpy as np
 
 import gearfe as gf
-from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import ROOT
+from ..shared.solid_pair import solid_contact
 
 STANDARD = {"teeth": 24, "b/m": 8, "helix angle": 16, "order": 3, "phases": 16}
 OVER = {

@@ -10,9 +10,9 @@ import numpy as np
 
 import gearfe as gf
 from gearfe.files import written
-from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import TABLES
+from ..shared.solid_pair import solid_contact
 
 CSV, SECTIONS = TABLES / "flanks_fe3d.csv", TABLES / "flanks_fe.csv"
 HEADER = ("seed", "z_1", "z_2", "beta_deg", "b_mm", "force_N", "deflection_um", "difference_percent")

@@ -5,10 +5,10 @@ import numpy as np
 import gearfe as gf
 from gearfe.case import by_gear, overlap
 from gearfe.stress.holed import pressed_tooth
-from validation.shared.solid_pair import solid_contact
 
 from ..shared import outsider, page
 from ..shared.kept_rows import check, kept, stored
+from ..shared.solid_pair import solid_contact
 from . import holed_cracks, outsider_three
 
 LAYOUTS = (

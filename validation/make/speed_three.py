@@ -13,9 +13,9 @@ import numpy as np
 import gearfe as gf
 from gearfe.energy.ritz import solid as ritz3d
 from geometry.damage.pit import pit_row
-from validation.shared.solid_pair import solid_contact
 
 from ..shared.places import ROOT
+from ..shared.solid_pair import solid_contact
 
 SETTINGS = ((2, 8), (2, 11), (3, 8), (3, 11), (3, 14), (4, 16))  # order and axial degree; the last is the reference
 BRUTE = 0.8  # resolution of the finite elements

@@ -21,11 +21,11 @@ from gearfe.case import by_gear, overlap
 from gearfe.flexibility.solved import SolvedGears
 from geometry.damage.pit import pit_row
 from geometry.pair.pit_lines import in_both_halves, pit_line
-from validation.shared.solid_pair import solid_contact
 
 from . import herringbone_scan_nodes as nodes
 from .herringbone_scan_nodes import PAIRS, SCENE
 from .places import TABLES
+from .solid_pair import solid_contact
 from .table_rows import rows_of
 
 PATH = TABLES / "herringbone_layouts.csv"

@@ -15,9 +15,9 @@ from gearfe.case import by_gear, overlap
 from geometry.damage.crack import start_arc
 from geometry.damage.pit import pit_row
 from geometry.tooth.profile import cartesian, root_curve
-from validation.shared.solid_pair import solid_contact
 
 from .places import TABLES
+from .solid_pair import solid_contact
 
 SCENE = "herringbone"
 PAIRS = ("sun_planet", "planet_ring")

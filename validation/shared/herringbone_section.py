@@ -9,7 +9,8 @@ from gearfe.elements.fe_gear3d import PER_HAT, SIZES
 from gearfe.elements.section_error import plane_hats
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.solved import SolvedGears
-from validation.shared.solid_pair import solid_contact
+
+from .solid_pair import solid_contact
 
 FINEST = 2.0  # resolution of the section that is taken for exact
 PHASES = 8

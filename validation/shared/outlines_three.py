@@ -9,11 +9,11 @@ import tempfile
 from pathlib import Path
 
 import gearfe as gf
-from validation.shared.solid_pair import solid_contact
 
 from . import kept_rows
 from .decks import calculix, digest
 from .outsider import STEEL, told
+from .solid_pair import solid_contact
 
 TABLE, OURS = "outlines_three", "outlines_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 LOAD = 600.0  # N/mm

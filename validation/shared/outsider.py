@@ -12,16 +12,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from gearfe.elements.contact_solid import SolidDeck
 
 import gearfe as gf
+from gearfe.decks.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
 from gearfe.flexibility import solid as flexibility3d
-from validation.shared.solid_pair import solid_contact
 
 from . import kept_rows
 from .decks import calculix, digest
+from .solid_pair import solid_contact
 
 TABLE, OURS = "outsider_three", "outsider_three_ritz3d"  # tables of rows: runs of CalculiX; of `ritz3d`
 STEEL = gf.Material(E=207e3, nu=0.3)

@@ -9,7 +9,7 @@ from numpy.polynomial.chebyshev import chebint, chebvander
 from numpy.polynomial.legendre import leggauss
 from scipy.optimize import brentq
 
-from geometry.damage.pit import check_pits, rolls
+from geometry.damage.hollow import breaks, check_hollows
 from geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
 
 from .beam import load_angle
@@ -44,7 +44,7 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
     """
     if root not in ROOTS:
         raise ValueError(f"root = {root!r}, but it must be one of {', '.join(ROOTS)}")
-    check_pits(gear, pits)
+    check_hollows(gear, pits)
     if not (cracks or pits):
         low = _lowest(gear, root)
         foot = np.array(_healthy_foot(gear, root))
@@ -65,7 +65,7 @@ def flank_edges(gear, cracks, pits, *, root="fillet", crack_model="constant"):
 
 def _flank_edges(gear, root, found, pits):
     kinks = _edges(_flank(gear), found, pits, (_lowest(gear, root), gear.roll_a))
-    edges = np.unique(np.concatenate([kinks, *(np.linspace(*rolls(gear, pit), 7) for pit in pits)]))[:: gear.outward]
+    edges = np.unique(np.concatenate([kinks, *(breaks(gear, pit) for pit in pits)]))[:: gear.outward]
     return edges[np.append(True, np.abs(np.diff(edges)) > 1e-9 * gear.m_n)]
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from geometry.damage.crack import check_apart, check_through
-from geometry.damage.pit import check_pits
+from geometry.damage.hollow import check_hollows
 from geometry.tooth.profile import flank
 
 from ...flexibility.hertz import linear_hertz, palmgren_line, weber_line
@@ -87,7 +87,7 @@ def plain_sum(
     for gear, own_cracks, own_pits in zip(gears, cracks, pits, strict=True):
         check_through(own_cracks, "a plain sum")
         check_apart(gear, own_cracks)
-        check_pits(gear, own_pits)
+        check_hollows(gear, own_pits)
     bands = faces(pair, face, groove)
     options = {name: value for name, value in defaults.items() if name == "root"}
     options |= {key: variants[key] for key in ("crack_model", "root") if key in variants}
@@ -96,7 +96,7 @@ def plain_sum(
     )
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
-        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: pits take the whole width; make them smaller")
+        raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage takes the whole width; make it smaller")
     teeth, outside = np.zeros(at.roll_1.shape), {}
     for gear, material, roll, tooth, own_cracks, own_pits in (
         (gears[0], materials[0], at.roll_1, at.order[at.column], cracks[0], pits[0]),

@@ -30,7 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.damage.crack import crack_path
-from geometry.damage.pit import intervals
+from geometry.damage.hollow import intervals
 from geometry.tooth.profile import cartesian, flank
 
 CRACK_MODELS = ("constant", "straight", "parabola")
@@ -157,7 +157,7 @@ def _positive(gear, thickness, y):
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(
-            f"cracks and pits leave nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the gear's axis: make "
-            "them smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
+            f"damage leaves nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the gear's axis: make "
+            "it smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
         )
     return thickness

@@ -12,8 +12,7 @@ from numbers import Integral
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from geometry.damage.crack import crack_in_band
-from geometry.damage.front import shallower, whole
+from geometry.damage.front import crack_in_band, shallower, whole
 from geometry.mesh.sector import sector
 
 from ...flexibility.solid import PLACES, Faces, hats, parted, solved_teeth

@@ -48,6 +48,7 @@ from itertools import product
 from typing import Any
 
 from ...machine.of_scene import MACHINES
+from ...scene.damage_tables import DAMAGE
 from ...scene.load import Scene, read_tables, scene_of
 from ...scene.strict import NUMBER, NUMBERS, REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
 from ...scene.toml_file import given_tables
@@ -146,7 +147,7 @@ def _scene(place, name):
     """Name and tables of the scene, without what its sources print and without its own damage."""
     near = place / name
     found, tables = read_tables(near if near.is_file() else name)
-    for told in ("reference", "assumption", "given", "later", "crack", "pits"):
+    for told in ("reference", "assumption", "given", "later", *DAMAGE):
         tables.pop(told, None)
     return found, tables
 

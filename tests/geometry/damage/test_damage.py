@@ -12,7 +12,8 @@ import gearfe as gf
 from gearfe.elements import fe
 from gearfe.energy.ritz import plane as ritz
 from gearfe.stiffness import cache
-from geometry.damage.crack import check_apart, crack_in_band, crack_path, open_part, start_arc
+from geometry.damage.crack import check_apart, crack_path, start_arc
+from geometry.damage.front import crack_in_band, open_part
 from geometry.mesh.outline import stations
 from geometry.mesh.section_mesh import section
 from geometry.tooth.profile import cartesian, root_curve

@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.pit import centre_arc, check_pits, crossing, intervals, lost_width, pit_row, rolls, takes_all, union_length
+from geometry.damage.hollow import centre_arc, check_hollows, intervals, lost_width, rolls, takes_all, union_length
+from geometry.damage.pit import pit_row
 from geometry.tooth.profile import arc_at
 
 GEAR = gf.Gear(z=21, m_n=2.0, alpha_n=math.radians(20), b=20.0, r_bore=7.4)
@@ -43,7 +44,7 @@ def test_pits_over_the_tip_and_the_end_face_lose_what_is_not_there():
     at_tip = gf.Pit(**GOOD | {"radius": GEAR.r_a})
     assert_allclose(removed(GEAR, at_tip), math.pi * 0.4 / 2, rtol=1e-8)
     assert_allclose(rolls(GEAR, at_tip)[1], GEAR.roll_a, rtol=1e-12)
-    check_pits(GEAR, [at_end, at_tip])
+    check_hollows(GEAR, [at_end, at_tip])
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -76,7 +77,7 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
     t = (np.arange(200_000) + 0.5) / 200_000
     at, z = arc_at(gear, roll[0] + (roll[1] - roll[0]) * t), 20.0 * t
     low, high = intervals(gear, [pit], at)
-    found = crossing(gear, pit, roll, (0.0, 20.0))
+    found = pit.crossing(gear, roll, (0.0, 20.0))
     assert_allclose(sum(b - a for a, b in found), ((low < z) & (z < high)).mean(), atol=2e-5)
 
 
@@ -84,9 +85,9 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
 def test_crossing_of_upright_lines_is_the_lost_width(lean):
     pit = gf.Pit(**GOOD | {"angle": 0.4})
     roll = rolls(GEAR, pit).mean()
-    found = crossing(GEAR, pit, (roll - lean, roll + lean), (0.0, GEAR.b))
+    found = pit.crossing(GEAR, (roll - lean, roll + lean), (0.0, GEAR.b))
     assert_allclose(sum(b - a for a, b in found) * GEAR.b, lost_width(GEAR, [pit], arc_at(GEAR, roll)), rtol=1e-7)
-    assert crossing(GEAR, pit, (GEAR.roll_a, GEAR.roll_a), (0.0, GEAR.b)) == []
+    assert pit.crossing(GEAR, (GEAR.roll_a, GEAR.roll_a), (0.0, GEAR.b)) == []
 
 
 @pytest.mark.parametrize(
@@ -121,14 +122,9 @@ def test_contradictory_pits_are_refused(numbers, message):
     ],
 )
 def test_pits_beside_the_flank_are_refused(numbers, message):
-    check_pits(GEAR, [gf.Pit(**GOOD)])
+    check_hollows(GEAR, [gf.Pit(**GOOD)])
     with pytest.raises(ValueError, match=message):
-        check_pits(GEAR, [gf.Pit(**GOOD | numbers)])
-
-
-def test_something_else_is_no_pit():
-    with pytest.raises(ValueError, match="is not a Pit"):
-        check_pits(GEAR, [gf.Crack(level=0.3)])
+        check_hollows(GEAR, [gf.Pit(**GOOD | numbers)])
 
 
 def test_a_pit_larger_than_its_flank_takes_all_of_it():

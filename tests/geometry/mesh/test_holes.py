@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.pit import centre_arc
-from geometry.damage.pit_volume import pit_frame, removed_volume
+from geometry.damage.hollow import centre_arc
+from geometry.damage.hollow_volume import hollow_frame, removed_volume
 from geometry.mesh import holes
 from geometry.mesh.holes import filled, holed_sector
 from geometry.tooth.profile import cartesian, flank, flank_normal, roll_at_arc
@@ -66,7 +66,7 @@ def test_pits_are_cut_along_the_normal_of_the_helicoid(beta, side):
     along = [surface(roll + a, one.z + b) - surface(roll - a, one.z - b) for a, b in ((step, 0), (0, step))]
     normal = np.cross(*along)
     normal *= np.sign(normal[0] * sign * math.cos(gear.twist_rate * one.z)) / np.linalg.norm(normal)
-    centre, _, push, _ = pit_frame(gear, one)
+    centre, _, push, _ = hollow_frame(gear, one)
     ends = [holes._twisted(centre + step * k * push, gear.twist_rate) for k in (-1, 1)]
     assert_allclose((ends[1] - ends[0]) / (2 * step), -one.depth * normal, atol=1e-8)
 
@@ -160,8 +160,8 @@ def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
     """Tools that miss the tooth, are too short or are beside their place: no error of gmsh, but the volume is wrong."""
     tool = holes.tool
 
-    def wrong(gear, one):
-        centre, axes, push = tool(gear, one)
+    def wrong(gear, one, squeeze):
+        centre, axes, push = tool(gear, one, squeeze)
         if fault == "no cut":
             return centre - 2 * push, axes, push
         return (centre, axes, 0.9 * push) if fault == "shallow" else (centre + np.array([0.0, 0.02, 0.0]), axes, push)

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import gearfe as gf
 from gearfe.energy.closed.slices import faces, stations
-from geometry.damage.pit import lost_width
+from geometry.damage.hollow import lost_width
 from geometry.pair.contacts import contacts
 from geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
 from geometry.tooth.profile import arc_at

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from geometry.damage.pit import centre_arc
+from geometry.damage.hollow import centre_arc
 from geometry.pair.lines import bands_of, covered
 from geometry.pair.pit_lines import pit_line
 

@@ -1,0 +1,124 @@
+"""What takes contact away: hollows of constant depth, cut along the flank normal out of one flank, whatever their outline.
+
+An outline is described on the flank by u, the arc of the transverse profile from the hollow's centre (towards the tip), and w,
+the axial distance from its centre along the tooth trace. A kind of hollow (`Pit`) has `radius, z, depth, tooth, side` and
+
+- `axes`, `angle`: half extents [mm] along the profile and along the width before it is turned, and by how much [rad];
+- `reach`: half extents along the profile and along the width [mm];
+- ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
+  straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
+- ``drawn(axes)``: the half axes that a mesh generator draws it with; ``edge()``: its outline.
+"""
+
+import math
+
+import numpy as np
+
+from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
+
+
+def centre_arc(gear, hollow):
+    """Arc of the hollow's centre [mm], as `geometry.tooth.profile.arc_at` counts it."""
+    return gear.outward * (hollow.radius**2 - gear.r_b**2) / (2 * gear.r_b)
+
+
+def rolls(gear, hollow):
+    """Roll lengths [mm] of a hollow's ends nearest the root and nearest the tip, on the involute between form and tip circle."""
+    middle, reach = centre_arc(gear, hollow), hollow.reach[0]
+    low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
+    return roll_at_arc(gear, np.clip([middle - reach, middle + reach], low, high))
+
+
+def breaks(gear, hollow):
+    """Roll lengths [mm] between which the section that a hollow leaves is smooth, in short parts."""
+    return np.linspace(*rolls(gear, hollow), 7)
+
+
+def profile(gear, hollow):
+    """Part of the profile ``(2, n)`` [mm] that a hollow takes, in the frame of its tooth, on the loaded side."""
+    return cartesian(*flank(gear, np.linspace(*rolls(gear, hollow), 9)))
+
+
+def flank_edge(gear, hollow):
+    """Heights [mm] and radii [mm] of a hollow's outline."""
+    u, w = hollow.edge()
+    return hollow.z + w, np.hypot(gear.r_b, roll_at_arc(gear, centre_arc(gear, hollow) + u))
+
+
+def takes_all(gear, hollow):
+    """Whether a hollow takes its whole flank: all four corners of it lie within the outline."""
+    u = arc_at(gear, np.array([gear.roll_f, gear.roll_a])) - centre_arc(gear, hollow)
+    w = np.array([0.0, gear.b]) - hollow.z
+    return bool(hollow.covers(u, w[:, None]).all())
+
+
+def doubts(gear, hollow, size):
+    """What to warn of when a hollow of a `size` in words meets its gear; empty if nothing."""
+    if not takes_all(gear, hollow):
+        return ""
+    return (
+        f"{hollow.nouns[0]} with {size} mm takes the whole flank of z = {gear.z}: nothing of it is left to carry, but the "
+        f"{hollow.nouns[0]}'s floor, {hollow.depth:g} mm lower; lengths are in mm"
+    )
+
+
+def check_hollows(gear, hollows):
+    """Raise ValueError for a hollow whose centre is off the flank, or that is as deep as half the tooth where it lies.
+
+    Hollows may cross the tip edge and the end faces, and may overlap; what reaches below the form circle is not on the flank and
+    is left out.
+    """
+    for one in hollows:
+        noun = one.nouns[0]
+        low, high = sorted((gear.r_form, gear.r_a))
+        if not low <= one.radius <= high:
+            raise ValueError(
+                f"{noun} at radius = {one.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
+                f"put the {noun}'s centre there"
+            )
+        if not 0 <= one.z <= gear.b:
+            raise ValueError(f"{noun} at z = {one.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
+        radius, angle = flank(gear, rolls(gear, one)[1])
+        half = float(radius * math.sin(angle))
+        if one.depth >= half:
+            raise ValueError(
+                f"{noun} of depth = {one.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
+                "upper end: make it shallower or put it nearer the root"
+            )
+
+
+def intervals(gear, hollows, arc):
+    """Axial intervals the hollows take from the flank at profile arcs `arc`.
+
+    Parameters
+    ----------
+    gear : Gear
+    hollows : sequence of Pit
+    arc : ndarray
+        As of `geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
+
+    Returns
+    -------
+    low, high : ndarray, shape (hollows, *arc.shape)
+        Ends [mm] within 0..b, equal where the hollow takes nothing.
+    """
+    arc = np.asarray(arc, dtype=float)
+    low, high = np.zeros((2, len(hollows), *arc.shape))
+    for k, one in enumerate(hollows):
+        low[k], high[k] = (np.clip(end, 0, gear.b) for end in one.span(arc - centre_arc(gear, one)))
+    return low, high
+
+
+def union_length(low, high):
+    """Length covered by intervals ``[low, high]`` along the first axis, overlaps counted once; ``low <= high``."""
+    if len(low) == 0:
+        return np.zeros(np.shape(low)[1:])
+    order = np.argsort(low, axis=0, kind="stable")
+    low, high = np.take_along_axis(low, order, axis=0), np.take_along_axis(high, order, axis=0)
+    before = np.concatenate([low[:1], np.maximum.accumulate(high, axis=0)[:-1]])
+    return np.maximum(high - np.maximum(low, before), 0.0).sum(axis=0)
+
+
+def lost_width(gear, hollows, arc):
+    """Width [mm] the hollows of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
+    return union_length(*intervals(gear, hollows, arc))

@@ -1,0 +1,76 @@
+"""All kinds of damage, and what is asked of them together; a new kind is a class and a word in `Damage`.
+
+Damage acts in two ways, `split`: a crack weakens the body it runs into; a pit takes contact away (and with it a little material,
+which plain sums and holes in meshes see). Each kind has `tooth`, `through` (it is the same in every transverse section),
+`removes_contact`, `nouns` (one, several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it in the
+section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from types import UnionType
+from typing import Any, get_args
+
+from ..tooth.gear import Gear
+from .crack import Crack
+from .pit import Pit
+
+Damage = Crack | Pit
+NAMES = [kind.__name__ for kind in get_args(Damage)]
+
+
+def are(given: object, kind: type | UnionType = Damage) -> bool:
+    """Whether it is a list or tuple of damage, or of one `kind` of it."""
+    return isinstance(given, (list, tuple)) and all(isinstance(one, kind) for one in given)
+
+
+def check_crack(crack: object) -> None:
+    """Raise ValueError unless it is a `Crack`."""
+    if not are((crack,), Crack):
+        raise ValueError(f"crack = {crack!r}, but give a Crack")
+
+
+def listed(given: Damage | Sequence[Damage] | None, what: str) -> list[Damage]:
+    """Damage of one gear as a list: given as one, as a list or tuple of them, or None.
+
+    Raises
+    ------
+    ValueError
+        If something is no damage; the message begins with `what`.
+    """
+    if isinstance(given, Damage):
+        return [given]
+    if not isinstance(given or (), (list, tuple)):
+        raise ValueError(f"{what}: {given!r}, but give a {', a '.join(NAMES)} or a list of them")
+    for one in given or ():
+        if not isinstance(one, Damage):
+            raise ValueError(f"{what}: {one!r} is neither a {' nor a '.join(NAMES)}")
+    return list(given or ())
+
+
+def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+    """What weakens the body, and what takes contact away: two tuples."""
+    found = tuple(damage)
+    weakens, removes = (tuple(one for one in found if one.removes_contact is there) for there in (False, True))
+    return weakens, removes
+
+
+def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> str:
+    """Damage of gears in words: one of a kind says its size, of several there is the number."""
+    found: dict[str, list[str]] = {}
+    for side, own in damage.items():
+        for one in own:
+            found.setdefault(one.nouns[1], []).append(one.told(gears[side]))
+    order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in found]
+    return " and ".join(found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order)
+
+
+def called(damage: Iterable[Damage]) -> str:
+    """What a tooth with such damage is called: cracked, pitted, or damaged if it is more than one of these."""
+    words = {one.called for one in damage}
+    return words.pop() if len(words) == 1 else "damaged"
+
+
+def why_wide(damage: Sequence[Damage]) -> str:
+    """Which damage no transverse section shows, because it changes along the width; empty if none does."""
+    nouns = {one.nouns[1] for one in damage if not one.through}
+    return next((f"{kind.nouns[1]} change along the width" for kind in get_args(Damage) if kind.nouns[1] in nouns), "")
