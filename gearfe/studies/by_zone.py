@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geometry.damage.crack import Crack
 from geometry.damage.pit import Pit
+from geometry.mesh.mesher import gmsh_session
 from geometry.pair.gear_pair import GearPair
 
 from ..markdown import table_row
@@ -225,8 +226,10 @@ def compare(
         shape = {"face": chosen.face, "groove": chosen.groove}
         phases, cycle = engaged_phases(*which, **shape), damage_phases(*which, **shape)
     run |= {"phases": phases, "span": "cycle"}
-    for method in methods:  # imports are no part of its seconds
+    for method in methods:  # what they and gmsh load is no part of their seconds
         METHODS[method].load()
+    with gmsh_session():
+        pass
     curves: dict[str, StiffnessCurve] = {}
     seconds, healthy, doubt = {}, {}, {}
     work = (*methods, ESTIMATE, *([HEALTHY] if case else []))
