@@ -2,7 +2,6 @@
 
 import math
 import os
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,21 +11,19 @@ from numpy.typing import NDArray
 from geometry.mesh.outline import stations
 from geometry.mesh.relieved import relieved
 from geometry.mesh.section_mesh import section
-from geometry.pair.flanks import flank_forms
-from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import flank_contacts
-from geometry.tooth.modified import Flank
 from geometry.tooth.profile import arc_at
 
+from ..case import Case
 from ..elements.elasticity import edge_nodes
 from ..elements.fe import EDGES
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
-from ..material import Material
 from .deck import element_nodes, held_nodes
+from .pressing import Pressing
 
 TIP = 0.005  # longest edge at a tip corner that may touch [m_n]: pressure ends there steeply
-PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
+SECTION = 8.0  # edges per Hertz half width
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,35 +65,22 @@ def read_rows(path: str | os.PathLike[str]) -> dict[int, tuple[float, float, flo
     return found
 
 
-def write_contact_section(
-    path: str | os.PathLike[str],
-    pair: GearPair,
-    phase: float,
-    approach: float,
-    line_load: float,
-    materials: tuple[Material, Material],
-    *,
-    pose: str = "mean",
-    flanks: Mapping[str, Flank] | None = None,
-    per_width: float = 8.0,
-    penalty: float = 500.0,
-    refine: float = 1.0,
-) -> ContactDeck:
+def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> ContactDeck:
     """The deck of `gearfe.decks.contact_inp.write_contact_inp` in plane strain; TIP edges at the tip corner that touches."""
-    gears, forms = (pair.gear_1, pair.gear_2), flank_forms(pair, flanks)
+    pair, materials, forms = case.pair, case.materials, case.forms
+    gears, line_load = (pair.gear_1, pair.gear_2), case.forces[0] / min(pair.gear_1.b, pair.gear_2.b)
     found = flank_contacts(pair, [phase], flanks=forms)
     near = np.flatnonzero(found.gap[0] < 1.5 * approach)
     order = found.order[near]
     rolls = found.roll_1[0, near], found.roll_2[0, near]
     widths = half_width(line_load, found.radius[0, near], contact_modulus(materials))
     bodies = [
-        _meshed(gear, sense * order, arc_at(gear, roll), widths, per_width, refine)
+        _meshed(gear, sense * order, arc_at(gear, roll), widths, how.per_width or SECTION, how.refine)
         for gear, roll, sense in zip(gears, rolls, (1, -1), strict=True)
     ]
     if forms is not None:
         bodies = [relieved(body, form, order, sense) for body, form, sense in zip(bodies, forms, (1, -1), strict=True)]
-    part = PINION[pose]
-    turned = [part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b]
+    turned = how.turned(pair, approach)
     turns = pair.turn(found.nominal[0, near[0]] - order[0] * pair.p_bt)
     lines = ["** gearfe: gear pair in contact, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
     blocks, ends, held, place, first, element = [], [], [], [], 0, 0
@@ -120,7 +104,7 @@ def write_contact_section(
         for n, u, v in zip(held[-1], *moved, strict=True):
             ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}"]
         first, element = first + x.size, element + nodes.shape[1]
-    stiff = penalty * max(m.E for m in materials)
+    stiff = how.penalty * max(m.E for m in materials)
     contact = [f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiff:.6e}"]
     for k in range(order.size):
         pinion_slave = abs(rolls[1][k] - pair.gear_2.roll_a) > 1e-9 * pair.gear_2.m_n

@@ -1,42 +1,28 @@
 """`write_contact_inp`: a gear pair in nonlinear contact for CalculiX, its section or the whole width."""
 
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
-from geometry.damage.kinds import Damage
-from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank
 
+from ..case import Case, case_of
 from ..files import suffix_of
 from ..material import Material
-from .contact_deck import PINION, ContactDeck, write_contact_section
-from .contact_solid import PITS, write_contact_solid
+from .contact_deck import ContactDeck, write_contact_section
+from .contact_solid import write_contact_solid
+from .pressing import Pressing
 
-SIDES = ("pinion", "wheel")
-SECTION, SOLID = 8.0, 1.5  # edges per Hertz half width
+GIVEN = ("face", "damage", "flanks", "misalignment")  # of a case
 
 
 def write_contact_inp(
     path: str | os.PathLike[str],
-    pair: GearPair,
+    pair: GearPair | Case,
     phase: float,
     approach: float,
-    line_load: float,
-    materials: tuple[Material, Material],
-    *,
-    face: str | None = None,
-    damage: Mapping[str, Sequence[Damage]] | None = None,
-    pits: str = "cut",
-    pose: str = "mean",
-    flanks: Mapping[str, Flank] | None = None,
-    misalignment: Misalignment | None = None,
-    per_width: float | None = None,
-    layers: int = 3,
-    penalty: float = 500.0,
-    refine: float = 1.0,
+    line_load: float | None = None,
+    materials: tuple[Material, Material] | None = None,
+    **options: Any,
 ) -> ContactDeck:
     """Write a deck that turns the bores of a pair against each other by `approach` along the line of action.
 
@@ -55,14 +41,16 @@ def write_contact_inp(
     ----------
     path : path
         Ends in ``.inp``.
-    pair : GearPair
+    pair : GearPair or Case
     phase : float
         Of the section; with `face`, as in three dimensions everywhere, of the end face that touches first.
     approach : float
         Turn of the pinion forward and of the wheel backward, together, as a length on the line of action [mm].
     line_load : float
-        Expected load per width [N/mm]; decides where the flanks are refined.
+        Expected load per width [N/mm]; decides where the flanks are refined. Of a `Case` leave it and the materials out.
     materials : (Material, Material)
+    **options
+        As below.
     face : {"spur", "helical"}, optional
         Three dimensions.
     damage : dict, optional
@@ -99,39 +87,27 @@ def write_contact_inp(
         If elements of the mesh fold, where CalculiX would stop.
     """
     suffix_of(path, "deck")
-    if pose not in PINION:
-        raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(PINION)}")
+    given = {name: options.pop(name) for name in GIVEN if name in options}
+    how = Pressing(**options)
+    if not isinstance(pair, Case):
+        force = None if line_load is None else line_load * min(pair.gear_1.b, pair.gear_2.b)
+        case = case_of(pair, force, materials, **given)
+    else:
+        case = case_of(pair, **given)
     if not approach > 0:
         raise ValueError(f"approach = {approach} mm, but the gears are pressed together: give approach > 0")
-    rest: dict[str, Any] = {"pose": pose, "penalty": penalty, "refine": refine}
-    if face is None:
-        if damage:
+    if case.face is None:
+        if case.damaged:
             raise ValueError("damage of a section's deck, which has none: give face = 'spur' or 'helical' for three dimensions")
-        if any(form.wide for form in flank_forms(pair, flanks, misalignment) or ()):
+        if any(form.wide for form in case.forms or ()):
             raise ValueError(
                 "flanks that change along the width, or misalignment, of a section, which knows no width: give face = 'spur' "
                 "or 'helical' for three dimensions"
             )
-        return write_contact_section(
-            path, pair, phase, approach, line_load, materials, flanks=flanks, per_width=per_width or SECTION, **rest
-        )
-    if face not in ("spur", "helical") or (face == "spur") == bool(pair.gear_1.beta):
-        raise ValueError(f"face = {face!r} of gears with beta = {pair.gear_1.beta:g} rad: give 'spur' or 'helical' as they are")
-    if pits not in PITS:
-        raise ValueError(f"pits = {pits!r}, but it must be one of {', '.join(PITS)}")
-    if pits != "cut" and not any(one.removes_contact for own in (damage or {}).values() for one in own):
-        raise ValueError(f"pits = {pits!r}, but there is no pit in damage: give pits, which the mesh follows")
-    rest |= {"damage": damage_by_gear(damage), "pits": pits, "forms": flank_forms(pair, flanks, misalignment)}
-    return write_contact_solid(
-        path, pair, phase, approach, line_load, materials, per_width=per_width or SOLID, layers=layers, **rest
-    )
-
-
-def damage_by_gear(damage: Mapping[str, Sequence[Damage]] | None) -> tuple[tuple[Damage, ...], tuple[Damage, ...]]:
-    """Damage of pinion and wheel with the teeth numbered in each gear's own frame, the wheel's against the pairs."""
-    given = dict(damage or {})
-    unknown = set(given) - set(SIDES)
-    if unknown:
-        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for {' and '.join(SIDES)}")
-    pinion, wheel = (tuple(given.get(side, ())) for side in SIDES)
-    return pinion, tuple(replace(one, tooth=-one.tooth) for one in wheel)
+        return write_contact_section(path, case, phase, approach, how)
+    if case.face == "herringbone" or (case.face == "spur") == bool(case.pair.gear_1.beta):
+        beta = case.pair.gear_1.beta
+        raise ValueError(f"face = {case.face!r} of gears with beta = {beta:g} rad: give 'spur' or 'helical' as they are")
+    if how.pits != "cut" and not any(case.pits):
+        raise ValueError(f"pits = {how.pits!r}, but there is no pit in damage: give pits, which the mesh follows")
+    return write_contact_solid(path, case, phase, approach, how)

@@ -2,14 +2,13 @@
 
 import math
 import os
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.damage.kinds import Damage, split
+from geometry.damage.kinds import split
 from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
 from geometry.mesh.relieved_solid import relieved_points
@@ -18,14 +17,14 @@ from geometry.pair.contacts import FORM, Contacts, contacts
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.modified import first_touch
 from geometry.tooth.gear import Gear
-from geometry.tooth.modified import FlankForm
 from geometry.tooth.profile import arc_at, cartesian, flank
 from geometry.tooth.side import on_fillet
 
+from ..case import Case
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
-from ..material import Material
-from .contact_deck import PINION, ContactDeck, _posed
+from .contact_deck import ContactDeck, _posed
+from .pressing import Pressing
 from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
@@ -36,7 +35,7 @@ RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for
 REACH = 1.5  # contacts whose gap is below so many approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
-PITS = ("cut", "lost", "filled")
+SOLID = 1.5  # edges per Hertz half width
 END = 1.0  # height of the layers at the end faces against that in between
 
 
@@ -113,9 +112,10 @@ def nominal_at(pair: GearPair, phase: float, z: NDArray[np.float64] | float) -> 
     return pair.path[0] + phase * pair.p_bt + slope * (np.asarray(z) - origin)
 
 
-def touching(pair: GearPair, phase: float, approach: float, line_load: float, materials, forms=None) -> Touching:
+def touching(case: Case, phase: float, approach: float) -> Touching:
     """Tooth pairs whose flanks meet within `REACH` approaches anywhere along the width, and where on the flanks."""
-    heights = np.linspace(0.0, min(pair.gear_1.b, pair.gear_2.b), SECTIONS)
+    pair, forms, common = case.pair, case.forms, min(case.pair.gear_1.b, case.pair.gear_2.b)
+    heights, modulus = np.linspace(0.0, common, SECTIONS), contact_modulus(case.materials)
     found = contacts(pair, (nominal_at(pair, phase, heights) - pair.path[0]) / pair.p_bt)
     if forms is not None:
         found = _modified(pair, found, heights, forms)
@@ -129,7 +129,7 @@ def touching(pair: GearPair, phase: float, approach: float, line_load: float, ma
         out.heights.append(heights[near])
         out.rolls[0].append(rolls[0])
         out.rolls[1].append(rolls[1])
-        out.width.append(float(half_width(line_load, float(found.radius[near, k].max()), contact_modulus(materials))))
+        out.width.append(float(half_width(case.forces[0] / common, float(found.radius[near, k].max()), modulus)))
         corners = [np.isin(found.corner[near, k], own).any() for own in ((1, 3), (2, 4))]  # a corner of pinion or wheel
         out.slave.append(int(corners[1] and not corners[0]))
         for number, gear in enumerate((pair.gear_1, pair.gear_2)):
@@ -147,44 +147,28 @@ def _modified(pair, found, heights, forms):
     return Contacts(found.order, found.nominal, *(np.stack(values, axis=-1) for values in zip(*touches, strict=True)))
 
 
-def write_contact_solid(
-    path: str | os.PathLike[str],
-    pair: GearPair,
-    phase: float,
-    approach: float,
-    line_load: float,
-    materials: tuple[Material, Material],
-    *,
-    damage: tuple[Sequence[Damage], Sequence[Damage]] = ((), ()),
-    pits: str = "cut",
-    forms: tuple[FlankForm, FlankForm] | None = None,
-    pose: str = "mean",
-    per_width: float = 1.0,
-    layers: int = 3,
-    penalty: float = 500.0,
-    refine: float = 1.0,
-) -> SolidDeck:
-    """The deck of `contact_inp.write_contact_inp` for gears of finite width; `damage` with teeth in each gear's own frame.
+def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
+    """The deck of `contact_inp.write_contact_inp` for gears of finite width.
 
-    `pits` is what becomes of them: ``cut`` out, their contact ``lost`` with the material left, or ``filled``, as if not there.
-
-    `forms` are the modified flanks of both, which the nodes lie on (`geometry.mesh.relieved_solid`); axes askew are among them.
+    Nodes lie on modified flanks (`geometry.mesh.relieved_solid`); axes askew are among them.
     """
+    pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)
-    found = touching(pair, phase, approach, line_load, materials, forms)
+    found = touching(case, phase, approach)
     parts = []
+    damage = [(*cracks, *pits) for cracks, pits in zip(case.cracks, case.pits, strict=True)]
     for number, own in enumerate(damage):
         gear = (pair.gear_1, replace(pair.gear_2, beta=-pair.gear_1.beta))[number]
         low = -(gear.b - common) / 2
         teeth = [(1, -1)[number] * order % gear.z for order in found.order]
         if any(one.removes_contact for one in (own or damage[1 - number])):  # loads change quickly along the width on both
-            cut = [_strip(gear, found, number, k, tooth, low, per_width * refine) for k, tooth in enumerate(teeth)]
-            body = _holed(gear, own, cut, refine, pits)
+            cut = [_strip(gear, found, number, k, tooth, low, fineness) for k, tooth in enumerate(teeth)]
+            body = _holed(gear, own, cut, how)
         else:
-            patches = {tooth: [_patch(gear, found, number, k, per_width * refine)] for k, tooth in enumerate(teeth)}
-            fine = [(z, z, END * gear.b / layers) for z in (0.0, gear.b)]
-            options = {"layer": gear.b / layers, "loaded": teeth, "patches": patches, "fine": fine}
-            made = solid(gear, cracks=tuple(own), refine=refine, sizes=SIZES, **options)
+            patches = {tooth: [_patch(gear, found, number, k, fineness)] for k, tooth in enumerate(teeth)}
+            fine = [(z, z, END * gear.b / how.layers) for z in (0.0, gear.b)]
+            options = {"layer": gear.b / how.layers, "loaded": teeth, "patches": patches, "fine": fine}
+            made = solid(gear, cracks=tuple(own), refine=how.refine, sizes=SIZES, **options)
             body = part_of(made)
             body = replace(body, faces=body.faces | {f"fillet {tooth}": faces[:4] for tooth, faces in made.fillets.items()})
         if forms is not None:
@@ -194,14 +178,13 @@ def write_contact_solid(
         x, y = _posed(body.points[:2], turn, mirror)
         place = np.array([x, y + (0.0, pair.centre_2)[number], body.points[2] + low])
         parts.append(placed(body, place, mirrored=mirror < 0))
-    share = PINION[pose]
-    turned = (share * approach / pair.gear_1.r_b, pair.outward * (1 - share) * approach / pair.gear_2.r_b)
+    turned = how.turned(pair, approach)
     slaves = {}
     for k, order in enumerate(found.order):
         side = found.slave[k]
         slaves[order] = side, _faces(pair, parts[side], found, side, k)
     with written(path) as name:
-        Path(name).write_text("\n".join(_text(pair, parts, materials, found, turned, penalty)), encoding="ascii")
+        Path(name).write_text("\n".join(_text(case, parts, found, turned, how.penalty)), encoding="ascii")
     starts = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
     centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
@@ -232,8 +215,8 @@ def _strip(gear, found, number, k, tooth, low, per_width):
     return line, 1.5 * found.width[k], found.width[k] / per_width
 
 
-def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
-    """A whole gear in tets, its pits cut out or not (`PITS`), if it has some; its damaged tooth is tooth 0 while it is meshed."""
+def _holed(gear: Gear, damage, strips, how) -> Part:
+    """A whole gear in tets, its pits cut out or not, if it has some; its damaged tooth is tooth 0 while it is meshed."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
@@ -241,11 +224,11 @@ def _holed(gear: Gear, damage, strips, refine, pits) -> Part:
     turn = 2 * math.pi * tooth / gear.z
     own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     least = min((min(pit.axes) for pit in holes), default=1.0)
-    rim = RIM * refine * min(size for *_, size in strips) / least
+    rim = RIM * how.refine * min(size for *_, size in strips) / least
     sizes = TETS | {"rim": min(rim, HOLES["rim"])}
-    made = holed_sector(gear, holes, *cracks, teeth=None, refine=refine, sizes=sizes, strips=own, stretch=STRETCH)
-    body = holed_part(made if pits == "cut" else filled(made, teeth=None), own)
-    if pits == "lost":
+    made = holed_sector(gear, holes, *cracks, teeth=None, refine=how.refine, sizes=sizes, strips=own, stretch=STRETCH)
+    body = holed_part(made if how.pits == "cut" else filled(made, teeth=None), own)
+    if how.pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
     points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
     faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
@@ -268,7 +251,8 @@ def _from_centre(pair, part, number):
     return part.points[:2, part.held] - [[0.0], [(0.0, pair.centre_2)[number]]]
 
 
-def _text(pair, parts, materials, found, turned, penalty):
+def _text(case, parts, found, turned, penalty):
+    pair, materials = case.pair, case.materials
     yield "** gearfe: gear pair of finite width in contact; mm, N, MPa"
     yield "*NODE, NSET=ALL"
     first, element, ends = 0, 0, []

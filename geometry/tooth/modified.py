@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 from .gear import Gear
 from .lead import LeadForm, checked_topography, two_ends
 from .relief import STARTS, relief_start
-from .tables import each_tooth, numbers, table, worn
+from .tables import covering, each_tooth, numbers, table, worn
 from .tip_edge import TipEdge
 
 LISTS = ("table", "topography", "pitch", "wear", "tooth_scale")
@@ -206,14 +206,7 @@ class FlankForm:
         self._worn = None if flank.wear is None else PchipInterpolator(*flank.wear)
         self._spline = None
         if flank.table is not None:
-            rolls, amounts = np.array(flank.table)
-            least, most = sorted((self.low, self.high))
-            if rolls[0] > least + 1e-6 * gear.m_n or rolls[-1] < most - 1e-6 * gear.m_n:
-                raise ValueError(
-                    f"table from {rolls[0]:.5g} to {rolls[-1]:.5g} mm of roll length does not cover the flank of z = {gear.z}: "
-                    f"{least:.5g} to {most:.5g} mm"
-                )
-            self._spline = PchipInterpolator(rolls, amounts)
+            self._spline = PchipInterpolator(*covering(flank.table, gear))
         self._shifts = each_tooth("pitch", flank.pitch, gear) * gear.r_b / gear.r
         self._scales = each_tooth("tooth_scale", flank.tooth_scale, gear)
         self._tooth: NDArray[np.int64] | None = None

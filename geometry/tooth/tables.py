@@ -45,3 +45,16 @@ def each_tooth(name: str, values: tuple[float, ...], gear: Gear) -> np.ndarray:
     if len(values) not in (0, gear.z):
         raise ValueError(f"{name} has {len(values)} values, but z = {gear.z}: give one for each tooth")
     return np.array(values)
+
+
+def covering(values: tuple, gear: Gear) -> np.ndarray:
+    """A table ``(2, n)`` of roll lengths and amounts [mm]; ValueError unless it covers the flank."""
+    found = np.array(values)
+    rolls = found[0]
+    least, most = sorted((gear.roll_f, gear.roll_a))
+    if rolls[0] > least + 1e-6 * gear.m_n or rolls[-1] < most - 1e-6 * gear.m_n:
+        raise ValueError(
+            f"table from {rolls[0]:.5g} to {rolls[-1]:.5g} mm of roll length does not cover the flank of z = {gear.z}: "
+            f"{least:.5g} to {most:.5g} mm"
+        )
+    return found

@@ -1,0 +1,29 @@
+"""`Pressing`: how finely a pair in contact is meshed for CalculiX, and how its gears are pressed together."""
+
+from dataclasses import dataclass
+
+PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
+PITS = ("cut", "lost", "filled")
+
+
+@dataclass(frozen=True, slots=True)
+class Pressing:
+    """Options of `gearfe.decks.contact_inp.write_contact_inp`, which says what they are."""
+
+    pits: str = "cut"
+    pose: str = "mean"
+    per_width: float | None = None
+    layers: int = 3
+    penalty: float = 500.0
+    refine: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is unknown."""
+        for name, known in (("pose", PINION), ("pits", PITS)):
+            if getattr(self, name) not in known:
+                raise ValueError(f"{name} = {getattr(self, name)!r}, but it must be one of {', '.join(known)}")
+
+    def turned(self, pair, approach):
+        """Angles by which the bores of pinion and wheel are turned for an approach [mm]."""
+        part = PINION[self.pose]
+        return part * approach / pair.gear_1.r_b, pair.outward * (1 - part) * approach / pair.gear_2.r_b
