@@ -9,6 +9,7 @@ from geometry.tooth.gear import Gear as Gear
 from geometry.tooth.modified import Flank as Flank
 from geometry.tooth.pitch import random_pitch as random_pitch
 
+from .case import Case as Case
 from .decks.contact_inp import write_contact_inp as write_contact_inp
 from .decks.deck import write_inp as write_inp
 from .decks.line_deck import write_line_inp as write_line_inp
@@ -118,7 +119,9 @@ from .signal.time_frequency import spectrogram as spectrogram
 from .stiffness.curve import StiffnessCurve as StiffnessCurve
 from .stiffness.own_flexibility import OwnFlexibility as OwnFlexibility
 from .stiffness.pattern import contact_pattern as contact_pattern
+from .stiffness.solve import Solve as Solve
 from .stiffness.solve import mesh_stiffness as mesh_stiffness
+from .stiffness.solve import solve as solve
 from .stiffness.topography_file import read_topography as read_topography
 from .stiffness.transmission_error import TransmissionError as TransmissionError
 from .stiffness.transmission_error import transmission_error as transmission_error

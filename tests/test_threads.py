@@ -7,6 +7,7 @@ import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
 import gearfe as gf
+from gearfe.stiffness.phases import phase_array
 from gearfe.threads import CHOSEN, one_thread, single
 
 
@@ -87,7 +88,7 @@ def test_an_error_gives_the_threads_back_and_large_matrices_keep_them(two):
 
 def test_a_curve_is_solved_by_one_thread(two, monkeypatch):
     seen = []
-    monkeypatch.setattr("gearfe.stiffness.solve.choose", lambda *_: (seen.append(counts()), ("textbook", "asked for"))[1])
+    monkeypatch.setattr("gearfe.stiffness.solve.phase_array", lambda *given: (seen.append(counts()), phase_array(*given))[1])
     pair = gf.GearPair(*(gf.Gear(z=z, m_n=2.0, alpha_n=radians(20), b=20.0, r_bore=7.0) for z in (21, 31)))
     gf.mesh_stiffness(pair, 1000.0, gf.Material(E=207e3, nu=0.3), method="textbook", phases=4)
     assert seen == [{1}]

@@ -15,6 +15,7 @@ from scipy.interpolate import PchipInterpolator
 
 from geometry.pair.gear_pair import GearPair
 
+from ..case import Case
 from ..material import Material
 from ..stiffness.curve import StiffnessCurve, joined
 from ..stiffness.solve import asked, solve
@@ -234,9 +235,9 @@ def _secant(deep, tangent, pairs, load, depth):
 
 
 def force_law(
-    pair: GearPair,
+    pair: GearPair | Case,
     forces: Sequence[float] | NDArray[np.float64],
-    material: Material | tuple[Material, Material],
+    material: Material | tuple[Material, Material] | None = None,
     *,
     force: float | None = None,
     phases: int = 128,

@@ -12,7 +12,7 @@ from ..markdown import table_cells
 from ..scene.load import Scene, scene_names
 from ..steps import part
 from ..stiffness.methods import METHODS
-from ..stiffness.provenance import provenance
+from ..stiffness.provenance import versions
 from ..stress.render import enlarged, render_stress, rounded_up
 from ..studies.told_scene import told_details, told_load, told_supports
 from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
@@ -69,7 +69,7 @@ def report(
         found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
         pairs=_pairs(found, figures), pictures=pictures,
         tooth=_tooth(found, figures), vibration=_vibration(found, figures), methods=_methods(found),
-        versions=_versions(found), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
+        versions=versions(), duration=duration, seconds=found.seconds, total=time.perf_counter() - started,
         turning=(resources.files("gearfe.reports") / "page.js").read_text(encoding="utf-8"),
     )  # fmt: skip
 
@@ -198,8 +198,3 @@ def _command(found):
     """What was typed for the page, the file of a scene of one's own without its folder."""
     name = found.scene.name if found.scene.name in scene_names() else f"{found.scene.name}.toml"
     return f"gearfe report {name}{f' --case {found.case}' if found.case else ''} -o page.html"
-
-
-def _versions(found):
-    one = next(iter(found.scene.pairs.values()))
-    return provenance(one.pair, one.materials, "", {})["versions"]

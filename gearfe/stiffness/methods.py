@@ -14,9 +14,14 @@ To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in
 
 from dataclasses import dataclass, replace
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..threads import loading
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..case import Case
 
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
@@ -86,19 +91,19 @@ class Method:
     own: Any = None
 
     @property
-    def brute(self):
+    def brute(self) -> bool:
         """Whether it is finite elements of whole gears in three dimensions, whose matrices are large."""
         return self.kind == "solid" and self.kept == "disk"
 
-    def load(self):
+    def load(self) -> Any:
         """The function, or for a sum the module, that computes it."""
         return _loaded(self.home)
 
-    def refuses(self, case, how):
+    def refuses(self, case: "Case", how: Any) -> None:
         """Raise ValueError for what the method does not model of a `Case`, or has no option for (`gearfe.stiffness.refusals`)."""
         _loaded("gearfe.stiffness.refusals:refuses")(self, case, how)
 
-    def curves(self, case, how, phase):
+    def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
         """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
 
         Parameters

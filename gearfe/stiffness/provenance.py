@@ -32,8 +32,13 @@ def provenance(case, method, options):
         + ("hubs on supports" if on_supports else "bores held"),
         **options,
         **said,
-        "versions": {name: _version(name) for name in VERSIONS},
+        "versions": versions(),
     }
+
+
+def versions():
+    """Versions of gearfe and of the libraries it computes with, by name."""
+    return {name: _version(name) for name in VERSIONS}
 
 
 def damage_of(case):

@@ -57,7 +57,7 @@ def solid_curves(row, case, how, phase):
     meta = provenance(case, row.name, written | ({"order": order} if row.order else {}))
     bodies = _bodies(how) if row.brute else energy_bodies(order, refine=how.refine, cache=how.cache)
     options = {"bodies": bodies, "extended": how.extended, "cache": how.cache}
-    with part(row.name, 0.0, 0.6 if how.error else 1.0):
+    with part(row.name, 0.0, 1.0), part("contact", 0.0, 0.6 if how.error else 1.0):
         found = pair_stiffness3d(replace(case, force=case.forces), phase, error=how.error, **options)
     own = {"dofs": list(found[0].dofs), "seconds_contact": time.perf_counter() - started}
     curves = [_curve(one, meta | {"force_N": force} | own, case) for force, one in zip(case.forces, found, strict=True)]

@@ -212,7 +212,7 @@ def mesh_stiffness(
 ) -> list[StiffnessCurve]: ...
 
 
-def mesh_stiffness(pair, force=None, material=None, **options):
+def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = None, **options: Any) -> Any:
     """Mesh stiffness of a gear pair over one mesh cycle: a `Case` and a `Solve` in one call.
 
     ``k = F / delta``: F the force along the line of action, delta the loaded minus the unloaded transmission error as a
