@@ -264,7 +264,7 @@ const faint = (hex) => `${hex}38`;
 function traces() {
   const out = [], { curves, share } = shown;
   const old = pinned ? pinned.curves.map((one) => [one, "pin", "dot", `pinned, ${one.name}`]) : [];
-  for (const [one, tint, dash, name] of [...old, ...curves.map((one) => [one, ...KINDS[one.name], one.name])]) {
+  for (const [one, tint, dash, name] of [...old, ...curves.map((one) => [one, ...(KINDS[one.name] ?? KINDS.damaged), one.name])]) {
     const line = { color: colour(tint), dash, width: tint === "pin" ? 1.5 : 2.2 };
     if (one.error.length && tint !== "pin") {
       const sides = [1, -1].map((sign) => one.solved.map((k, i) => k / 1e6 + sign * one.error[i]));

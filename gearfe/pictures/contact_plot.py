@@ -59,7 +59,8 @@ def plot_contact(
     offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     for pit in pits:
         z, radius = flank_edge(pair.gear_1, pit)
-        label = {"label": f"{pit.nouns[1]}, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
+        nouns = " and ".join(dict.fromkeys(one.nouns[1] for one in pits))
+        label = {"label": f"{nouns}, on pair {pit.tooth:+d} only"} if pit is pits[0] else {}
         top.fill(z - offset, radius, facecolor="0.85", edgecolor="black", linewidth=0.9, zorder=1, **label)
     for limit, name in ((pair.gear_1.r_form, "form circle"), (pair.gear_1.r_a, "tip circle")):
         top.axhline(limit, color="gray", linewidth=0.8)

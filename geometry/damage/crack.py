@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from numbers import Integral, Real
+from numbers import Real
 from typing import ClassVar
 
 import numpy as np
@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from ..kept import keeping
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
+from .given import finite, tooth_and_side
 
 STARTS = ("30deg", "root", "middle")
 SLACK = 1e-9  # of the open part of a crack
@@ -80,11 +81,9 @@ class Crack:
         """Refuse contradictory descriptions."""
         for name in ("level", "length", "angle"):
             value = getattr(self, name)
-            if value is not None and (isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value)):
-                raise ValueError(f"{name} = {value!r}, but a crack needs a finite number here")
-        if isinstance(self.tooth, bool) or not isinstance(self.tooth, Integral):
-            raise ValueError(f"tooth = {self.tooth!r}, but it is a whole number")
-        object.__setattr__(self, "tooth", int(self.tooth))
+            if value is not None:
+                finite("crack", name, value)
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
         if (self.level is None) == (self.length is None):
             raise ValueError(f"level = {self.level}, length = {self.length}: give one of them")
         if self.level is not None and not 0 < self.level < 1:
@@ -97,8 +96,6 @@ class Crack:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
         if self.start not in STARTS:
             raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
-        if self.side not in ("loaded", "unloaded"):
-            raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
         if not isinstance(self.turning, bool):
             raise ValueError(f"turning = {self.turning!r}, but give True or False")
         if self.turning and self.length is not None:

@@ -7,7 +7,8 @@ the axial distance from its centre along the tooth trace. A kind of hollow (`Pit
 - `reach`: half extents along the profile and along the width [mm];
 - ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
   straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
-- ``drawn(axes)``: the half axes that a mesh generator draws it with; ``edge()``: its outline.
+- `kinks`: u and w (two tuples) where its outline is not smooth between its ends; ``edge()``: its outline;
+- ``drawn(centre, axes)``: its outline in space by curves, as `geometry.mesh.mesher.tetrahedra` takes them.
 """
 
 import math
@@ -24,19 +25,22 @@ def centre_arc(gear, hollow):
 
 def rolls(gear, hollow):
     """Roll lengths [mm] of a hollow's ends nearest the root and nearest the tip, on the involute between form and tip circle."""
-    middle, reach = centre_arc(gear, hollow), hollow.reach[0]
-    low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
-    return roll_at_arc(gear, np.clip([middle - reach, middle + reach], low, high))
+    return _at(gear, centre_arc(gear, hollow) + hollow.reach[0] * np.array([-1, 1]))
+
+
+def _at(gear, arcs):
+    """Roll lengths [mm] of arcs, or of the nearest one on the involute between form and tip circle."""
+    return roll_at_arc(gear, np.clip(arcs, arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)))
 
 
 def breaks(gear, hollow):
     """Roll lengths [mm] between which the section that a hollow leaves is smooth, in short parts."""
-    return np.linspace(*rolls(gear, hollow), 7)
+    return np.concatenate([np.linspace(*rolls(gear, hollow), 7), _at(gear, centre_arc(gear, hollow) + np.array(hollow.kinks[0]))])
 
 
 def profile(gear, hollow):
-    """Part of the profile ``(2, n)`` [mm] that a hollow takes, in the frame of its tooth, on the loaded side."""
-    return cartesian(*flank(gear, np.linspace(*rolls(gear, hollow), 9)))
+    """Part of the profile ``(2, n)`` [mm] that a hollow takes, in the frame of its tooth."""
+    return cartesian(*flank(gear, np.linspace(*rolls(gear, hollow), 9))) * [[1 if hollow.side == "loaded" else -1], [1]]
 
 
 def flank_edge(gear, hollow):

@@ -44,12 +44,20 @@ def _taken(gear, one, before):
     reach = np.array(one.reach) * 1.02 + 2 * spread + one.depth * abs(math.tan(gear.beta_b))
     low, high = max(centre_arc(gear, one) - reach[0], arc_at(gear, gear.roll_f)), centre_arc(gear, one) + reach[0]
     bottom, top = max(one.z - reach[1], 0.0), min(one.z + reach[1], gear.b)
-    s = low + (high - low) * (np.arange(GRID) + 0.5) / GRID
-    z = bottom + (top - bottom) * (np.arange(GRID) + 0.5) / GRID
+    s, ds = _places(low, high, centre_arc(gear, one) + np.array(one.kinks[0]))
+    z, dz = _places(bottom, top, one.z + np.array(one.kinks[1]))
     others = [other for other in before if other.side == one.side and abs(other.z - one.z) < 2 * (other.reach[1] + reach[1])]
     ranges = [_below(gear, hollow, s, z) for hollow in (*others, one)]
     lengths = [union_length(*np.array(part).transpose(1, 0, 2, 3)) for part in (ranges, ranges[:-1]) if part]
-    return (lengths[0] - (lengths[1] if len(lengths) > 1 else 0.0)).sum() * (high - low) * (top - bottom) / GRID**2
+    return ds @ (lengths[0] - (lengths[1] if len(lengths) > 1 else 0.0)) @ dz
+
+
+def _places(low, high, kinks):
+    """Places [mm] from `low` to `high` at which a function with kinks is summed up, and their weights [mm]."""
+    ends = np.unique(np.clip([low, *kinks, high], low, high))
+    count = -(-GRID // (ends.size - 1))
+    steps = np.repeat(np.diff(ends) / count, count)
+    return (np.repeat(ends[:-1], count) + steps * (np.tile(np.arange(count), ends.size - 1) + 0.5)), steps
 
 
 def _below(gear, one, s, z):

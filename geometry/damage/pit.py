@@ -3,13 +3,14 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from numbers import Integral, Real
+from numbers import Integral
 from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
+from .given import finite, tooth_and_side
 from .hollow import centre_arc, doubts, profile
 
 MOST = 5000  # pits in a row
@@ -61,6 +62,7 @@ class Pit:
     tooth: int = 0
     side: str = "loaded"
 
+    kinks: ClassVar[tuple[tuple[float, ...], tuple[float, ...]]] = (), ()
     nouns: ClassVar[tuple[str, str]] = ("pit", "pits")
     called: ClassVar[str] = "pitted"
     removes_contact: ClassVar[bool] = True
@@ -69,17 +71,15 @@ class Pit:
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
         for name in ("radius", "z", "depth", "angle"):
-            object.__setattr__(self, name, _number(name, getattr(self, name)))
+            object.__setattr__(self, name, finite("pit", name, getattr(self, name)))
         try:
             axes = tuple(self.axes)
         except TypeError:
             axes = ()
         if len(axes) != 2:
             raise ValueError(f"axes = {self.axes!r}, but give two semi-axes [mm]: along the profile, along the width")
-        object.__setattr__(self, "axes", tuple(_number("axes", value) for value in axes))
-        if isinstance(self.tooth, bool) or not isinstance(self.tooth, Integral):
-            raise ValueError(f"tooth = {self.tooth!r}, but it is a whole number")
-        object.__setattr__(self, "tooth", int(self.tooth))
+        object.__setattr__(self, "axes", tuple(finite("pit", "axes", value) for value in axes))
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
         for name, value in (("radius", self.radius), ("depth", self.depth), ("axes", min(self.axes))):
             if not value > 0:
                 raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
@@ -87,8 +87,6 @@ class Pit:
             raise ValueError(f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm: it is squared")
         if not abs(self.angle) <= math.pi:
             raise ValueError(f"angle = {self.angle} rad, but it must lie between -pi and pi; angles are radians in Python")
-        if self.side not in ("loaded", "unloaded"):
-            raise ValueError(f"side = {self.side!r}, but it must be 'loaded' or 'unloaded'")
 
     @property
     def form(self) -> tuple[float, float, float]:
@@ -140,10 +138,10 @@ class Pit:
         c, s = np.cos(self.angle), np.sin(self.angle)
         return p * c - q * s, p * s + q * c
 
-    def drawn(self, axes: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Half axes ``(3, 2)`` at right angles of the ellipse that two other half axes span."""
+    def drawn(self, centre: NDArray[np.float64], axes: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
+        """Its outline in space: centre and half axes at right angles ``(3, 3)`` of the ellipse that `axes` ``(3, 2)`` span."""
         turned, size, _ = np.linalg.svd(axes, full_matrices=False)
-        return turned * size
+        return [("ellipse", np.column_stack([centre, turned * size]))]
 
     def along(self, p, q, dp, dq):
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
@@ -190,12 +188,6 @@ class Pit:
         kept = [(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0]
         ends = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
         return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
-
-
-def _number(name, value):
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
-        raise ValueError(f"{name} = {value!r}, but a pit needs a finite number here")
-    return float(value)
 
 
 def pit_row(count, first, last, **numbers):

@@ -127,8 +127,8 @@ def fine(gear, crack, size, teeth):
 
 
 def tool(gear, hollow, squeeze):
-    """Centre, half axes and push of the cylinder that cuts a hollow, from above the flank, where the width is squeezed."""
+    """Outline above the flank and push of the cylinder that cuts a hollow, where the width is squeezed."""
     centre, axes, push, _ = hollow_frame(gear, hollow)
     roll = math.sqrt(hollow.radius**2 - gear.r_b**2)
     above = (0.2 + (max(hollow.axes) ** 2 / roll if gear.internal else 0.0) / hollow.depth) * push
-    return (centre - above) * squeeze[:, 0], hollow.drawn(squeeze * axes), (push + above) * squeeze[:, 0]
+    return hollow.drawn((centre - above) * squeeze[:, 0], squeeze * axes), (push + above) * squeeze[:, 0]

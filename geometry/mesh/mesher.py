@@ -207,7 +207,7 @@ class Pieces:
 
 
 def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None, far, growth=0.5, strips=()):
-    """Tets of an extruded section, with elliptic cylinders cut out and kept as pieces of their own.
+    """Tets of an extruded section, with cylinders cut out and kept as pieces of their own.
 
     Parameters
     ----------
@@ -219,9 +219,10 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         Loops of each face, the outer first: numbers of curves; faces may share curves.
     height : float
         [mm].
-    cylinders : sequence of (ndarray, ndarray, ndarray)
-        Centre (3,) of a disk, its half axes (3, 2), by which vector (3,) it is pushed [mm]. What lies outside of the solid is
-        dropped; where cylinders overlap the first one has it.
+    cylinders : sequence of (list, ndarray)
+        The outline, and by which vector (3,) it is pushed [mm]: one ``ellipse``, by its centre and its half axes (3, 3); or a
+        loop of ``line``, by its ends (3, 2), and ``arc``, a quarter of an ellipse, by its ends and its centre (3, 3). What lies
+        outside of the solid is dropped; where cylinders overlap the first one has it.
     fine : sequence of (float, float, float, float)
         Circles of the section: x, y, radius and the edge length within [mm].
     rim : float, optional
@@ -291,13 +292,28 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
     return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
 
 
-def _cylinder(occ, centre, axes, push):
-    """Volume swept by an elliptic disk."""
-    size = np.linalg.norm(axes, axis=0)
-    axes, size = axes[:, np.argsort(-size)], np.sort(size)[::-1]
-    normal = np.cross(axes[:, 0], axes[:, 1])
-    disk = occ.addDisk(*centre, *size, zAxis=normal / np.linalg.norm(normal), xAxis=axes[:, 0] / size[0])
-    return next(one for one in occ.extrude([(2, disk)], *push) if one[0] == 3)
+def _cylinder(occ, outline, push):
+    """Volume swept by what an outline bounds."""
+    kind, (first, *_) = outline[0][0], outline[0][1].T
+    if kind == "ellipse":
+        axes = outline[0][1][:, 1:]
+        size = np.linalg.norm(axes, axis=0)
+        axes, size = axes[:, np.argsort(-size)], np.sort(size)[::-1]
+        normal = np.cross(axes[:, 0], axes[:, 1])
+        face = occ.addDisk(*first, *size, zAxis=normal / np.linalg.norm(normal), xAxis=axes[:, 0] / size[0])
+    else:
+        tags, curves = [occ.addPoint(*first)], []
+        for k, (kind, (start, end, *centre)) in enumerate((kind, points.T) for kind, points in outline):
+            tags.append(tags[0] if k == len(outline) - 1 else occ.addPoint(*end))
+            if kind == "line":
+                curves.append(occ.addLine(*tags[-2:]))
+                continue
+            middle = occ.addPoint(*centre[0])
+            longer = tags[-2] if np.linalg.norm(start - centre) >= np.linalg.norm(end - centre) else tags[-1]
+            curves.append(occ.addEllipseArc(tags[-2], middle, longer, tags[-1]))
+            occ.remove([(0, middle)])
+        face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
+    return next(one for one in occ.extrude([(2, face)], *push) if one[0] == 3)
 
 
 def _sizes(gmsh, inner, fine, rim, far, growth, strips):

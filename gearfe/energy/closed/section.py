@@ -157,7 +157,7 @@ def _positive(gear, thickness, y):
     if (thickness <= 0).any():
         height = abs(y[thickness <= 0].flat[0])
         raise ValueError(
-            f"damage leaves nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the gear's axis: make "
-            "it smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
+            f"cracks and what is missing of flanks leave nothing of the tooth of z = {gear.z} at height {height:.5g} mm from the "
+            "gear's axis: make them smaller, or past the centre-line use crack_model = 'straight' or 'parabola'"
         )
     return thickness

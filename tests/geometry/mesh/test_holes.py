@@ -161,10 +161,10 @@ def test_a_boolean_that_fails_is_caught(fault, monkeypatch):
     tool = holes.tool
 
     def wrong(gear, one, squeeze):
-        centre, axes, push = tool(gear, one, squeeze)
-        if fault == "no cut":
-            return centre - 2 * push, axes, push
-        return (centre, axes, 0.9 * push) if fault == "shallow" else (centre + np.array([0.0, 0.02, 0.0]), axes, push)
+        ((kind, points),), push = tool(gear, one, squeeze)
+        moved = {"no cut": -2 * push, "shallow": 0 * push, "moved": np.array([0.0, 0.02, 0.0])}[fault]
+        points = np.column_stack([points[:, 0] + moved, points[:, 1:]])
+        return [(kind, points)], (0.9 * push if fault == "shallow" else push)
 
     found = [pit(GEAR)]
     monkeypatch.setattr(holes, "tool", wrong)
