@@ -86,7 +86,9 @@ def _tets(gear, pits, cracks, teeth, refine):
 def _hexes(gear, pits, cracks, teeth, refine):
     if pits:
         noun = pits[0].nouns[1]
-        raise ValueError(f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'")
+        raise ValueError(
+            f"damage has {noun}, but hexahedra have none: {noun} are cut out of tetrahedra only: use cells = 'tetrahedra'"
+        )
     if teeth is not None:
         raise ValueError(f"teeth = {teeth}, but hexahedra are those of the whole gear: use cells = 'tetrahedra'")
     loaded = sorted({crack.tooth % gear.z for crack in cracks}) or [0]

@@ -1,9 +1,9 @@
 """All kinds of damage, and what is asked of them together; a new kind is a class and a word in `Damage`.
 
-Damage acts in two ways, `split`: a crack weakens the body it runs into; a pit takes contact away (and with it a little material,
-which plain sums and holes in meshes see). Each kind has `tooth`, `through` (it is the same in every transverse section),
-`removes_contact`, `nouns` (one, several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it in the
-section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
+Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
+little material, which plain sums and holes in meshes see). Each kind has `tooth`, `through` (it is the same in every transverse
+section), `removes_contact`, `nouns` (one, several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it
+in the section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,8 +13,9 @@ from typing import Any, get_args
 from ..tooth.gear import Gear
 from .crack import Crack
 from .pit import Pit
+from .spall import Spall
 
-Damage = Crack | Pit
+Damage = Crack | Pit | Spall
 NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 
@@ -61,11 +62,12 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
         for one in own:
             found.setdefault(one.nouns[1], []).append(one.told(gears[side]))
     order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in found]
-    return " and ".join(found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order)
+    *others, last = [found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order] or [""]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def called(damage: Iterable[Damage]) -> str:
-    """What a tooth with such damage is called: cracked, pitted, or damaged if it is more than one of these."""
+    """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
     words = {one.called for one in damage}
     return words.pop() if len(words) == 1 else "damaged"
 
