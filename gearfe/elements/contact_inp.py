@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from geometry.damage.kinds import Damage
+from geometry.damage.kinds import Damage, by_side
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank
@@ -15,7 +15,6 @@ from ..material import Material
 from .contact_deck import PINION, ContactDeck, write_contact_section
 from .contact_solid import PITS, write_contact_solid
 
-SIDES = ("pinion", "wheel")
 SECTION, SOLID = 8.0, 1.5  # edges per Hertz half width
 
 
@@ -129,9 +128,5 @@ def write_contact_inp(
 
 def damage_by_gear(damage: Mapping[str, Sequence[Damage]] | None) -> tuple[tuple[Damage, ...], tuple[Damage, ...]]:
     """Damage of pinion and wheel with the teeth numbered in each gear's own frame, the wheel's against the pairs."""
-    given = dict(damage or {})
-    unknown = set(given) - set(SIDES)
-    if unknown:
-        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for {' and '.join(SIDES)}")
-    pinion, wheel = (tuple(given.get(side, ())) for side in SIDES)
-    return pinion, tuple(replace(one, tooth=-one.tooth) for one in wheel)
+    pinion, wheel = by_side(damage)
+    return tuple(pinion), tuple(replace(one, tooth=-one.tooth) for one in wheel)

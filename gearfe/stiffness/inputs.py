@@ -8,7 +8,7 @@ from inspect import signature
 import numpy as np
 
 from geometry.damage.crack import check_apart, check_through
-from geometry.damage.kinds import listed, split, why_wide
+from geometry.damage.kinds import by_side, split, why_wide
 
 from ..elements.asked import is_number
 from ..energy.closed.plain_sum import plain_sum
@@ -207,18 +207,8 @@ def said_of_face(pair, face):
 
 def by_gear(pair, damage):
     """What weakens pinion and wheel (cracks) and what takes their contact away (pits), numbered in each gear's own frame."""
-    damage = {} if damage is None else damage
-    if not isinstance(damage, dict):
-        kind = type(damage).__name__
-        raise ValueError(
-            f"damage is a {kind}, but say of which gear: damage = {{'pinion': [Crack(...), Pit(...)], 'wheel': [...]}}"
-        )
-    unknown = set(damage) - {"pinion", "wheel"}
-    if unknown:
-        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
     cracks, pits = [], []
-    for name, gear, sense in (("pinion", pair.gear_1, 1), ("wheel", pair.gear_2, -1)):
-        given = listed(damage.get(name), f"damage of the {name}")
+    for gear, sense, given in zip((pair.gear_1, pair.gear_2), (1, -1), by_side(damage), strict=True):
         for text in filter(None, (one.doubts(gear) for one in given)):
             warnings.warn(text, stacklevel=4)
         weakens, removes = split(replace(one, tooth=sense * one.tooth) for one in given)

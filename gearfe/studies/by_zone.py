@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geometry.damage.kinds import listed
+from geometry.damage.kinds import by_side
 from geometry.pair.gear_pair import GearPair
 
 from ..markdown import table_row
@@ -297,8 +297,8 @@ def _own(pair, *, force, torque, material, damage, face, groove):
     if len(forces) > 1:
         raise ValueError(f"force = {force!r}, torque = {torque!r}, but one load is compared at a time")
     by_gear(pair, damage)
-    damage = {side: listed(one, f"damage of the {side}") for side, one in (damage or {}).items()}
-    cases = {"given": damage} if any(damage.values()) else {}
+    hurt = {side: own for side, own in zip(("pinion", "wheel"), by_side(damage), strict=True) if own}
+    cases = {"given": hurt} if hurt else {}
     made = ScenePair(pair, two_materials(material), forces[0], face, groove, cases)
     return made, f"{pair.gear_1.z}/{pair.gear_2.z}", "given" if cases else None
 

@@ -30,22 +30,33 @@ def check_crack(crack: object) -> None:
         raise ValueError(f"crack = {crack!r}, but give a Crack")
 
 
-def listed(given: Damage | Sequence[Damage] | None, what: str) -> list[Damage]:
-    """Damage of one gear as a list: given as one, as a list or tuple of them, or None.
+def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
+    """Damage of pinion and wheel, each given as one, as a list or tuple of them, or not at all.
 
     Raises
     ------
     ValueError
-        If something is no damage; the message begins with `what`.
+        If it is not given by gear, or something is no damage.
     """
-    if isinstance(given, Damage):
-        return [given]
-    if not isinstance(given or (), (list, tuple)):
-        raise ValueError(f"{what}: {given!r}, but give a {', a '.join(NAMES)} or a list of them")
-    for one in given or ():
+    given = {} if damage is None else damage
+    if not isinstance(given, dict):
+        example = "damage = {'pinion': [Crack(...), Pit(...)], 'wheel': [...]}"
+        raise ValueError(f"damage is a {type(given).__name__}, but say of which gear: {example}")
+    if unknown := set(given) - {"pinion", "wheel"}:
+        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
+    return _listed(given, "pinion"), _listed(given, "wheel")
+
+
+def _listed(given, side):
+    own = given.get(side) or ()
+    if isinstance(own, Damage):
+        return [own]
+    if not isinstance(own, (list, tuple)):
+        raise ValueError(f"damage of the {side}: {own!r}, but give a {', a '.join(NAMES)} or a list of them")
+    for one in own:
         if not isinstance(one, Damage):
-            raise ValueError(f"{what}: {one!r} is neither a {' nor a '.join(NAMES)}")
-    return list(given or ())
+            raise ValueError(f"damage of the {side}: {one!r} is neither a {' nor a '.join(NAMES)}")
+    return list(own)
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import centre_arc, doubts, profile
+from .hollow import centre_arc, doubts, in_circle, profile
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
@@ -90,10 +90,7 @@ class Spall:
         """Half extents along the profile and along the width [mm]."""
         return self.sides[0] / 2, self.sides[1] / 2
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Half extents along the profile and along the width [mm]."""
-        return self.axes
+    reach = axes
 
     @property
     def kinks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -160,7 +157,7 @@ class Spall:
         parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]
         for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
             at = (p - i * (1 - rounded[0])) / rounded[0], (q - j * (1 - rounded[1])) / rounded[1]
-            parts.append(_in_circle(*at, dp / rounded[0], dq / rounded[1]))
+            parts.append(in_circle(*at, dp / rounded[0], dq / rounded[1], 1e-24))
         low, high = np.array(parts).transpose(1, 0, 2, 3)
         there = high > low
         low, high = np.where(there, low, np.inf).min(axis=0), np.where(there, high, -np.inf).max(axis=0)
@@ -221,15 +218,3 @@ def _in_box(p, q, dp, dq, wide, high):
         low = np.where(out, np.inf, np.where(still, low, np.maximum(low, ends[0])))
         up = np.where(out, -np.inf, np.where(still, up, np.minimum(up, ends[1])))
     return low, up
-
-
-def _in_circle(p, q, dp, dq):
-    """Where lines are in the circle of radius 1 about the origin: from t to t."""
-    a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
-    root = half * half - a * c
-    still = a < 1e-24
-    wide = np.sqrt(np.maximum(root, 0.0))
-    a = np.where(still, 1.0, a)
-    low = np.where(still, np.where(c < 0, -np.inf, np.inf), np.where(root > 0, (-half - wide) / a, np.inf))
-    high = np.where(still, np.where(c < 0, np.inf, -np.inf), np.where(root > 0, (-half + wide) / a, -np.inf))
-    return low, high

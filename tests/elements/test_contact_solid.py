@@ -144,7 +144,7 @@ def test_nodes_of_tets_lie_on_the_involute(damaged):
         ({"face": "spur"}, "as they are"),
         ({"face": "herringbone"}, "as they are"),
         ({"pose": "left"}, "must be one of"),
-        ({"damage": {"ring": []}}, "pinion and wheel"),
+        ({"damage": {"ring": []}}, "'pinion' and 'wheel'"),
         ({"face": None, "damage": {"pinion": [gf.Crack(level=0.3)]}}, "which has none"),
         ({"face": None, "damage": None, "misalignment": gf.Misalignment(F_beta=0.01)}, "knows no width"),
         ({"damage": {"pinion": [PIT, gf.Crack(level=0.3, width=(0.0, 3.0))]}}, "through the whole width"),
