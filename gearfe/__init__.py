@@ -37,6 +37,7 @@ _HOME = {
     "Samples": "gearfe.machine.gear_mesh",
     "Shaft": "gearfe.supports.shaft",
     "Signal": "gearfe.signal.series",
+    "Spall": "geometry.damage.spall",
     "Spring": "gearfe.machine.tables",
     "Stage": "gearfe.machine.tables",
     "StiffnessCurve": "gearfe.stiffness.curve",

@@ -2,6 +2,7 @@
 
 from geometry.damage.crack import Crack as Crack
 from geometry.damage.pit import Pit as Pit
+from geometry.damage.spall import Spall as Spall
 from geometry.pair.flanks import Misalignment as Misalignment
 from geometry.pair.gear_pair import GearPair as GearPair
 from geometry.pair.planetary import PlanetarySet as PlanetarySet

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry.damage.crack import Crack, check_apart
-from geometry.damage.kinds import Damage, listed, split, why_wide
+from geometry.damage.kinds import Damage, by_side, split, why_wide
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.modified import Flank, FlankForm
@@ -126,8 +126,7 @@ class Case(Mapping[str, Any]):
         cracks, pits = by_gear(pair, self.damage)
         made: dict[str, Any] = {"forces": tuple(forces), "materials": materials, "cracks": cracks, "pits": pits}
         if self.damage:
-            hurt = {name: listed(own, f"damage of the {name}") for name, own in self.damage.items()}
-            made |= {"damage": hurt}
+            made |= {"damage": {name: own for (name, _), own in zip(SIDES, by_side(self.damage), strict=True) if own}}
         made |= {"forms": flank_forms(pair, self.flanks, self.misalignment)}
         made |= {"held": supports_of(pair, self.supports, forces, self.face)}
         if self.torque is not None:
@@ -261,19 +260,9 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 
 
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Any, ...], ...]]:
-    """What weakens pinion and wheel (cracks) and what takes their contact away (pits), numbered in each gear's own frame."""
-    damage = {} if damage is None else damage
-    if not isinstance(damage, Mapping):
-        kind = type(damage).__name__
-        raise ValueError(
-            f"damage is a {kind}, but say of which gear: damage = {{'pinion': [Crack(...), Pit(...)], 'wheel': [...]}}"
-        )
-    unknown = set(damage) - {"pinion", "wheel"}
-    if unknown:
-        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
+    """What weakens pinion and wheel (cracks) and takes their contact away (pits, spalls), numbered in each gear's own frame."""
     cracks, pits = [], []
-    for (name, sense), gear in zip(SIDES, (pair.gear_1, pair.gear_2), strict=True):
-        given = listed(damage.get(name), f"damage of the {name}")
+    for (_, sense), gear, given in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
         for text in filter(None, (one.doubts(gear) for one in given)):
             warnings.warn(text, stacklevel=5)
         weakens, removes = split(replace(one, tooth=sense * one.tooth) for one in given)

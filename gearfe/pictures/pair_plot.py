@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.damage.kinds import Damage
+from geometry.damage.kinds import Damage, by_side
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.drawing import outline_points
 from geometry.tooth.profile import cartesian
@@ -62,10 +62,7 @@ def plot_pair(
     """
     from matplotlib.figure import Figure
 
-    damage = damage or {}
-    hurt = [list(damage.get(side, ())) for side in ("pinion", "wheel")]
-    if set(damage) - {"pinion", "wheel"}:
-        raise ValueError(f"damage of {', '.join(map(repr, damage))}, but it is given for 'pinion' and 'wheel'")
+    hurt = by_side(damage)
     tooth = next((one.tooth for own in hurt for one in own), 0)
     pitch = pair.gear_1.r_b * math.tan(pair.alpha_w)  # roll length at the pitch point
     turns = [float(turn) for turn in pair.turn(pitch - tooth * pair.p_bt)]

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 from geometry.damage.crack import Crack
 from geometry.damage.kinds import Damage
 from geometry.damage.pit import pit_row
+from geometry.damage.spall import Spall
 from geometry.pair.gear_pair import GearPair
 from geometry.pair.pit_lines import in_both_halves, pit_line
 
@@ -98,6 +99,32 @@ PIT_WORDS = """\
 #tooth = 0
 #pair = "stage"
 """
+SPALL = {
+    "case": (TEXT, REQUIRED),
+    "gear": (TEXT, REQUIRED),
+    "radius_mm": (NUMBER, REQUIRED),
+    "z_mm": (NUMBER, REQUIRED),
+    "sides_mm": (TWO, REQUIRED),
+    "depth_mm": (NUMBER, REQUIRED),
+    "corner_mm": (NUMBER, 0.0),
+    "both_halves": (TRUTH, False),
+    "tooth": (WHOLE, 0),
+    "pair": (TEXT, None),
+}
+SPALL_WORDS = """\
+# Spalls: rectangles with rounded corners.
+#[[spall]]
+#case = "spalled"
+#gear = "pinion"
+#radius_mm = {pitch:.3f}  # of the circle its centre lies on; this is the pitch circle
+#z_mm = {half:.2f}  # height of its centre
+#sides_mm = [{apart:.2f}, {first:.2f}]  # along the profile and along the width
+#depth_mm = {depth:.2f}
+#corner_mm = {depth:.2f}  # radius of its corners
+#both_halves = false  # true: its mirror image in the other half of a herringbone gear too
+#tooth = 0
+#pair = "stage"
+"""
 
 
 def crack_of(row, made, which, pair):
@@ -137,5 +164,16 @@ def pits_of(row, made, which, pair):
     return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
 
 
-TABLES = {"crack": Table(CRACK, crack_of, CRACK_WORDS), "pits": Table(PITS, pits_of, PIT_WORDS)}
+def spall_of(row, made, which, pair):
+    """The spall of a checked row of `SPALL`, and its mirror image in the other half of a herringbone gear if asked for."""
+    lengths = {key: row[f"{key}_mm"] for key in ("radius", "z", "sides", "depth", "corner")}
+    found, face = [Spall(**lengths, tooth=row["tooth"])], pair["face"] or ("helical" if made.gear_1.beta else "spur")
+    return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
+
+
+TABLES = {
+    "crack": Table(CRACK, crack_of, CRACK_WORDS),
+    "pits": Table(PITS, pits_of, PIT_WORDS),
+    "spall": Table(SPALL, spall_of, SPALL_WORDS),
+}
 DAMAGE = {name: table.keys for name, table in TABLES.items()}

@@ -126,3 +126,18 @@ def union_length(low, high):
 def lost_width(gear, hollows, arc):
     """Width [mm] the hollows of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
     return union_length(*intervals(gear, hollows, arc))
+
+
+def in_circle(p, q, dp, dq, flat):
+    """Where lines ``(p + t dp, q + t dq)`` are in the circle of radius 1: from t to t, equal where nowhere.
+
+    Those with ``dp**2 + dq**2`` below `flat` stay where they are.
+    """
+    a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
+    root = np.sqrt(np.maximum(half * half - a * c, 0.0))
+    hit = half * half - a * c > 0
+    wall = np.where(a > flat, a, 1.0)
+    inside = c < 0
+    low = np.where(a > flat, (-half - root) / wall, np.where(inside, -np.inf, 0.0))
+    high = np.where(a > flat, (-half + root) / wall, np.where(inside, np.inf, 0.0))
+    return np.where(hit, low, 0.0), np.where(hit, high, 0.0)

@@ -1,9 +1,9 @@
 """All kinds of damage, and what is asked of them together; a new kind is a class and a word in `Damage`.
 
-Damage acts in two ways, `split`: a crack weakens the body it runs into; a pit takes contact away (and with it a little material,
-which plain sums and holes in meshes see). Each kind has `tooth`, `through` (it is the same in every transverse section),
-`removes_contact`, `nouns` (one, several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it in the
-section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
+Damage acts in two ways, `split`: a crack weakens the body it runs into; pits and spalls take contact away (and with it a
+little material, which plain sums and holes in meshes see). Each kind has `tooth`, `through` (it is the same in every transverse
+section), `removes_contact`, `nouns` (one, several), `called` (what a tooth with it is), ``outline(gear)`` (a line that shows it
+in the section), ``told(gear)`` (it in words) and ``doubts(gear)`` (a warning, or nothing); what hollows have is in `hollow`.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,8 +13,9 @@ from typing import Any, get_args
 from ..tooth.gear import Gear
 from .crack import Crack
 from .pit import Pit
+from .spall import Spall
 
-Damage = Crack | Pit
+Damage = Crack | Pit | Spall
 NAMES = [kind.__name__ for kind in get_args(Damage)]
 
 
@@ -29,22 +30,33 @@ def check_crack(crack: object) -> None:
         raise ValueError(f"crack = {crack!r}, but give a Crack")
 
 
-def listed(given: Damage | Sequence[Damage] | None, what: str) -> list[Damage]:
-    """Damage of one gear as a list: given as one, as a list or tuple of them, or None.
+def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
+    """Damage of pinion and wheel, each given as one, as a list or tuple of them, or not at all.
 
     Raises
     ------
     ValueError
-        If something is no damage; the message begins with `what`.
+        If it is not given by gear, or something is no damage.
     """
-    if isinstance(given, Damage):
-        return [given]
-    if not isinstance(given or (), (list, tuple)):
-        raise ValueError(f"{what}: {given!r}, but give a {', a '.join(NAMES)} or a list of them")
-    for one in given or ():
+    given = {} if damage is None else damage
+    if not isinstance(given, dict):
+        example = "damage = {'pinion': [Crack(...), Pit(...)], 'wheel': [...]}"
+        raise ValueError(f"damage is a {type(given).__name__}, but say of which gear: {example}")
+    if unknown := set(given) - {"pinion", "wheel"}:
+        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
+    return _listed(given, "pinion"), _listed(given, "wheel")
+
+
+def _listed(given, side):
+    own = given.get(side) or ()
+    if isinstance(own, Damage):
+        return [own]
+    if not isinstance(own, (list, tuple)):
+        raise ValueError(f"damage of the {side}: {own!r}, but give a {', a '.join(NAMES)} or a list of them")
+    for one in own:
         if not isinstance(one, Damage):
-            raise ValueError(f"{what}: {one!r} is neither a {' nor a '.join(NAMES)}")
-    return list(given or ())
+            raise ValueError(f"damage of the {side}: {one!r} is neither a {' nor a '.join(NAMES)}")
+    return list(own)
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
@@ -61,11 +73,12 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
         for one in own:
             found.setdefault(one.nouns[1], []).append(one.told(gears[side]))
     order = [kind.nouns[1] for kind in get_args(Damage) if kind.nouns[1] in found]
-    return " and ".join(found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order)
+    *others, last = [found[noun][0] if len(found[noun]) == 1 else f"{len(found[noun])} {noun}" for noun in order] or [""]
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def called(damage: Iterable[Damage]) -> str:
-    """What a tooth with such damage is called: cracked, pitted, or damaged if it is more than one of these."""
+    """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
     words = {one.called for one in damage}
     return words.pop() if len(words) == 1 else "damaged"
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import centre_arc, doubts, profile
+from .hollow import centre_arc, doubts, in_circle, profile
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -145,15 +145,7 @@ class Pit:
 
     def along(self, p, q, dp, dq):
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
-        a, half, c = dp * dp + dq * dq, p * dp + q * dq, p * p + q * q - 1
-        root = np.sqrt(np.maximum(half * half - a * c, 0.0))
-        hit = half * half - a * c > 0
-        flat = 1e-12 / min(self.axes) ** 2
-        wall = np.where(a > flat, a, 1.0)
-        inside = c < 0
-        low = np.where(a > flat, (-half - root) / wall, np.where(inside, -np.inf, 0.0))
-        high = np.where(a > flat, (-half + root) / wall, np.where(inside, np.inf, 0.0))
-        return np.where(hit, low, 0.0), np.where(hit, high, 0.0)
+        return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
         """Where a straight contact line runs through it.

@@ -72,6 +72,12 @@ WHOLE_SCENE = {  # every key of the vocabulary that can stand beside the others
             "pitch_mm": 3.0, "mirrored": False, "both_halves": False, "axes_mm": [1.0, 2.0], "depth_mm": 0.2,
         },
     ],
+    "spall": [
+        {
+            "case": "spalled", "gear": "sun", "radius_mm": 20.8, "z_mm": 10.0, "sides_mm": [1.0, 4.0], "depth_mm": 0.2,
+            "corner_mm": 0.3, "both_halves": False, "tooth": 0, "pair": "stage",
+        }
+    ],
     "machine": {
         "model": "herringbone_planetary", "speed_rpm": 1000.0, "torque_Nm": 100.0, "n_planets": 3, "contact": "linear",
         "backlash_um": 100.0, "profile_error_um": 0.0, "runout_um": 0.0, "misplaced_um": 0.0, "misplaced_y_um": 0.0,
@@ -129,7 +135,7 @@ def vocabulary():
 def test_the_whole_scene_has_every_key():
     """Those left out exclude another, and stand in `ALSO`."""
     scene = scene_of("whole.toml", copy.deepcopy(WHOLE_SCENE))
-    assert set(scene.pair().damage) == {"cracked", "pitted"}
+    assert set(scene.pair().damage) == {"cracked", "pitted", "spalled"}
     keys = {part for path in places(WHOLE_SCENE) for part in path if isinstance(part, str)}
     assert vocabulary() - keys == {path[-1] for path, _ in ALSO}
 

@@ -63,7 +63,18 @@ for phase, before, after in zip(whole.phase, whole.k, pitted.k, strict=True):
 # Nearly all of this is contact that is lost: where there is a pit, the flank does not touch. The missing material itself changes
 # the stiffness by less than half a percent, and the depth of a pit hardly matters.
 #
+# Spalls
+# ------
+# Where much of the flank has broken out the hole is wide: a rectangle with rounded corners, here 1.2 mm along the profile and
+# 5 mm along the width.
+
+spall = gf.Spall(radius=18.0, z=5.0, sides=(1.2, 5.0), depth=0.3, corner=0.3)
+spalled = gf.mesh_stiffness(pair, damage={"pinion": [spall]}, **phases)
+for phase, before, after in zip(whole.phase, whole.k, spalled.k, strict=True):
+    print(f"phase {phase:.2f}: {before / 1e6:6.1f} -> {after / 1e6:6.1f} N/um ({100 * (after / before - 1):+.1f} %)")
+
+# %%
 # Several kinds of damage
 # -----------------------
-# A list may hold cracks and pits, on any teeth of both gears: ``damage={"pinion": [crack, *pits], "wheel": [...]}``. Tooth 0 is
+# A list may hold all kinds, on any teeth of both gears: ``damage={"pinion": [crack, *pits], "wheel": [...]}``. Tooth 0 is
 # the one that enters at phase 0; ``tooth=1`` is its neighbour.

@@ -1,0 +1,220 @@
+"""`Spall`: a spall of rectangular outline with rounded corners on a flank, and where lines cross it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from ..tooth.gear import Gear
+from .given import finite, tooth_and_side
+from .hollow import centre_arc, doubts, in_circle, profile
+
+LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
+QUARTER = 8  # parts of a rounded corner that is drawn
+
+
+@dataclass(frozen=True, slots=True)
+class Spall:
+    """A hollow of constant depth cut along the flank normal out of one flank, its outline a rectangle with rounded corners.
+
+    The rectangle of the spalling literature: F. Chaari, W. Baccar, M. S. Abbes, M. Haddar, Eur. J. Mech. A/Solids 27 (2008)
+    691-705; H. Ma, Z. Li, M. Feng, R. Feng, B. Wen, Eng. Fail. Anal. 66 (2016) 166-176. Its sides lie along the transverse
+    profile and along the tooth trace, as the axes of a `Pit`.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the flank point at its centre [mm], from the axis of the gear.
+    z : float
+        Height of its centre [mm], counted as that of a `Pit`.
+    sides : (float, float)
+        Whole lengths along the profile and along the width [mm]: the literature's w_s and a_s.
+    depth : float
+        Along the flank normal [mm]: the literature's h_s.
+    corner : float
+        Radius of its corners [mm]; 0: sharp.
+    tooth : int
+        Number of the tooth, counted as for a `Crack`.
+    side : {"loaded", "unloaded"}
+        Flank it lies on.
+
+    Raises
+    ------
+    ValueError
+        If the description is contradictory; a spall beside its flank is refused when it meets its gear, see
+        `geometry.damage.hollow.check_hollows`.
+
+    >>> Spall(radius=21.0, z=10.0, sides=(1.5, 6.0), depth=0.2, corner=0.3).reach
+    (0.75, 3.0)
+    """
+
+    radius: float
+    z: float
+    sides: tuple[float, float]
+    depth: float
+    corner: float = 0.0
+    tooth: int = 0
+    side: str = "loaded"
+
+    nouns: ClassVar[tuple[str, str]] = ("spall", "spalls")
+    called: ClassVar[str] = "spalled"
+    removes_contact: ClassVar[bool] = True
+    through: ClassVar[bool] = False
+    angle: ClassVar[float] = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse contradictory descriptions."""
+        sides = self.sides if isinstance(self.sides, (tuple, list)) else ()
+        if len(sides) != 2:
+            raise ValueError(f"sides = {self.sides!r}, but give two lengths [mm]: along the profile, along the width")
+        for name in ("radius", "z", "depth", "corner"):
+            object.__setattr__(self, name, finite("spall", name, getattr(self, name)))
+        object.__setattr__(self, "sides", tuple(finite("spall", "sides", side) for side in sides))
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+        for name in ("radius", "depth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
+        if not (min(self.sides) >= LEAST and max(self.sides) <= LONGEST):
+            raise ValueError(f"sides = {self.sides} mm, but a side is from {LEAST:g} to {LONGEST:g} mm long")
+        if not 0 <= self.corner <= min(self.sides) / 2:
+            raise ValueError(
+                f"corner = {self.corner} mm, but a corner's radius is from 0 to half the shorter one of sides = {self.sides} mm"
+            )
+
+    @property
+    def axes(self) -> tuple[float, float]:
+        """Half extents along the profile and along the width [mm]."""
+        return self.sides[0] / 2, self.sides[1] / 2
+
+    reach = axes
+
+    @property
+    def kinks(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Where its sides end along the profile and along the width, from its centre [mm]."""
+        along, across = (tuple(sorted({-half, self.corner - half, half - self.corner, half})) for half in self.axes)
+        return along, across
+
+    def outline(self, gear: Gear) -> NDArray[np.float64]:
+        """Line ``(2, n)`` [mm] that shows it in the transverse section, in the frame of its tooth."""
+        return profile(gear, self)
+
+    def told(self, gear: Gear) -> str:
+        """It in words."""
+        return f"{self.sides[0]:.3g} x {self.sides[1]:.3g} mm spall"
+
+    def doubts(self, gear: Gear) -> str:
+        """What to warn of when it meets its gear; empty if nothing."""
+        return doubts(gear, self, f"sides of {self.sides[0]:g} x {self.sides[1]:g}")
+
+    def mirrored(self, b: float) -> Self:
+        """Its mirror image in the other half of a face of width `b` [mm]."""
+        return replace(self, z=b - self.z)
+
+    def covers(self, u: Any, w: Any) -> NDArray[np.bool_]:
+        """Whether places are in it: `u` along the profile, `w` along the width from its centre [mm]."""
+        away = [np.abs(at) - half for at, half in zip((u, w), self.axes, strict=True)]
+        beside = [np.maximum(one + self.corner, 0.0) for one in away]
+        return (
+            (away[0] <= 0) & (away[1] <= 0) & ((beside[0] ** 2 + beside[1] ** 2 <= self.corner**2) | (beside[0] * beside[1] == 0))
+        )
+
+    def span(self, u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Heights z [mm] between which it lies at `u` along the profile from its centre [mm]; equal where it does not."""
+        beside = np.maximum(np.abs(u) - self.axes[0] + self.corner, 0.0)
+        half = self.axes[1] - self.corner + np.sqrt(np.maximum(self.corner**2 - beside**2, 0.0))
+        half = np.where(np.abs(u) <= self.axes[0], half, 0.0)
+        return self.z - half, self.z + half
+
+    def edge(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Its outline: places along the profile and along the width from its centre [mm]."""
+        turn = np.linspace(0, 2 * math.pi, 4 * QUARTER, endpoint=False) + math.pi / 4 / QUARTER
+        unit = np.array([np.cos(turn), np.sin(turn)])
+        out = np.sign(unit) * (np.array(self.axes) - self.corner)[:, None] + self.corner * unit
+        u, w = np.column_stack([out, out[:, 0]])
+        return u, w
+
+    def drawn(self, centre: NDArray[np.float64], axes: NDArray[np.float64]) -> list[tuple[str, NDArray[np.float64]]]:
+        """Its outline in space, from its `centre` and half `axes` ``(3, 2)``: lines, and arcs by their ends and centres."""
+        inner = 1 - self.corner / np.array(self.axes)
+        out = []
+        for p, q in ((1, 1), (-1, 1), (-1, -1), (1, -1)):
+            ends = np.array([[p, q * inner[1]], [p * inner[0], q]])[:: p * q]  # of the corner, counter-clockwise
+            following = [-p * inner[0], q] if p * q > 0 else [p, -q * inner[1]]
+            if self.corner:
+                out.append(("arc", np.array([*ends, [p * inner[0], q * inner[1]]])))
+            if not np.allclose(ends[1], following, atol=1e-9):
+                out.append(("line", np.array([ends[1], following])))
+        return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
+
+    def along(self, p, q, dp, dq):
+        """Where lines ``(p + t dp, q + t dq)``, in units of the half sides, are in it: from t to t, equal where nowhere."""
+        rounded = self.corner / np.array(self.axes)
+        p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
+        parts = [_in_box(p, q, dp, dq, 1 - rounded[0], 1.0), _in_box(p, q, dp, dq, 1.0, 1 - rounded[1])]
+        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
+            at = (p - i * (1 - rounded[0])) / rounded[0], (q - j * (1 - rounded[1])) / rounded[1]
+            parts.append(in_circle(*at, dp / rounded[0], dq / rounded[1], 1e-24))
+        low, high = np.array(parts).transpose(1, 0, 2, 3)
+        there = high > low
+        low, high = np.where(there, low, np.inf).min(axis=0), np.where(there, high, -np.inf).max(axis=0)
+        return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
+
+    def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
+        """Where a straight contact line runs through it.
+
+        Parameters
+        ----------
+        gear : Gear
+        roll, z : (float, float)
+            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
+
+        Returns
+        -------
+        list of (float, float)
+            Ranges of t inside the spall, between places where the line meets a side or a corner's circle.
+        """
+        slope, reach = z[1] - z[0], self.axes[1]
+        change = (roll[1] - roll[0]) / slope
+        w = Polynomial([0.0, reach])  # of v, which is between -1 and 1 in the spall, whatever the line's length
+        u = gear.outward / (2 * gear.r_b) * Polynomial([roll[0] + change * (self.z - z[0]), change * reach]) ** 2
+        u -= centre_arc(gear, self)
+        limits = [u - sign * half for half in (self.axes[0], self.axes[0] - self.corner) for sign in (-1, 1)]
+        inner = [half - self.corner for half in self.axes]
+        if self.corner:
+            limits += [(u - i * inner[0]) ** 2 + (w - j * inner[1]) ** 2 - self.corner**2 for i in (-1, 1) for j in (-1, 1)]
+        found = np.concatenate([_roots(limit.coef) for limit in limits])
+        places = np.unique([-1.0, *found[np.abs(found) < 1], 1.0])
+        middles = (places[1:] + places[:-1]) / 2
+        ends: list[list[float]] = []
+        for first, last, inside in zip(places[:-1], places[1:], self.covers(u(middles), w(middles)), strict=True):
+            if inside and ends and ends[-1][1] == first:
+                ends[-1][1] = last
+            elif inside:
+                ends.append([first, last])
+        parts = [np.clip((self.z + reach * np.array(one) - z[0]) / slope, 0.0, 1.0) for one in ends]
+        return [(float(t.min()), float(t.max())) for t in parts if t.max() > t.min()]
+
+
+def _roots(coefficients):
+    """Real roots of a polynomial."""
+    size = np.abs(coefficients)
+    there = np.flatnonzero(size > 1e-15 * size.max())
+    found = np.polynomial.polynomial.polyroots(coefficients[: there[-1] + 1] if there.size else [1.0])
+    return found.real[np.abs(found.imag) < 1e-9]
+
+
+def _in_box(p, q, dp, dq, wide, high):
+    """Where lines are in the box ``|p| < wide, |q| < high``: from t to t."""
+    low, up = np.full(p.shape, -np.inf), np.full(p.shape, np.inf)
+    for at, step, half in ((p, dp, wide), (q, dq, high)):
+        still = np.abs(step) < 1e-12
+        safe = np.where(still, 1.0, step)
+        ends = np.sort([(-half - at) / safe, (half - at) / safe], axis=0)
+        out = still & (np.abs(at) >= half)
+        low = np.where(out, np.inf, np.where(still, low, np.maximum(low, ends[0])))
+        up = np.where(out, -np.inf, np.where(still, up, np.minimum(up, ends[1])))
+    return low, up
