@@ -10,6 +10,7 @@ import threading
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field, fields, is_dataclass
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import BivariateSpline, PPoly
@@ -39,14 +40,14 @@ class SolvedGears:
         Memory of all results together [bytes]; the last one stays however large it is.
     """
 
-    def __init__(self, most: int = MOST):
+    def __init__(self, most: int = MOST) -> None:
         self.most = most
         self._kept: OrderedDict = OrderedDict()
         self._solving: dict[Hashable, _Solve] = {}
         self._lock = threading.Lock()
         self.size = 0  # of what is kept [bytes]
 
-    def get(self, key: Hashable, solve: Callable[[], object]):
+    def get(self, key: Hashable, solve: Callable[[], object]) -> Any:
         """What is kept under `key`, or else what `solve` gives.
 
         Raises
@@ -90,17 +91,17 @@ class SolvedGears:
         with self._lock:
             return key in self._kept
 
-    def __len__(self):
+    def __len__(self) -> int:
         """Number of results kept."""
         return len(self._kept)
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget all of them."""
         with self._lock:
             self._kept.clear()
             self.size = 0
 
-    def begin_anew(self):
+    def begin_anew(self) -> None:
         """In the child of a process that was forked: the threads whose solves were under way are not in it."""
         self._lock, self._solving = threading.Lock(), {}
 

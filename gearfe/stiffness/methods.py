@@ -79,7 +79,7 @@ class Method:
     cracks: str = ""
     pits: bool = False
     rings: str = "yes"
-    faces: tuple = SPUR
+    faces: tuple[str, ...] = SPUR
     variants: bool = False
     teeth: bool = False
     error: bool = False
@@ -87,7 +87,7 @@ class Method:
     flanks: bool = False
     order: int | None = None
     kept: str = ""
-    crack_models: tuple = ()
+    crack_models: tuple[str, ...] = ()
     own: Any = None
 
     @property

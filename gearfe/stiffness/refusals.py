@@ -66,7 +66,8 @@ def _damage(row, case, method):
     if any(case.cracks) and not row.cracks:
         yield f"cracks with {method}, which has none: use {having('cracks')}"
     if any(case.pits) and not row.pits:
-        yield f"pits with {method}, a transverse section: use {having('pits')}"
+        nouns = next(one for own in case.pits for one in own).nouns[1]
+        yield f"{nouns} with {method}, a transverse section: use {having('pits')}"
 
 
 def _flanks(row, case, method):

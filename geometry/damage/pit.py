@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from numbers import Integral
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +143,7 @@ class Pit:
         turned, size, _ = np.linalg.svd(axes, full_matrices=False)
         return [("ellipse", np.column_stack([centre, turned * size]))]
 
-    def along(self, p, q, dp, dq):
+    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 

@@ -150,7 +150,7 @@ class Spall:
                 out.append(("line", np.array([ends[1], following])))
         return [(kind, centre[:, None] + axes @ places.T) for kind, places in out]
 
-    def along(self, p, q, dp, dq):
+    def along(self, p: Any, q: Any, dp: Any, dq: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Where lines ``(p + t dp, q + t dq)``, in units of the half sides, are in it: from t to t, equal where nowhere."""
         rounded = self.corner / np.array(self.axes)
         p, q, dp, dq = np.broadcast_arrays(p, q, dp, dq)
