@@ -37,7 +37,8 @@ def plot_pair(
     ----------
     pair : GearPair or Case
     damage : dict, optional
-        As of `gearfe.mesh_stiffness`; default that of the case. Cracks of part of the width are drawn with their full length, pits over their height.
+        As of `gearfe.mesh_stiffness`; default that of the case. Cracks of part of the width are drawn with their full length,
+        pits over their height.
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
     title : str
