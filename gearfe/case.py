@@ -13,7 +13,8 @@ from geometry.damage.crack import Crack, check_apart
 from geometry.damage.kinds import Damage, by_side, split, why_wide
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
-from geometry.tooth.modified import Flank, FlankForm
+from geometry.tooth.flank_form import FlankForm
+from geometry.tooth.modified import Flank
 
 from .checks import is_number, numbers
 from .material import Material

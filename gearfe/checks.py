@@ -1,19 +1,16 @@
 """Checks of what functions are given, before any work: numbers, truth values, lengths, resolution."""
 
 import math
-from numbers import Integral, Real
+from numbers import Integral
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geometry.checks import is_number
+
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
 FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
-
-
-def is_number(value: Any) -> bool:
-    """Whether it is a real number: no text, no truth value."""
-    return isinstance(value, Real) and not isinstance(value, (bool, np.bool_))
 
 
 def number(name: str, value: Any) -> float:

@@ -12,7 +12,7 @@ import gearfe
 from gearfe.stiffness.methods import ROWS
 
 FLOORS = (  # from the ground: a room imports only from floors below its own
-    ("geometry/kept.py", "gearfe/matlab_file.py"),
+    ("geometry/checks.py", "geometry/kept.py", "gearfe/matlab_file.py"),
     ("geometry/tooth",),
     ("geometry/damage",),
     ("geometry/pair", "geometry/mesh"),

@@ -139,15 +139,8 @@ def form() -> str:
 def checked_state(given: Any) -> dict[str, Any]:
     """A state of the page with what was left out filled in.
 
-    Parameters
-    ----------
-    given : dict
-        Values by name of a `Field`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene.
-
-    Raises
-    ------
-    ValueError
-        If something is unknown, of another kind, or beyond the bounds of its field.
+    Values by name of a `Field`, ``title``, ``source`` and ``assumption``, a list of such tables of a scene. ValueError if
+    something is unknown, of another kind, or beyond the bounds of its field.
     """
     if not isinstance(given, dict):
         raise ValueError(f"state = {shown(given)}, but give a table of values by field")

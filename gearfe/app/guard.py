@@ -19,14 +19,9 @@ MINUTE, AWAY = 60.0, 300.0  # seconds over which requests are counted, and after
 
 
 class Limits:
-    """What a server of many users allows: users at a time, and tasks a minute of each address.
+    """What a server of many users allows: `users` addresses at a time, and `tasks` of one address in a minute.
 
-    Parameters
-    ----------
-    users : int
-        Addresses that may use the page at a time; one that was silent for `AWAY` seconds has left.
-    tasks : int
-        Of one address in a minute. A class behind one router has one address.
+    An address that was silent for `AWAY` seconds has left. A class behind one router has one address.
     """
 
     def __init__(self, users: int, tasks: int):
@@ -53,12 +48,7 @@ class Limits:
 class Guard:
     """ASGI: refuses what does not come from the page itself, and adds the headers of `SAFE`.
 
-    Parameters
-    ----------
-    app : ASGI application
-    hosts : tuple of str
-        Values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
-    limits : Limits, optional
+    `hosts` are the values of ``Host`` that are answered: any other name that leads here is an attack by DNS.
     """
 
     def __init__(self, app: Any, hosts: tuple[str, ...], limits: Limits | None = None):

@@ -35,10 +35,7 @@ damaged = gf.mesh_stiffness(pair, damage=damage, **run)
 
 
 def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
-    """Text of a program that prints the zones of a scene's pair, healthy and damaged, as the page shows them.
-
-    `phases` in a mesh cycle of a section, `solid` of three dimensions.
-    """
+    """Text of a program that prints the zones of a scene's pair, healthy and damaged, as the page shows them."""
     chosen = scene.pair()
     pair, damage = chosen.pair, next(iter(chosen.damage.values()), {})
     case = chosen.case(next(iter(chosen.damage), None))

@@ -66,16 +66,8 @@ def application(
 ) -> Guard:
     """ASGI application of the page.
 
-    Parameters
-    ----------
-    hosts : tuple of str
-        Names under which it answers, with ports.
-    pool : Pool
-        Solver processes; they are ended with the application.
-    start : dict, optional
-        What ``load`` is given when the page opens: name and text of a scene, its pair and case.
-    limits : Limits, optional
-        For many users.
+    It answers under the names `hosts` (with ports), by the solver processes of `pool`, which end with it. `start` is what
+    ``load`` is given when the page opens: name and text of a scene, its pair and case; `limits` are for many users.
     """
 
     @contextlib.asynccontextmanager
@@ -135,10 +127,7 @@ async def _plotly(_):
 def opened(scene: str, pair: str | None = None, case: str | None = None) -> dict[str, Any]:
     """What the page loads when it opens: a scene by its built-in name or as a file, with the pair and case that are chosen.
 
-    Raises
-    ------
-    ValueError
-        If there is no such scene, or it is too large for the page.
+    ValueError if there is no such scene, or it is too large for the page.
     """
     from ..scene.load import read_tables, scene_names
 

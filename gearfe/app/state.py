@@ -132,21 +132,11 @@ def _key(key):
 
 
 def read(name: str, text: str, pair: str | None = None, case: str | None = None) -> tuple[dict[str, Any], list[str]]:
-    """State of the page for a scene's text, and in words what of the scene was left behind because a pair was chosen.
+    """State of the page for a scene's text (TOML), and in words what of the scene was left behind because a pair was chosen.
 
-    Parameters
-    ----------
-    name : str
-        Of the file, for messages.
-    text : str
-        TOML.
-    pair, case : str, optional
-        Which pair of the scene, in which case of damage (``""``: healthy). Without, the scene must be one pair in one case.
-
-    Raises
-    ------
-    ValueError
-        If it is no scene, or says something that the page has no field for: nothing is dropped in silence.
+    `name` is that of the file, for messages; `pair` and `case` say which pair of the scene, in which case of damage (``""``:
+    healthy). Without, the scene must be one pair in one case. ValueError if it is no scene, or says something that the page
+    has no field for: nothing is dropped in silence.
     """
     try:
         tables = tomllib.loads(text)

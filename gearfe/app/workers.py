@@ -110,14 +110,8 @@ class Task:
 class Pool:
     """Solver processes and who waits for them; all its methods are called in one event loop.
 
-    Parameters
-    ----------
-    count : int
-        Processes, at least 2: one is kept free of tasks that take seconds.
-    memory : int
-        Of each [bytes].
-    most : int
-        Tasks that may wait; others are refused in a sentence.
+    There are `count` processes, at least 2, as one is kept free of tasks that take seconds, each with `memory` [bytes]. Of
+    tasks that wait there are `most`; others are refused in a sentence.
     """
 
     def __init__(self, count: int, *, memory: int = MEMORY, most: int = MOST):

@@ -1,7 +1,7 @@
 """Which way the forces of contacts point, on either gear.
 
 A contact pushes along the common normal of both flanks. On the path of contact of involutes that is the line of action. Off it,
-and on modified flanks, which lean away from their involutes by `geometry.tooth.modified.FlankForm.slope`, it is not: the force
+and on modified flanks, which lean away from their involutes by `geometry.tooth.flank_form.FlankForm.slope`, it is not: the force
 has another torque, and the tooth yields to it along and across its own involute's normal.
 """
 

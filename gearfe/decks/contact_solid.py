@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.damage.kinds import split
 from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
-from geometry.mesh.relieved_solid import relieved_points
+from geometry.mesh.relieved import relieved_points
 from geometry.mesh.solid import solid
 from geometry.pair.contacts import FORM, Contacts, contacts
 from geometry.pair.gear_pair import GearPair
@@ -150,7 +150,7 @@ def _modified(pair, found, heights, forms):
 def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width.
 
-    Nodes lie on modified flanks (`geometry.mesh.relieved_solid`); axes askew are among them.
+    Nodes lie on modified flanks (`geometry.mesh.relieved`); axes askew are among them.
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)

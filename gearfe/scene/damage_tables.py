@@ -6,9 +6,10 @@ from typing import Any, NamedTuple
 
 from geometry.damage.crack import Crack
 from geometry.damage.kinds import Damage
-from geometry.damage.pit import pit_row
+from geometry.damage.pit import Pit, pit_row
 from geometry.damage.spall import Spall
 from geometry.pair.gear_pair import GearPair
+from geometry.pair.lines import bands_of
 from geometry.pair.pit_lines import in_both_halves, pit_line
 
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, WHOLE
@@ -160,8 +161,9 @@ def pits_of(row, made, which, pair):
             f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last"
         )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
-    options = {"face": face, "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
-    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
+    options = {"bands": bands_of(made, face, pair["groove_mm"]), "mirrored": row["mirrored"]}
+    found = pit_line(made, which, Pit(z=middle, **numbers), row["along"], row["count"], pitch, **options)
+    return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
 
 
 def spall_of(row, made, which, pair):

@@ -1,9 +1,10 @@
 """What holds the hubs of a pair, checked: it must carry its gear, and not give way so far that the teeth leave each other."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
+
+from geometry.checks import by_gear
 
 from .shaft import Shaft
 from .support import UNITS, Support
@@ -16,29 +17,21 @@ FITS = 0.01  # of a bore, by which a shaft may be thicker: a press fit, and roun
 def supports_of(pair, supports, forces=(), face=None):
     """What holds the hubs of pinion and wheel, None where rigid; None if both are.
 
-    Raises
-    ------
-    ValueError
-        If it is something else, a shaft does not carry its gear, or a hub gives way so far under one of the `forces` [N] that the
-        teeth leave each other.
+    ValueError if it is something else, a shaft does not carry its gear, or a hub gives way so far under one of the `forces`
+    [N] that the teeth leave each other.
     """
     if supports is None:
         return None
-    if not isinstance(supports, Mapping):
-        raise ValueError(f"supports = {supports!r}, but give them by gear: {{'pinion': Support(...), 'wheel': Shaft(...)}}")
-    unknown = set(supports) - {"pinion", "wheel"}
-    if unknown:
-        raise ValueError(f"supports of {unknown.pop()!r}, but they are given for 'pinion' and 'wheel'")
-    for name, one in supports.items():
-        if not (one is None or isinstance(one, (Support, Shaft))):
-            raise ValueError(f"supports of the {name}: {one!r} is neither a Support nor a Shaft")
-    for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2)):
-        if supports.get(name) is not None:
-            _check_fit(name, gear, supports[name])
-            beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # its halves' axial forces cancel
-            _check_way(name, gear, supports[name], max(forces, default=0.0), beta_b)
-    found = tuple(supports.get(name) for name in ("pinion", "wheel"))
-    return found if any(found) else None
+    both = by_gear("supports", supports, "{'pinion': Support(...), 'wheel': Shaft(...)}")
+    for name, gear, held in zip(("pinion", "wheel"), (pair.gear_1, pair.gear_2), both, strict=True):
+        if held is None:
+            continue
+        if not isinstance(held, (Support, Shaft)):
+            raise ValueError(f"supports of the {name}: {held!r} is neither a Support nor a Shaft")
+        _check_fit(name, gear, held)
+        beta_b = 0.0 if face == "herringbone" else abs(gear.beta_b)  # its halves' axial forces cancel
+        _check_way(name, gear, held, max(forces, default=0.0), beta_b)
+    return both if any(both) else None
 
 
 def _check_fit(name, gear, held):

@@ -11,14 +11,8 @@ from numpy.typing import NDArray
 class Hub:
     """Flexibility of what holds a gear, seen from the middle of its width; the gear follows as a rigid body.
 
-    Attributes
-    ----------
-    bending : ndarray, shape (2, 2)
-        Displacement [mm] and slope [rad] by a force [N] and a moment [N mm]. The same in every plane through the axis.
-    torsion : float
-        Twist [rad] by a torque [N mm].
-    axial : float
-        [mm/N].
+    `bending` (2, 2) is displacement [mm] and slope [rad] by a force [N] and a moment [N mm], the same in every plane through
+    the axis; `torsion` the twist [rad] by a torque [N mm]; `axial` the shift by an axial force [mm/N].
     """
 
     bending: NDArray[np.float64]

@@ -14,19 +14,9 @@ MOTIONS = 6  # of a face: displacements x, y, z [mm], turns about x, y, z [rad]
 def stub_stiffness(shaft: Any, width: float) -> NDArray[np.float64]:
     """Forces and moments that the stubs put on both end faces of the gear, by the faces' motions.
 
-    A stub that reaches no bearing moves along freely; one that ends at its face, likewise.
-
-    Parameters
-    ----------
-    shaft : Shaft
-        Its first bearing holds it along the axis, its `torque` about it.
-    width : float
-        Of the gear [mm].
-
-    Returns
-    -------
-    ndarray, shape (12, 12)
-        Six motions of the face z = 0, then six of z = b.
+    A stub that reaches no bearing moves along freely; one that ends at its face, likewise. The shaft's first bearing holds it
+    along the axis, its `torque` about it; `width` is that of the gear [mm]. Shape (12, 12): six motions of the face z = 0,
+    then of z = b.
     """
     faces = (shaft.gear - width / 2, shaft.gear + width / 2)
     nodes, pieces = pieces_between(shaft.segments, [*shaft.bearings, shaft.torque, *faces])

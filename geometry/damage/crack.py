@@ -3,13 +3,13 @@
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from numbers import Real
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from ..checks import is_finite
 from ..kept import keeping
 from ..tooth.gear import Gear
 from ..tooth.profile import cartesian, fillet, fillet_length, form_point, root_curve, tangent_point
@@ -84,37 +84,11 @@ class Crack:
             if value is not None:
                 finite("crack", name, value)
         object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
-        if (self.level is None) == (self.length is None):
-            raise ValueError(f"level = {self.level}, length = {self.length}: give one of them")
-        if self.level is not None and not 0 < self.level < 1:
-            raise ValueError(
-                f"level = {self.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
-            )
-        if self.length is not None and not (math.isfinite(self.length) and self.length > 0):
-            raise ValueError(f"length = {self.length} mm, but a crack has a positive length")
-        if self.angle is None or not math.radians(5) <= self.angle <= math.radians(90):
-            raise ValueError(f"angle = {self.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
-        if self.start not in STARTS:
-            raise ValueError(f"start = {self.start!r}, but it must be one of {', '.join(STARTS)}")
-        if not isinstance(self.turning, bool):
-            raise ValueError(f"turning = {self.turning!r}, but give True or False")
-        if self.turning and self.length is not None:
-            raise ValueError("a turning crack is given by its level, not its length")
+        _check_path(self)
         if self.width is not None:
             object.__setattr__(self, "width", _numbers("width", self.width, (2,)))
-            if not 0 <= self.width[0] < self.width[1]:
-                raise ValueError(f"width = {self.width} mm, but a crack is open from a height z >= 0 to a greater one")
-        if not isinstance(self.rounded, bool):
-            raise ValueError(f"rounded = {self.rounded!r}, but give True or False")
         object.__setattr__(self, "ends", _numbers("ends", self.ends, (2, 3)))
-        if not (min(self.ends) >= 0 and 0 < max(self.ends) <= 1):
-            raise ValueError(f"ends = {self.ends}, but they are parts of the crack's length: from 0 to 1, not all 0")
-        low, high = extremes(self)
-        if low < -SLACK or high > 1 + SLACK:
-            raise ValueError(
-                f"ends = {self.ends}: the parabola through them runs from {low:.3g} to {high:.3g}, but parts of the crack's "
-                "length lie between 0 and 1; change the middle number, or give two"
-            )
+        _check_front(self)
 
     @property
     def through(self) -> bool:
@@ -149,12 +123,48 @@ class Crack:
         return ""
 
 
+def _check_path(crack):
+    """ValueError unless size, angle and start of a crack go together."""
+    if (crack.level is None) == (crack.length is None):
+        raise ValueError(f"level = {crack.level}, length = {crack.length}: give one of them")
+    if crack.level is not None and not 0 < crack.level < 1:
+        raise ValueError(
+            f"level = {crack.level}, but it must lie between 0 and 1 (0.5 reaches the centre-line, 1 is a broken tooth)"
+        )
+    if crack.length is not None and not crack.length > 0:
+        raise ValueError(f"length = {crack.length} mm, but a crack has a positive length")
+    if crack.angle is None or not math.radians(5) <= crack.angle <= math.radians(90):
+        raise ValueError(f"angle = {crack.angle} rad, but it must lie between 5 and 90 degrees; angles are radians in Python")
+    if crack.start not in STARTS:
+        raise ValueError(f"start = {crack.start!r}, but it must be one of {', '.join(STARTS)}")
+    if not isinstance(crack.turning, bool):
+        raise ValueError(f"turning = {crack.turning!r}, but give True or False")
+    if crack.turning and crack.length is not None:
+        raise ValueError("a turning crack is given by its level, not its length")
+
+
+def _check_front(crack):
+    """ValueError unless a crack is open somewhere, and nowhere beyond its length."""
+    if crack.width is not None and not 0 <= crack.width[0] < crack.width[1]:
+        raise ValueError(f"width = {crack.width} mm, but a crack is open from a height z >= 0 to a greater one")
+    if not isinstance(crack.rounded, bool):
+        raise ValueError(f"rounded = {crack.rounded!r}, but give True or False")
+    if not (min(crack.ends) >= 0 and 0 < max(crack.ends) <= 1):
+        raise ValueError(f"ends = {crack.ends}, but they are parts of the crack's length: from 0 to 1, not all 0")
+    low, high = extremes(crack)
+    if low < -SLACK or high > 1 + SLACK:
+        raise ValueError(
+            f"ends = {crack.ends}: the parabola through them runs from {low:.3g} to {high:.3g}, but parts of the crack's "
+            "length lie between 0 and 1; change the middle number, or give two"
+        )
+
+
 def _numbers(name, values, counts):
     try:
         values = tuple(values)
     except TypeError:
         values = (values,)
-    if len(values) not in counts or any(isinstance(v, bool) or not isinstance(v, Real) or not math.isfinite(v) for v in values):
+    if len(values) not in counts or not all(map(is_finite, values)):
         more = ", or three with the one half-way" if 3 in counts else ""
         raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{more}")
     return tuple(float(value) for value in values)
@@ -217,10 +227,7 @@ def start_arc(gear, crack):
 def crack_path(gear, crack):
     """Corners ``(2, 2 or 3)`` [mm] of the crack in the frame of its tooth (centre-line +y), from the fillet to its tip.
 
-    Raises
-    ------
-    ValueError
-        If the crack leaves the body: reaches the held edge, the opposite fillet or the next tooth's sector.
+    ValueError if it leaves the body: reaches the held edge, the opposite fillet or the next tooth's sector.
     """
     first = cartesian(*root_curve(gear, start_arc(gear, crack)))
     heading = np.array([-math.sin(crack.angle), -gear.outward * math.cos(crack.angle)])

@@ -37,10 +37,7 @@ def shallowest(crack):
 def whole(crack):
     """The crack as a section through its deepest place has it: open over the whole width.
 
-    Raises
-    ------
-    ValueError
-        If it has a bend, and another depth than that of its full length.
+    ValueError if it has a bend, and another depth than that of its full length.
     """
     part, even = deepest(crack), replace(crack, width=None, ends=(1.0, 1.0), rounded=False)
     if part == 1 and crack.even:
@@ -59,18 +56,9 @@ def shallower(crack, part):
 
 
 def crack_in_band(crack, b, first, last):
-    """The crack of a gear of width `b` as a band of it sees it, heights counted from the band's end at z = `first` to `last`.
+    """The crack of a gear of width `b` [mm] as a band of it sees it; None if it is not open anywhere in the band.
 
-    Parameters
-    ----------
-    crack : Crack
-    b, first, last : float
-        [mm]; `first` may be the higher one.
-
-    Returns
-    -------
-    Crack or None
-        None if it is not open anywhere in the band.
+    Heights in the band are counted from its end at z = `first` to that at z = `last` [mm]; `first` may be the higher one.
     """
     if crack.through:
         return crack
@@ -92,13 +80,7 @@ def crack_in_band(crack, b, first, last):
 class Front:
     """The front of a crack as a mesh follows it.
 
-    Attributes
-    ----------
-    crack : Crack
-    width : float
-        Of the face [mm].
-    least : float
-        The least depth followed, in the deepest.
+    `width` is that of the face [mm], `least` the least depth followed, in the deepest.
     """
 
     crack: Crack

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from types import UnionType
 from typing import Any, get_args
 
+from ..checks import by_gear
 from ..tooth.gear import Gear
 from .crack import Crack
 from .pit import Pit
@@ -33,36 +34,27 @@ def check_crack(crack: object) -> None:
 def by_side(damage: Mapping[str, Damage | Sequence[Damage] | None] | None) -> tuple[list[Damage], list[Damage]]:
     """Damage of pinion and wheel, each given as one, as a list or tuple of them, or not at all.
 
-    Raises
-    ------
-    ValueError
-        If it is not given by gear, or something is no damage.
+    ValueError if it is not given by gear, or something is no damage.
     """
-    given = {} if damage is None else damage
-    if not isinstance(given, dict):
-        example = "damage = {'pinion': [Crack(...), Pit(...)], 'wheel': [...]}"
-        raise ValueError(f"damage is a {type(given).__name__}, but say of which gear: {example}")
-    if unknown := set(given) - {"pinion", "wheel"}:
-        raise ValueError(f"damage of {unknown.pop()!r}, but it is given for 'pinion' and 'wheel'")
-    return _listed(given, "pinion"), _listed(given, "wheel")
+    pinion, wheel = by_gear("damage", damage, "{'pinion': [Crack(...), Pit(...)], 'wheel': [...]}")
+    return _listed(pinion, "pinion"), _listed(wheel, "wheel")
 
 
-def _listed(given, side):
-    own = given.get(side) or ()
-    if isinstance(own, Damage):
-        return [own]
-    if not isinstance(own, (list, tuple)):
-        raise ValueError(f"damage of the {side}: {own!r}, but give a {', a '.join(NAMES)} or a list of them")
-    for one in own:
-        if not isinstance(one, Damage):
-            raise ValueError(f"damage of the {side}: {one!r} is neither a {' nor a '.join(NAMES)}")
-    return list(own)
+def _listed(damage, side):
+    if isinstance(damage, Damage):
+        return [damage]
+    if damage and not isinstance(damage, (list, tuple)):
+        raise ValueError(f"damage of the {side}: {damage!r}, but give a {', a '.join(NAMES)} or a list of them")
+    for each in damage or ():
+        if not isinstance(each, Damage):
+            raise ValueError(f"damage of the {side}: {each!r} is neither a {' nor a '.join(NAMES)}")
+    return list(damage or ())
 
 
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """What weakens the body, and what takes contact away: two tuples."""
-    found = tuple(damage)
-    weakens, removes = (tuple(one for one in found if one.removes_contact is there) for there in (False, True))
+    damage = tuple(damage)
+    weakens, removes = (tuple(one for one in damage if one.removes_contact is there) for there in (False, True))
     return weakens, removes
 
 

@@ -4,26 +4,11 @@ import numpy as np
 
 
 def open_seam(points, triangles, chain):
-    """Double the nodes of `chain` (start on the boundary, tip last, tip not doubled).
+    """Double the nodes of a chain of edges of a mesh that starts on its boundary; the last one, the tip, is not doubled.
 
-    Parameters
-    ----------
-    points : ndarray, shape (2, n)
-    triangles : ndarray, shape (3, m)
-    chain : ndarray
-        Nodes of consecutive edges.
-
-    Returns
-    -------
-    points, triangles : ndarray
-        With the new nodes appended; triangles right of the chain (looking to the tip) use them.
-    double : ndarray
-        The chain on its right side, the tip shared.
-
-    Raises
-    ------
-    RuntimeError
-        If the chain is not made of edges of the mesh.
+    `points` are ``(2, n)``, `triangles` ``(3, m)``, `chain` the nodes. Gives the points with the new ones appended; the
+    triangles, of which those right of the chain (looking to the tip) use them; and the chain on its right side, the tip
+    shared. RuntimeError if the chain is not made of edges of the mesh.
     """
     triangles = triangles.copy()
     sides = {tuple(sorted(edge)) for edge in zip(chain[:-1].tolist(), chain[1:].tolist(), strict=True)}

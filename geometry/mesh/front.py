@@ -17,34 +17,15 @@ STIFFER = 0.5  # small triangles resist as their area to minus this power: they 
 HARD, ROUNDS = 1000.0, 10
 
 
-def follow(gear, crack, width, points, triangles, *, outline, line, folds):
+def follow(gear, crack, width, points, triangles, fixed, line, folds):
     """How a section follows the front of a crack: the shift ``(2, n)`` [mm] of its vertices, and the `Front` followed.
 
     A front that runs out is followed down to the first of `geometry.damage.front.LEAST` at which the mesh does not fold, any
-    other one all the way.
-
-    Parameters
-    ----------
-    gear : Gear
-    crack : Crack
-    width : float
-        Of the face [mm].
-    points, triangles
-        As of `shifts`.
-    outline : ndarray
-        Vertices that must not move.
-    line : ndarray, shape (k,) or (2, k)
-        Vertices on the crack from mouth to tip.
-    folds : callable
-        Whether the mesh folds with its vertices at points ``(2, n)``.
-
-    Raises
-    ------
-    RuntimeError
-        If the mesh cannot follow it.
+    other one all the way; RuntimeError if the mesh cannot. `width` is that of the face [mm], ``folds(points)`` says whether
+    the mesh folds with its vertices at points ``(2, n)``; all others as of `shifts`.
     """
     length = math.dist(*points[:, np.atleast_2d(line)[0, [0, -1]]].T)
-    shift = shifts(points, triangles, outline, line, max(REACH[0] * length, REACH[1] * gear.m_n))
+    shift = shifts(points, triangles, fixed, line, max(REACH[0] * length, REACH[1] * gear.m_n))
     low = shallowest(crack)
     for least in LEAST if low == 0 else (low * (1 - 1e-9),):
         if not folds(points + (SPARE * least - 1) * shift):

@@ -8,10 +8,10 @@ compared with an integral that knows nothing of the boundary representation, so 
 
 import math
 from dataclasses import dataclass, replace
-from numbers import Integral
 
 import numpy as np
 
+from ..checks import is_whole
 from ..damage.crack import meshed_path
 from ..damage.hollow import centre_arc, check_hollows
 from ..damage.hollow_volume import removed_volume
@@ -91,7 +91,7 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
     RuntimeError
         If what was cut is not what the pits take, or gmsh cannot mesh what is left.
     """
-    if teeth is not None and (isinstance(teeth, bool) or not isinstance(teeth, Integral)):
+    if teeth is not None and not is_whole(teeth):
         raise ValueError(f"teeth = {teeth!r}, but give an odd whole number of teeth, or None for all")
     if teeth is not None and (teeth < 1 or teeth % 2 == 0 or teeth > gear.z // 2):
         raise ValueError(f"teeth = {teeth}: give an odd number of at most half the teeth of z = {gear.z}")
@@ -118,16 +118,8 @@ def holed_sector(gear, pits=(), crack=None, *, teeth=3, refine=1.0, sizes=None, 
 def filled(sector, *, teeth=3):
     """The same mesh with its pits full of material: what the holes do beside it is not of the mesh.
 
-    Parameters
-    ----------
-    sector : Holed
-    teeth : int or None
-        As it was given to `holed_sector`.
-
-    Returns
-    -------
-    Holed
-        Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them.
+    Its flanks are whole, and no tet is in a pit; its faces ``pits`` are the flank above them. `teeth` as given to
+    `holed_sector`.
     """
     plug = np.full_like(sector.plug, -1)
     flat = _twisted(sector.points, -sector.gear.twist_rate)
@@ -140,10 +132,9 @@ def filled(sector, *, teeth=3):
 
 def _attempt(gear, pits, crack, teeth, size, strips, stretch):
     rim = min((min(pit.axes) for pit in pits), default=1.0) * size["rim"] / gear.m_n
-    points, curves, faces = section(gear, crack, teeth)
     squeeze = np.array([[1.0], [1.0], [1 / stretch]])
     made = tetrahedra(
-        points, curves, faces, gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
+        section(gear, crack, teeth), gear.b / stretch, [tool(gear, pit, squeeze) for pit in pits],
         fine=fine(gear, crack, size, teeth), rim=rim, far=size["far"], strips=[(squeeze * line, *rest) for line, *rest in strips],
     )  # fmt: skip
     made = replace(made, points=made.points / squeeze, volume={piece: stretch * v for piece, v in made.volume.items()})

@@ -17,6 +17,8 @@ import numpy as np
 # one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
 SEEN, DECIMALS = 50.0, 8
 
+GROWTH = 0.5  # of the edge length of tets per length, away from fine places
+
 TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
 
 _turn = threading.Lock()
@@ -30,11 +32,8 @@ class UnmeshedError(RuntimeError):
 def gmsh_session():
     """A quiet gmsh session that is closed whatever happens; that of another thread waits until then.
 
-    Raises
-    ------
-    RuntimeError
-        If gmsh or one of the system libraries it loads is missing; the message says what to install. If the program that uses
-        gearfe has a session of its own open.
+    RuntimeError if gmsh or one of the system libraries it loads is missing (the message says what to install), or if the
+    program that uses gearfe has a session of its own open.
     """
     with _turn:
         try:
@@ -206,17 +205,15 @@ class Pieces:
     volume: dict
 
 
-def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None, far, growth=0.5, strips=()):
+def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=()):
     """Tets of an extruded section, with cylinders cut out and kept as pieces of their own.
 
     Parameters
     ----------
-    points : ndarray, shape (2, n)
-        Of the section [mm].
-    curves : list of (str, sequence of int)
-        ``line`` or ``arc`` (about the origin) between two points, ``spline`` through all of them.
-    faces : list of list of list of int
-        Loops of each face, the outer first: numbers of curves; faces may share curves.
+    drawing : (ndarray, list, list)
+        The section: points ``(2, n)`` [mm]; curves ``(kind, numbers of points)``, each a ``line`` or ``arc`` (about the origin)
+        between two of them or a ``spline`` through all; and of each face its loops, the outer first, as numbers of curves. Faces
+        may share curves.
     height : float
         [mm].
     cylinders : sequence of (list, ndarray)
@@ -229,8 +226,6 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         Edge length on the cylinders' edges [mm].
     far : float
         Largest edge length [mm].
-    growth : float
-        Of the edge length per length, away from fine places.
     strips : sequence of (ndarray (3, n), float, float)
         Points of lines [mm], the distance from them within which the mesh is finer, the edge length there [mm].
 
@@ -243,6 +238,7 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
     UnmeshedError
         If gmsh cannot.
     """
+    points, curves, faces = drawing
     with gmsh_session() as gmsh:
         occ, mesh = gmsh.model.occ, gmsh.model.mesh
         tags = [occ.addPoint(x, y, 0.0) for x, y in points.T]
@@ -273,7 +269,7 @@ def tetrahedra(points, curves, faces, height, cylinders=(), *, fine=(), rim=None
         for tag, piece in owner.items():
             volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
         inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
-        _sizes(gmsh, inner, fine, rim, far, growth, strips)
+        _sizes(gmsh, inner, fine, rim, far, strips)
         try:
             mesh.generate(3)
         except Exception as error:  # gmsh itself raises just Exception
@@ -316,14 +312,14 @@ def _cylinder(occ, outline, push):
     return next(one for one in occ.extrude([(2, face)], *push) if one[0] == 3)
 
 
-def _sizes(gmsh, inner, fine, rim, far, growth, strips):
+def _sizes(gmsh, inner, fine, rim, far, strips):
     """Background field: edge lengths that grow away from circles of the section, from strips and from the edges of pieces."""
     field = gmsh.model.mesh.field
     numbers = []
     for x, y, radius, size in fine:
         numbers.append(field.add("MathEval"))
         away = f"sqrt((x-({x}))^2+(y-({y}))^2)-{radius}"
-        field.setString(numbers[-1], "F", f"{size}+{growth / 2}*(({away})+abs({away}))")
+        field.setString(numbers[-1], "F", f"{size}+{GROWTH / 2}*(({away})+abs({away}))")
     if inner:
         edges = gmsh.model.getBoundary(
             gmsh.model.getBoundary(inner, combined=False, oriented=False), combined=False, oriented=False
@@ -331,13 +327,13 @@ def _sizes(gmsh, inner, fine, rim, far, growth, strips):
         near = field.add("Distance")
         field.setNumbers(near, "CurvesList", sorted({abs(tag) for dim, tag in edges if dim == 1}))
         field.setNumber(near, "Sampling", 40)
-        numbers.append(_away(field, near, 0.0, rim, far, growth))
+        numbers.append(_away(field, near, 0.0, rim, far))
     for line, reach, size in strips:
         tags = [gmsh.model.occ.addPoint(*place) for place in line.T.tolist()]
         gmsh.model.occ.synchronize()
         near = field.add("Distance")
         field.setNumbers(near, "PointsList", tags)
-        numbers.append(_away(field, near, reach, size, far, growth))
+        numbers.append(_away(field, near, reach, size, far))
     least = field.add("Min")
     field.setNumbers(least, "FieldsList", numbers)
     field.setAsBackgroundMesh(least)
@@ -346,10 +342,10 @@ def _sizes(gmsh, inner, fine, rim, far, growth, strips):
     gmsh.option.setNumber("Mesh.Algorithm3D", 1)
 
 
-def _away(field, near, reach, size, far, growth):
+def _away(field, near, reach, size, far):
     """Field of edge lengths: `size` up to `reach` from the places of field `near`, then growing to `far`."""
     number = field.add("Threshold")
     for name, value in (("InField", near), ("SizeMin", size), ("SizeMax", far), ("DistMin", reach)):
         field.setNumber(number, name, value)
-    field.setNumber(number, "DistMax", reach + (far - size) / growth)
+    field.setNumber(number, "DistMax", reach + (far - size) / GROWTH)
     return number

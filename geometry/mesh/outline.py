@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..tooth.profile import arc_at, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
+from ..tooth.profile import arc_at, cartesian, fillet_length, flank, roll_at_arc, root_curve, root_half_angle
 
 NEAR = 3  # teeth beside the loaded ones that get the edge length `size`; those beyond get `far_size`
 MERGED = 1e-6  # m_n: a shorter root arc between two fillets is none
@@ -54,7 +54,7 @@ def spaced(start, stop, spacing, fine, span=1, growth=GROWTH):
     return placed
 
 
-def _doubled(values):
+def doubled(values):
     """Insert the middles: parameters of vertices and, at odd places, of edge middles."""
     values = np.asarray(values, dtype=float)
     out = np.empty(2 * values.size - 1)
@@ -67,7 +67,7 @@ def half(gear, roll, fillet_size, size, *, mark=None):
     """Half a tooth with flank vertices at `roll`; `mark` is an arc of `root_curve` and the edge length there [mm]."""
     width = gear.half_thickness(gear.r_a) * gear.r_a
     corner = arc_at(gear, roll[-1]) - arc_at(gear, roll[-2])
-    tip = _doubled(spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
+    tip = doubled(spaced(0.0, width, size, [(width, width, min(corner, size))])) / gear.r_a
     below, top = -gear.r_f * (math.pi / gear.z - root_half_angle(gear)), fillet_length(gear)
     if mark is None:
         parts = [np.linspace(top, below, max(2, round((top - below) / fillet_size)) + 1)]
@@ -75,8 +75,8 @@ def half(gear, roll, fillet_size, size, *, mark=None):
         fine = [(mark[0], mark[0], mark[1])]
         bounds = [(mark[0], top), (below, mark[0])][: 2 if mark[0] - below > MERGED * gear.m_n else 1]
         parts = [spaced(a, b, fillet_size, fine)[::-1] for a, b in bounds]
-    root = _doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
-    pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, _doubled(roll[::-1])), root_curve(gear, root)]
+    root = doubled(np.concatenate([parts[0], *[part[1:] for part in parts[1:]]]))
+    pieces = [(np.full(tip.size, gear.r_a), tip), flank(gear, doubled(roll[::-1])), root_curve(gear, root)]
     radius, angle = (np.concatenate([p[k][:-1] for p in pieces]) for k in (0, 1))
     ends = np.cumsum([p[0].size - 1 for p in pieces]) // 2
     marked = None if mark is None else int(ends[1] + parts[0].size - 1)
@@ -111,37 +111,44 @@ def outline(gear, rolls, *, fillet_size, size, far_size, teeth=None, marks=None)
     plain, coarse, far = (
         half(gear, stations(gear, s), f, s) for s, f in ((size, fillet_size), (size, size), (far_size, far_size))
     )
-    arc = math.pi / gear.z * _doubled(np.linspace(0, 1, max(1, round(math.pi / gear.z * gear.r_f / far_size)) + 1))[:-1]
+    arc = math.pi / gear.z * doubled(np.linspace(0, 1, max(1, round(math.pi / gear.z * gear.r_f / far_size)) + 1))[:-1]
     gone = Half(np.full(arc.size, gear.r_f), arc)
 
     def choose(tooth, side):
         distance = min(abs((tooth - k + gear.z // 2) % gear.z - gear.z // 2) for k in rolls)
         if teeth is not None and distance > teeth // 2:
             return gone
-        if (tooth, side) in marks or distance == 0:
+        if (tooth, side) in marks or (distance == 0 and side == "loaded"):
             roll = rolls[tooth] if side == "loaded" and tooth in rolls else stations(gear, size)
-            return (
-                half(gear, roll, fillet_size, size, mark=marks[tooth, side])
-                if (tooth, side) in marks
-                else (half(gear, roll, fillet_size, size) if side == "loaded" else plain)
-            )
-        return coarse if distance <= NEAR else far
+            return half(gear, roll, fillet_size, size, mark=marks.get((tooth, side)))
+        return plain if distance == 0 else coarse if distance <= NEAR else far
 
-    radii, angles, flanks, fillets, starts, count = [], [], {}, {}, {}, 0
+    points, places = around(gear, choose)
+    flanks, fillets, starts = {}, {}, {}
+    for (tooth, side), (piece, first, sense) in places.items():
+        if side == "loaded" and tooth in rolls:
+            flanks[tooth], fillets[tooth] = (first + piece.flank)[::-1], first + piece.fillet
+        if piece.mark is not None:
+            starts[tooth, side] = first + sense * piece.mark
+    return points, flanks, fillets, starts
+
+
+def around(gear, choose):
+    """All teeth clockwise from the middle of tooth 0's tip, made of the `Half` that `choose` gives for a tooth and a side.
+
+    Returns the points ``(2, 2 n)`` [mm], vertices at even places and edge middles at odd, and by tooth and side the half, the
+    vertex number of its tip middle, and the sense (1 or -1) in which vertices are numbered from there to the root.
+    """
+    radii, angles, places, count = [], [], {}, 0
     for tooth in range(gear.z):
-        right, left = choose(tooth, "loaded"), choose((tooth + 1) % gear.z, "unloaded")
-        turn = 2 * math.pi * tooth / gear.z
+        turn, after = 2 * math.pi * tooth / gear.z, (tooth + 1) % gear.z
+        right, left = choose(tooth, "loaded"), choose(after, "unloaded")
         radii += [right.radius, [gear.r_f], left.radius[:0:-1]]
         angles += [turn + right.angle, [turn + math.pi / gear.z], turn + 2 * math.pi / gear.z - left.angle[:0:-1]]
-        if tooth in rolls:
-            flanks[tooth], fillets[tooth] = (count + right.flank)[::-1], count + right.fillet
-        if right.mark is not None:
-            starts[tooth, "loaded"] = count + right.mark
+        places[tooth, "loaded"] = right, count, 1
         count += (right.radius.size + left.radius.size) // 2
-        if left.mark is not None:  # counted back from the next tooth's tip middle
-            starts[(tooth + 1) % gear.z, "unloaded"] = count - left.mark
-    radius, angle = np.concatenate(radii), np.concatenate(angles)
-    return np.array([radius * np.sin(angle), radius * np.cos(angle)]), flanks, fillets, starts
+        places[after, "unloaded"] = left, count, -1
+    return cartesian(np.concatenate(radii), np.concatenate(angles)), places
 
 
 def held_circle(gear):
@@ -149,7 +156,7 @@ def held_circle(gear):
     size = min(0.35 * abs(gear.r_f - gear.held), 2 * math.pi * gear.held / 16)
     count = max(12, math.ceil(2 * math.pi * gear.held / size))
     angle = np.linspace(0, 2 * math.pi, 2 * count, endpoint=False)
-    return gear.held * np.array([np.sin(angle), np.cos(angle)])
+    return cartesian(gear.held, angle)
 
 
 def inside(loop, points):

@@ -7,7 +7,8 @@ import numpy as np
 from skfem import MeshTri2
 
 from ..tooth.gear import Gear
-from .outline import _doubled, half, spaced, stations
+from ..tooth.profile import cartesian
+from .outline import doubled, half, spaced, stations
 from .section_mesh import fill
 
 # longest edges in modules: flanks, fillets, root and tip, sides; on the held circle of a ring as many to a pitch as `RIM`
@@ -35,18 +36,7 @@ class PeriodicSector:
 
 
 def periodic_sector(gear, *, refine=1.0):
-    """Mesh one pitch sector.
-
-    Parameters
-    ----------
-    gear : Gear
-    refine : float
-        Divides the edge lengths.
-
-    Returns
-    -------
-    PeriodicSector
-    """
+    """Mesh one pitch sector of a gear; `refine` divides the edge lengths."""
     unit, pitch = gear.m_n / refine, math.pi / gear.z
     roll = stations(gear, FLANK * unit)
     one = half(gear, roll, FILLET * unit, COARSE * unit)
@@ -55,7 +45,7 @@ def periodic_sector(gear, *, refine=1.0):
     cells = math.ceil((RIM if gear.internal else 2) * refine)
     fine = 2 * pitch * gear.held / cells
     away = spaced(0.0, thick, SIDE * unit, [(0.0, 0.0, fine), (thick, thick, COARSE * unit)], 1, GROWTH)
-    side = _doubled(gear.held - away if gear.internal else gear.held + away)
+    side = doubled(gear.held - away if gear.internal else gear.held + away)
     side[-1] = gear.r_f
     held = np.linspace(pitch, -pitch, 2 * cells + 1)
     parts = [  # clockwise from the lower left corner, each without its last point
@@ -67,7 +57,7 @@ def periodic_sector(gear, *, refine=1.0):
     ]
     r, a = (np.concatenate([part[k][:-1] for part in parts]) for k in (0, 1))
     first = np.cumsum([0, *(part[0].size - 1 for part in parts)]) // 2
-    mesh, _ = fill(np.array([r * np.sin(a), r * np.cos(a)]), np.zeros((2, 0)))
+    mesh, _ = fill(cartesian(r, a), np.zeros((2, 0)))
     count = first[-1]
     left, _, _, right, below = ((np.arange(first[k], first[k + 1] + 1)) % count for k in range(5))
     up = one.flank  # from the tip to the form point, from the middle of the tip

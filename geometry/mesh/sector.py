@@ -86,28 +86,10 @@ class Sector:
 
 
 def sector(gear, cracks=(), *, refine=1.0, sizes=None):
-    """Sector of `gear` with the cracks of its tooth.
+    """`Sector` of a gear with the cracks of its tooth.
 
-    Parameters
-    ----------
-    gear : Gear
-    cracks : sequence of Crack
-        All of one tooth.
-    refine : float
-        Divides the edge lengths.
-    sizes : dict, optional
-        Edge lengths [m_n] in place of those of `SIZES`.
-
-    Returns
-    -------
-    Sector
-
-    Raises
-    ------
-    ValueError
-        If `refine` is not positive.
-    RuntimeError
-        If no valid triangles were found.
+    `refine` divides the edge lengths; `sizes` [m_n] replace those of `SIZES`. ValueError if `refine` is not positive,
+    RuntimeError if no valid triangles were found.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default")

@@ -72,10 +72,7 @@ MOST = 5000  # layers of elements
 
 
 def layers(b, size, *, breaks=(), fine=()):
-    """Heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks` and finer at `fine`.
-
-    `fine` as of `geometry.mesh.outline.spaced`: (first, last, size) [mm].
-    """
+    """Heights [mm] of element layers about `size` apart over 0..b, with borders at `breaks`, finer at `fine` (as of `spaced`)."""
     if b > MOST * size:
         raise ValueError(f"layers of {size:.3g} mm in a gear of b = {b:g} mm: more than {MOST}; give higher ones, or less refine")
     ends = np.unique([0.0, b, *(z for z in breaks if 0 < z < b)])
@@ -150,9 +147,7 @@ def follow_front(section, number, crack):
         return jacobian(replace(section, points=section.points + every(points - section.points[:, :corners]))).min() <= 0
 
     fixed = np.concatenate([ends[:, once].ravel(), *others])
-    shift, front = follow(
-        section.gear, crack, section.gear.b, section.points[:, :corners], triangles, outline=fixed, line=line, folds=folds
-    )
+    shift, front = follow(section.gear, crack, section.gear.b, section.points[:, :corners], triangles, fixed, line, folds)
     return every(shift), front
 
 
@@ -164,21 +159,9 @@ def _chain(section, ends, depth):
 
 
 def extrude(section, levels, rate, moves=()):
-    """Twisted hexahedra over a section, without its cracks.
+    """Twisted hexahedra over a section, without its cracks: a `Solid`.
 
-    Parameters
-    ----------
-    section : QuadSection
-    levels : ndarray
-        Heights [mm].
-    rate : float
-        Clockwise turn [rad/mm].
-    moves : iterable of (ndarray, Front)
-        Of `follow_front`.
-
-    Returns
-    -------
-    Solid
+    `levels` are heights [mm], `rate` is the clockwise turn [rad/mm], `moves` (ndarray, Front) are those of `follow_front`.
     """
     count, corners, tall = section.points.shape[1], section.corners, levels.size
     middle = (levels[1:] + levels[:-1]) / 2

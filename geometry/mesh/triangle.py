@@ -30,15 +30,11 @@ def lagrange(order, points):
 def table(order):
     """All that depends on the polynomial order alone.
 
-    Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside.
-
-    Returns
-    -------
-    namespace
-        `count` nodes, their barycentric coordinates `nodes` (3, count), `inside` how many of them lie inside; quadrature
-        `weight` (q,); at its points `value` (count, q), `slope` (2, count, q) by the reference coordinates, the linear map's
-        `corner` (3, q), and the blended bulges `bulge` (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by the
-        values at `bulge_points`.
+    Nodes are numbered: three vertices, the inner nodes of the edges `ENDS` from first to second vertex, the inside. In a
+    namespace: `count` nodes, their barycentric coordinates `nodes` (3, count), `inside` how many of them lie inside;
+    quadrature `weight` (q,); at its points `value` (count, q), `slope` (2, count, q) by the reference coordinates, the linear
+    map's `corner` (3, q), and the blended bulges `bulge` (3, q, BULGE) and their derivatives `bulge_slope` (2, 3, q, BULGE) by
+    the values at `GAUSS`.
     """
     line = (lobatto(order) + 1) / 2
     ends = np.eye(3)
@@ -97,13 +93,7 @@ def _modes(x, y, order):
 def jacobians(points, triangles, bulges, order):
     """Derivatives of the curved maps at the quadrature points of `order`: ``(m, 2, 2, q)``, place by reference coordinate.
 
-    Parameters
-    ----------
-    points : ndarray, shape (2, n)
-    triangles : ndarray, shape (3, m)
-    bulges : ndarray, shape (3, 2, BULGE, m)
-        Of the local edges `ENDS`, see `geometry.mesh.sector.Sector`.
-    order : int
+    `points` are ``(2, n)``, `triangles` ``(3, m)``, `bulges` ``(3, 2, BULGE, m)`` as of `geometry.mesh.sector.Sector`.
     """
     basis = table(order)
     linear = np.einsum("dce,ck->edk", points[:, triangles], basis.corner_slope)[:, :, :, None]

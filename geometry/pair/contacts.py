@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.modified import FlankForm
+from ..tooth.flank_form import FlankForm
 from ..tooth.profile import cartesian
 from ..tooth.side import form_corner, place, side
 from .gear_pair import GearPair
@@ -70,14 +70,14 @@ class Contacts:
     roll_1: NDArray[np.float64]
     roll_2: NDArray[np.float64]
     gap: NDArray[np.float64]
-    radius: NDArray[np.float64]
     corner: NDArray[np.int64]
     corner_gap: NDArray[np.float64]
     corner_roll: NDArray[np.float64]
+    radius: NDArray[np.float64]
 
 
-class Touching(NamedTuple):
-    """Where sections first touch: roll lengths of both gears, gaps [mm], corners and what these do, as of `Contacts`."""
+class Touch(NamedTuple):
+    """Where sections first touch: roll lengths, gaps [mm], corners and relative radii of curvature [mm], as of `Contacts`."""
 
     roll_1: NDArray[np.float64]
     roll_2: NDArray[np.float64]
@@ -85,6 +85,7 @@ class Touching(NamedTuple):
     corner: NDArray[np.int64]
     corner_gap: NDArray[np.float64]
     corner_roll: NDArray[np.float64]
+    radius: NDArray[np.float64]
 
 
 class Met(NamedTuple):
@@ -106,20 +107,9 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
     """Contacts of all tooth pairs of a `GearPair`, flanks unmodified (others: `geometry.pair.modified.flank_contacts`).
 
     On the path of contact the gap is zero, unless a tip cuts into its mate's fillet at the same time. Off the path a corner of
-    one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or the
-    form corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module).
-
-    Parameters
-    ----------
-    pair : GearPair
-    phase : ndarray, shape (phases,)
-        Any numbers: at phase 1.3 pair 0 is 1.3 base pitches into its engagement.
-    extended : bool
-        With False pairs off the path of contact never touch.
-
-    Returns
-    -------
-    Contacts
+    one tooth touches the other's whole outline: a tip corner on the flank, on the edge of the other tip or in the fillet, or
+    the form corner that undercut leaves on a flank, with the exact gap in the mean pose (see the module). Phases ``(phases,)``
+    are any numbers: at 1.3 pair 0 is 1.3 base pitches into its engagement. Without `extended` pairs off the path never touch.
     """
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
     start, end = pair.path
@@ -127,10 +117,7 @@ def contacts(pair: GearPair, phase: ArrayLike, *, extended: bool = True) -> Cont
     first, last = -before - math.floor(phase.max()), math.ceil((end - start) / pair.p_bt) - 1 + after - math.floor(phase.min())
     order = np.arange(first, last + 1)
     nominal = start + (phase[:, None] + order) * pair.p_bt
-    met = touching(pair, nominal, extended=extended)
-    radius = pair.relative_radius(met.roll_1, met.roll_2)
-    radius = np.where(np.isfinite(met.gap) & (radius > 0), radius, 1.0)
-    return Contacts(order, nominal, met.roll_1, met.roll_2, met.gap, radius, *met[3:])
+    return Contacts(order, nominal, *touching(pair, nominal, extended=extended))
 
 
 @lru_cache(maxsize=256)
@@ -151,7 +138,7 @@ def near_pitches(pair: GearPair) -> tuple[int, int]:
     return out[0], out[1]
 
 
-def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touching:
+def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touch:
     """Where sections of unmodified teeth first touch, as of `contacts`, at any abscissae `nominal` [mm]."""
     start, end = pair.path
     slack = 1e-9 * pair.p_bt
@@ -159,20 +146,20 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
     roll_1, roll_2 = nominal.copy(), pair.mate_roll(nominal)
     gap, corner = np.where(path, 0.0, np.inf), np.zeros(nominal.shape, dtype=int)
     corner_gap, corner_roll = np.full((4, *nominal.shape), np.inf), np.full((2, 4, *nominal.shape), np.nan)
-    out = Touching(roll_1, roll_2, gap, corner, corner_gap, corner_roll)
     before, after = near_pitches(pair) if extended else (0, 0)
     near = (nominal > start - before * pair.p_bt) & (nominal < end + after * pair.p_bt)
-    if not extended or not near.any():
-        return out
-    rolls_1, rolls_2, gaps = _corners(pair, nominal[near])
-    corner_gap[:, near], corner_roll[:, :, near] = gaps, np.array([rolls_1, rolls_2])
-    each = (least := np.argmin(gaps, axis=0), np.arange(least.size))
-    first = gaps[each] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
-    there, chosen = near.copy(), tuple(index[first] for index in each)
-    there[near] = first
-    roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
-    gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
-    return out
+    if extended and near.any():
+        rolls_1, rolls_2, gaps = _corners(pair, nominal[near])
+        corner_gap[:, near], corner_roll[:, :, near] = gaps, np.array([rolls_1, rolls_2])
+        each = (least := np.argmin(gaps, axis=0), np.arange(least.size))
+        first = gaps[each] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
+        there, chosen = near.copy(), tuple(index[first] for index in each)
+        there[near] = first
+        roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
+        gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
+    radius = pair.relative_radius(roll_1, roll_2)
+    radius = np.where(np.isfinite(gap) & (radius > 0), radius, 1.0)
+    return Touch(roll_1, roll_2, gap, corner, corner_gap, corner_roll, radius)
 
 
 def corners_of(pair: GearPair) -> list[tuple[int, float, bool]]:
@@ -200,9 +187,7 @@ def _corners(pair, nominal):
     rolls_1, rolls_2 = (np.tile(values, (4, *(1,) * nominal.ndim)) for values in (nominal, pair.mate_roll(nominal)))
     gaps, middle = np.full(rolls_1.shape, np.inf), sum(pair.path) / 2
     for number, roll, driver in corners_of(pair):
-        half = (
-            nominal < middle if number in (2, 3) else nominal > middle
-        )  # where corners are inside of their own half of the cycle
+        half = nominal < middle if number in (2, 3) else nominal > middle  # corners touch in their own half of the cycle
         distance, met = approach(pair, roll, nominal[half], driver=driver)[:2]
         own, other = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
         own[number - 1], other[number - 1, half] = roll, np.where(np.isnan(met), other[number - 1, half], met)
@@ -266,18 +251,10 @@ def approach(
 
 
 def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:
-    """What a flank point faces when both gears stand as their contact at `nominal` has them.
+    """What a flank point faces when both gears stand as their contact at `nominal` has them; parameters as of `approach`.
 
-    Parameters
-    ----------
-    pair, roll, nominal, driver
-        As in `approach`.
-
-    Returns
-    -------
-    gap, roll : ndarray
-        Distance to the other side along the line of action, i.e. the turn of the *other gear alone* that closes it times its
-        base radius [mm], and the roll length of the place met there [mm]; nan where the point lies beyond the tip or root circle.
+    Gives its distance to the other side along the line of action, i.e. the turn of the *other gear alone* that closes it times
+    its base radius [mm], and the roll length of the place met there [mm]; nan where it lies beyond the tip or root circle.
     """
     return facing(pair, np.asarray(roll, dtype=float), np.asarray(nominal, dtype=float), driver)(0.0)[:2]
 

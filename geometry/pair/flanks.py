@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any
 
-from ..tooth.modified import Flank, FlankForm
+from ..checks import by_gear, is_finite
+from ..tooth.flank_form import FlankForm
+from ..tooth.modified import Flank
 
 STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
 
@@ -54,7 +55,7 @@ class Misalignment:
             value = getattr(self, name)
             if name == "length" and value is None:
                 continue
-            if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value):
+            if not is_finite(value):
                 raise ValueError(f"misalignment: {name} = {value!r}, but it needs a finite number [mm]")
         if self.length is not None and not self.length > 0:
             raise ValueError(f"misalignment: length = {self.length:g} mm, but the bearings are some way apart: give length > 0")
@@ -68,18 +69,14 @@ class Misalignment:
 def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
     """How much the flanks of a `GearPair` open by height because its axes are askew [mm/mm].
 
-    Raises
-    ------
-    ValueError
-        If it is no `Misalignment`, or larger than any gears can run with.
+    ValueError if it is no `Misalignment`, or larger than any gears can run with.
     """
     if misalignment is None:
         return 0.0
     if not isinstance(misalignment, Misalignment):
         raise ValueError(f"misalignment = {misalignment!r}, but give a Misalignment(F_beta=...) [mm]")
-    one = misalignment
-    askew = one.f_sigma_beta * math.cos(pair.alpha_w) + one.f_sigma_delta * math.sin(pair.alpha_w)
-    tilt = one.F_beta / min(pair.gear_1.b, pair.gear_2.b) + (askew / one.length if one.length else 0.0)
+    askew = misalignment.f_sigma_beta * math.cos(pair.alpha_w) + misalignment.f_sigma_delta * math.sin(pair.alpha_w)
+    tilt = misalignment.F_beta / min(pair.gear_1.b, pair.gear_2.b) + (askew / misalignment.length if misalignment.length else 0.0)
     if abs(tilt) > STEEPEST:
         raise ValueError(
             f"{1e3 * tilt:.4g} um of misalignment per mm of width, but gears with parallel axes bear no more than "
@@ -91,35 +88,19 @@ def tilt_of(pair: Any, misalignment: Misalignment | None) -> float:
 def flank_forms(
     pair: Any, flanks: Mapping[str, Flank] | None, misalignment: Misalignment | None = None
 ) -> tuple[FlankForm, FlankForm] | None:
-    """Flanks of pinion and wheel on their gears; None if nothing differs from the involute.
+    """Flanks of pinion and wheel on their gears, each taking half of the misalignment; None if all are involutes.
 
-    Parameters
-    ----------
-    pair : GearPair
-    flanks : dict, optional
-        ``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them.
-    misalignment : Misalignment, optional
-        Of the axes; both gears take half of it.
-
-    Raises
-    ------
-    ValueError
-        If it is something else, or a flank does not fit its gear.
+    ValueError if `flanks` are not given by gear (``{"pinion": Flank(...), "wheel": Flank(...)}``, or one of them), or do not
+    fit.
     """
     tilt = tilt_of(pair, misalignment)
     if flanks is None and not tilt:
         return None
-    flanks = {} if flanks is None else flanks
-    if not isinstance(flanks, Mapping):
-        raise ValueError(f"flanks = {flanks!r}, but give them by gear: {{'pinion': Flank(...), 'wheel': Flank(...)}}")
-    unknown = set(flanks) - {"pinion", "wheel"}
-    if unknown:
-        raise ValueError(f"flanks of {unknown.pop()!r}, but they are given for 'pinion' and 'wheel'")
-    for name, one in flanks.items():
-        if not (one is None or isinstance(one, Flank)):
-            raise ValueError(f"flanks of the {name}: {one!r} is no Flank")
-    given = [flanks.get(name) or Flank() for name in ("pinion", "wheel")]
-    first, second = (one.on(gear) for one, gear in zip(given, (pair.gear_1, pair.gear_2), strict=True))
-    if not tilt and all(one == Flank() for one in given):
+    both = by_gear("flanks", flanks, "{'pinion': Flank(...), 'wheel': Flank(...)}")
+    for name, flank in zip(("pinion", "wheel"), both, strict=True):
+        if not (flank is None or isinstance(flank, Flank)):
+            raise ValueError(f"flanks of the {name}: {flank!r} is no Flank")
+    first, second = ((flank or Flank()).on(gear) for flank, gear in zip(both, (pair.gear_1, pair.gear_2), strict=True))
+    if not tilt and all(flank in (None, Flank()) for flank in both):
         return None
     return first.tilted(tilt / 2), second.tilted(tilt / 2).turned(-1)

@@ -26,9 +26,6 @@ def overlap(pair, nominals):
     for own, other in ((0, 1), (1, 0)):
         gear, mate = gears[own], gears[other]
         radius, half = outlines[own]
-        solid_radius, solid_half = outlines[other]
-        rising = np.argsort(solid_radius)
-        low, high = sorted((mate.r_a, mate.r_f))
         reach = min(gear.z // 2, 8 if not pair.gear_2.internal else pair.gear_1.z // 2)
         teeth, apart = 2 * math.pi / gear.z * np.arange(-reach, reach + 1), centres[own] - centres[other]
         towards = -math.copysign(mate.outward, apart)  # cosine of the angle at which the mate is
@@ -36,17 +33,8 @@ def overlap(pair, nominals):
         reached = math.cos(min(math.acos(np.clip(widest.min(), -1, 1)) + half.max(), math.pi))
         for turns in turned.T:
             near = teeth[towards * np.cos(turns[own] + mirror[own] * teeth) >= reached]
-            shape = (near[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
-            x, y = cartesian(np.tile(radius, shape.size // radius.size), turns[own] + mirror[own] * shape)
-            y = y + apart
-            away = np.hypot(x, y)
-            near = (away > low) & (away < high)
-            angle = mirror[other] * (np.arctan2(x[near], y[near]) - turns[other])
-            pitch = 2 * math.pi / mate.z
-            inside = np.interp(away[near], solid_radius[rising], solid_half[rising]) - abs(
-                (angle + pitch / 2) % pitch - pitch / 2
-            )
-            deepest = max(deepest, float(np.max(inside * away[near], initial=0.0)))
+            x, y = _teeth(radius, half, near, turns[own], mirror[own])
+            deepest = max(deepest, _cut(mate, outlines[other], x, y + apart, turns[other], mirror[other]))
     return deepest
 
 
@@ -56,20 +44,24 @@ def radial_assembly(pair):
     The pinion is lowered from its place to the ring's centre in steps; no outline may be cut on the way.
     """
     one, ring = pair.gear_1, pair.gear_2
-    radius, half = outline(one)
-    solid_radius, solid_half = outline(ring)
-    rising = np.argsort(solid_radius)
-    teeth = 2 * math.pi / one.z * np.arange(one.z)
-    shape = (teeth[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
-    radii = np.tile(radius, shape.size // radius.size)
-    for drop in np.linspace(0, (one.addendum + ring.addendum + 0.5) * one.m_n, 24):
-        x, y = cartesian(radii, shape)
-        y = y + pair.a - drop
-        away = np.hypot(x, y)
-        near = (away > ring.r_a) & (away < ring.r_f)
-        pitch = 2 * math.pi / ring.z
-        angle = np.arctan2(x[near], y[near]) + pitch / 2  # the pinion's tooth 0 stands in a space
-        inside = np.interp(away[near], solid_radius[rising], solid_half[rising]) - abs((angle + pitch / 2) % pitch - pitch / 2)
-        if np.max(inside * away[near], initial=0.0) > 1e-3 * one.m_n + pair.backlash / 2:
-            return False
-    return True
+    solid, between = outline(ring), -math.pi / ring.z  # the pinion's tooth 0 stands in a space
+    x, y = _teeth(*outline(one), 2 * math.pi / one.z * np.arange(one.z))
+    drops = np.linspace(0, (one.addendum + ring.addendum + 0.5) * one.m_n, 24)
+    allowed = 1e-3 * one.m_n + pair.backlash / 2
+    return all(_cut(ring, solid, x, y + pair.a - drop, between) <= allowed for drop in drops)
+
+
+def _teeth(radius, half, teeth, turn=0.0, mirror=1):
+    """Points ``(2, n)`` [mm] of whole teeth at angles [rad] on a gear that is turned, from the outline of half a tooth."""
+    angle = (teeth[:, None, None] + np.array([1, -1])[None, :, None] * half).reshape(-1)
+    return cartesian(np.tile(radius, angle.size // radius.size), turn + mirror * angle)
+
+
+def _cut(mate, solid, x, y, turn=0.0, mirror=1):
+    """How deep [mm] points about the centre of a gear that is turned lie in its teeth, whose half outline is `solid`; or 0."""
+    away, pitch, rising = np.hypot(x, y), 2 * math.pi / mate.z, np.argsort(solid[0])
+    low, high = sorted((mate.r_a, mate.r_f))
+    near = (away > low) & (away < high)
+    angle = (mirror * (np.arctan2(x[near], y[near]) - turn) + pitch / 2) % pitch - pitch / 2
+    inside = np.interp(away[near], solid[0][rising], solid[1][rising]) - abs(angle)
+    return float(np.max(inside * away[near], initial=0.0))

@@ -13,14 +13,13 @@ a common approximation, errs by up to a quarter of the deflection at corners.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..tooth.modified import FlankForm
+from ..tooth.flank_form import FlankForm
 from ..tooth.profile import arc_at, fillet_length, roll_at_arc
-from .contacts import TIP, Contacts, approach, contacts, corners_of, facing
+from .contacts import TIP, Contacts, Touch, approach, contacts, corners_of, facing
 from .gear_pair import GearPair
 
 EDGE = 0.25  # what may be cut away where the edge of a tip touches, of all that it cuts away
@@ -35,50 +34,22 @@ FLATTER = 20.0  # largest relative radius, in those of the involutes: beyond it 
 def flank_contacts(
     pair: GearPair, phase: ArrayLike, *, extended: bool = True, flanks: tuple[FlankForm, FlankForm] | None = None
 ) -> Contacts:
-    """`geometry.pair.contacts.contacts` of a pair whose flanks may be modified.
+    """`contacts` of a pair whose flanks may be modified, as of `geometry.pair.flanks.flank_forms`.
 
-    Parameters
-    ----------
-    pair : GearPair
-    phase : ndarray, shape (phases,)
-    extended : bool
-    flanks : (FlankForm, FlankForm), optional
-        Of pinion and wheel, as of `geometry.pair.flanks.flank_forms`.
-
-    Returns
-    -------
-    Contacts
-        `gap` can be negative where a tooth is ahead of its place.
-
-    Raises
-    ------
-    ValueError
-        If flanks are so hollow that they would conform.
+    Gaps can be negative where a tooth is ahead of its place. ValueError if flanks are so hollow that they would conform.
     """
     plain = contacts(pair, phase, extended=extended)
     if flanks is None:
         return plain
-    there = np.isfinite(plain.gap)
-    roll_1, roll_2, corner = plain.roll_1.copy(), plain.roll_2.copy(), np.zeros(plain.gap.shape, dtype=int)
-    gap, radius = np.full(plain.gap.shape, np.inf), np.ones(plain.gap.shape)
-    corner_gap, corner_roll = np.full_like(plain.corner_gap, np.inf), np.full_like(plain.corner_roll, np.nan)
+    there, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
     touch = first_touch(pair, flanks, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
-    for values, found in zip((roll_1, roll_2, gap, radius, corner), touch[:5], strict=True):
-        values[there] = found
-    corner_gap[:, there], corner_roll[:, :, there] = touch.corner_gap, touch.corner_roll
-    return Contacts(plain.order, plain.nominal, roll_1, roll_2, gap, radius, corner, corner_gap, corner_roll)
-
-
-class Touch(NamedTuple):
-    """Where pairs of sections first touch, arrays of n, those by corner longer: as of `Contacts`."""
-
-    roll_1: NDArray[np.float64]
-    roll_2: NDArray[np.float64]
-    gap: NDArray[np.float64]
-    radius: NDArray[np.float64]
-    corner: NDArray[np.int64]
-    corner_gap: NDArray[np.float64]
-    corner_roll: NDArray[np.float64]
+    out = Touch(
+        plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(there.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
+        np.full_like(plain.corner_roll, np.nan), np.ones(there.shape),
+    )  # fmt: skip
+    for values, found in zip(out, touch, strict=True):
+        values[..., there] = found
+    return Contacts(plain.order, plain.nominal, *out)
 
 
 def first_touch(
@@ -96,10 +67,8 @@ def first_touch(
     pair : GearPair
     forms : (FlankForm, FlankForm)
         Of pinion and wheel.
-    nominal : ndarray, shape (n,)
-        Abscissae of the sections' contacts on the line of action [mm].
-    order : ndarray of int, shape (n,)
-        Numbers of their pairs.
+    nominal, order : ndarray, shape (n,)
+        Abscissae of the sections' contacts on the line of action [mm], and numbers of their pairs.
     start : ndarray, shape (n,)
         Gaps of the unmodified flanks [mm]; inf where they cannot meet.
     z : ndarray, shape (n,), optional
@@ -134,7 +103,7 @@ def first_touch(
         places[:, number - 1] = (np.full(nominal.size, roll), facing_roll)[:: 1 if driver else -1]
         first = np.isfinite(gaps[number - 1]) & (gaps[number - 1] <= found + 1e-12)
         own[first], met[first], found[first], corner[first] = roll, facing_roll[first], distance[first], number
-    return Touch(rolls_1, rolls_2, found, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)), corner, gaps, places)
+    return Touch(rolls_1, rolls_2, found, corner, gaps, places, _radius(pair, here, rolls_1, rolls_2, np.isfinite(found)))
 
 
 def _radius(pair, forms, roll_1, roll_2, there):

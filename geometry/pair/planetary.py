@@ -2,8 +2,8 @@
 
 import math
 from dataclasses import dataclass
-from numbers import Integral
 
+from ..checks import is_whole
 from ..tooth.gear import Gear
 from ..tooth.involute import inv
 from .gear_pair import GearPair, free_centre_distance
@@ -37,7 +37,7 @@ class PlanetarySet:
         """Check closure, spacing and neighbours."""
         if not self.ring.internal or self.sun.internal or self.planet.internal:
             raise ValueError("sun and planet are external gears (r_bore), the ring is given by r_rim")
-        if isinstance(self.n_planets, bool) or not isinstance(self.n_planets, Integral) or self.n_planets < 1:
+        if not is_whole(self.n_planets) or self.n_planets < 1:
             raise ValueError(f"n_planets = {self.n_planets!r}, but a set has a whole number of planets, at least 1")
         if self.a is None:
             object.__setattr__(self, "a", free_centre_distance(self.sun, self.planet))

@@ -22,20 +22,7 @@ def path_data(points):
 
 
 def gear_svg(*placed, size=140):
-    """SVG of gears in their transverse section.
-
-    Parameters
-    ----------
-    *placed : (Gear, float, float)
-        Gear, height of its centre [mm], turn [rad].
-    size : int
-        Height of the picture in a page [px].
-
-    Returns
-    -------
-    str
-        An ``<svg>`` element.
-    """
+    """SVG of gears in their transverse section, `size` px high: each a gear, the height of its centre [mm] and its turn [rad]."""
     drawn, low, high, wide = [], math.inf, -math.inf, 0.0
     for gear, height, turn in placed:
         cos, sin = math.cos(turn), math.sin(turn)

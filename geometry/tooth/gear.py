@@ -4,8 +4,8 @@ import math
 import warnings
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from numbers import Real
 
+from ..checks import is_number
 from .involute import inv
 
 LARGEST = 1e9  # of any number of a gear: a kilometre has 1e6 mm
@@ -114,7 +114,7 @@ class Gear:
             value = getattr(self, field.name)
             if value is None and field.name in ("r_bore", "r_rim"):
                 continue
-            if isinstance(value, bool) or not isinstance(value, Real) or not abs(value) < LARGEST:
+            if not is_number(value) or not abs(value) < LARGEST:
                 raise ValueError(f"{field.name} = {value!r}, but a gear needs a finite number here")
             object.__setattr__(self, field.name, float(value))
         if self.z != int(self.z):

@@ -17,12 +17,7 @@ def inv(alpha):
 
 
 def inverse_inv(value):
-    """Pressure angle [rad] whose involute function is `value` (> 0), by Newton from a cubic start.
-
-    Raises
-    ------
-    ValueError
-        If `value` is not positive.
+    """Pressure angle [rad] whose involute function is `value` (ValueError unless > 0), by Newton from a cubic start.
 
     >>> round(float(np.degrees(inverse_inv(inv(np.radians(22.5))))), 10)
     22.5

@@ -1,13 +1,12 @@
 """What flanks have less along the width: crowning, slope, end relief, twist, a measured grid."""
 
-import math
-from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from ..checks import is_finite
 from .gear import Gear
 
 
@@ -55,18 +54,14 @@ class LeadForm:
 def two_ends(flank: Any) -> list[tuple[float, float]]:
     """End relief of a `Flank`, its lengths and exponents at z = 0 and z = b.
 
-    Raises
-    ------
-    ValueError
-        If there are other than one or two numbers of each, no length, or an exponent below 1.
+    ValueError if there are other than one or two numbers of each, no length, or an exponent below 1.
     """
     out = []
     for name in ("end_relief", "end_length", "end_exponent"):
         given = getattr(flank, name)
         given = 0.0 if given is None else given
         values = given if isinstance(given, (tuple, list)) else (given, given)
-        numbers = all(isinstance(one, Real) and not isinstance(one, bool) and math.isfinite(one) for one in values)
-        if len(values) != 2 or not numbers:
+        if len(values) != 2 or not all(map(is_finite, values)):
             raise ValueError(f"{name} = {given!r}, but give one finite number, or two: at z = 0 and at z = b")
         out.append((float(values[0]), float(values[1])))
     for amount, length, exponent in zip(*out, strict=True):
@@ -78,13 +73,7 @@ def two_ends(flank: Any) -> list[tuple[float, float]]:
 
 
 def checked_topography(given: Any) -> tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]:
-    """Roll lengths, heights and amounts of a measured flank, as tuples.
-
-    Raises
-    ------
-    ValueError
-        If they are no full grid of finite numbers with rising axes.
-    """
+    """Roll lengths, heights and amounts of a measured flank, as tuples; ValueError unless a full grid with rising axes."""
     try:
         rolls, heights, amounts = (np.asarray(part, dtype=float) for part in given)
     except (TypeError, ValueError) as error:

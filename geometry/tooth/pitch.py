@@ -1,10 +1,10 @@
 """Pitch deviations of the teeth of a gear, drawn at random within an ISO 1328-1 class."""
 
 import math
-from numbers import Integral
 
 import numpy as np
 
+from ..checks import is_whole
 from .gear import Gear
 
 CLASSES = range(1, 12)
@@ -55,7 +55,7 @@ def random_pitch(gear: Gear, iso_class: int, seed: int) -> tuple[float, ...]:
     """
     if isinstance(iso_class, bool) or iso_class not in CLASSES:
         raise ValueError(f"iso_class = {iso_class!r}, but ISO 1328-1 has the classes 1 to 11")
-    if isinstance(seed, bool) or not isinstance(seed, Integral) or seed < 0:
+    if not is_whole(seed) or seed < 0:
         raise ValueError(f"seed = {seed!r}, but give a whole number from 0 on: the same gives the same gear")
     single = np.random.default_rng(int(seed)).standard_normal(gear.z)
     single -= single.mean()

@@ -10,10 +10,7 @@ STARTS = ("diameter", "roll", "angle")  # how it can be given
 def relief_start(gear: Gear, end: str, how: str, value: float) -> float:
     """Roll length [mm] at which the relief of the ``tip`` or ``root`` starts, given as one of `STARTS` [mm, mm, rad].
 
-    Raises
-    ------
-    ValueError
-        If it is not inside the flank.
+    ValueError if it is not inside the flank.
     """
     square = (value / 2) ** 2 - gear.r_b**2
     roll = {"diameter": math.sqrt(square) if square > 0 else math.nan, "roll": value, "angle": value * gear.r_b}[how]

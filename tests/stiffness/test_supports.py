@@ -142,9 +142,9 @@ def test_curves_are_written_and_read_back(tmp_path):
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ({"sun": gf.Support()}, "given for 'pinion' and 'wheel'"),
+        ({"sun": gf.Support()}, "give supports for 'pinion' and 'wheel'"),
         ({"pinion": 2e5}, "neither a Support nor a Shaft"),
-        (gf.Support(), "give them by gear"),
+        (gf.Support(), "give supports by gear"),
         ({"pinion": OVERHUNG}, "tilts it under a force, with method = 'ritz'"),
     ],
 )

@@ -74,7 +74,7 @@ def test_flanks_are_given_by_gear():
     assert flank_forms(pair, None) is None
     assert flank_forms(pair, {"pinion": gf.Flank()}) is None
     for given, text in (
-        (gf.Flank(), "give them by gear"),
+        (gf.Flank(), "give flanks by gear"),
         ({"sun": gf.Flank()}, "flanks of 'sun'"),
         ({"wheel": 0.02}, "is no Flank"),
     ):

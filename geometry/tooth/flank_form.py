@@ -1,0 +1,209 @@
+"""`FlankForm`: a `Flank` on its gear, by roll length, height and tooth."""
+
+import math
+from copy import copy
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from .gear import Gear
+from .lead import LeadForm
+from .relief import relief_start
+from .tables import covering, each_tooth
+from .tip_edge import TipEdge
+
+LARGEST = 0.1  # m_n: the tooth's flexibility is that of the unmodified tooth
+STEP = 1e-6  # m_n: over which a slope is taken
+
+
+class FlankForm:
+    """A `Flank` on its gear: material removed by roll length; by height, too, in the form that `at` gives.
+
+    `kinks` are the roll lengths [mm] at which the flank bends suddenly, and by how much the material removed then rises by mm of
+    roll length: there, contact has no radius of curvature.
+    """
+
+    def __init__(self, flank: Any, gear: Gear) -> None:
+        self.flank, self.gear = flank, gear
+        self.low, self.high = gear.roll_f, gear.roll_a
+        ends = (("tip", self.high), ("root", self.low))
+        reliefs = [
+            (relief_start(gear, end, *flank.start_of(end)), last, end) for end, last in ends if getattr(flank, f"{end}_relief")
+        ]
+        self.reliefs = [(s, e, getattr(flank, f"{end}_relief"), getattr(flank, f"{end}_exponent")) for s, e, end in reliefs]
+        self.kinks = tuple(
+            (start, amount / abs(end - start) if exponent == 1 else 0.0)
+            for start, end, amount, exponent in self.reliefs
+            if exponent < 2
+        )
+        self.edge = TipEdge(gear, flank.tip_rounding, flank.tip_chamfer) if flank.tip_rounding or flank.tip_chamfer else None
+        if self.edge is not None:
+            self.kinks += ((self.edge.start, self.edge.kink),)
+        self._worn = None if flank.wear is None else PchipInterpolator(*flank.wear)
+        self._spline = None
+        if flank.table is not None:
+            self._spline = PchipInterpolator(*covering(flank.table, gear))
+        self._shifts = each_tooth("pitch", flank.pitch, gear) * gear.r_b / gear.r
+        self._scales = each_tooth("tooth_scale", flank.tooth_scale, gear)
+        self._tooth: NDArray[np.int64] | None = None
+        self.sense = 1
+        self.tilt, self._lead = 0.0, LeadForm(flank, gear, self.low, self.high) if flank.wide else None
+        self._z: NDArray[np.float64] | None = None
+        self._check_size()
+
+    @property
+    def wide(self) -> bool:
+        """Whether the flank changes along the width, or lies askew: `tilt`, how much further back it lies by height [mm/mm]."""
+        return self._lead is not None or bool(self.tilt)
+
+    @property
+    def differs(self) -> bool:
+        """Whether the teeth of the gear differ from each other."""
+        return bool(self.flank.eccentricity) or any(values.size and np.ptp(values) for values in (self._shifts, self._scales))
+
+    def of(self, tooth: ArrayLike) -> "FlankForm":
+        """The same flank of teeth ``(...)``, which go with the leading axes of roll lengths."""
+        if not (self._scales.size or self.flank.eccentricity):
+            return self
+        out = copy(self)
+        out._tooth = np.asarray(tooth, dtype=int)
+        return out
+
+    def turned(self, sense: int) -> "FlankForm":
+        """The same flank of a gear whose tooth k stands k pitches clockwise (1) or counter-clockwise (-1) of tooth 0."""
+        out = copy(self)
+        out.sense = sense
+        return out
+
+    def at(self, z: ArrayLike | None) -> "FlankForm":
+        """The same flank at heights `z` [mm], which go with the leading axes of roll lengths; None: what changes is left out."""
+        out = copy(self)
+        out._z = None if z is None or not self.wide else np.asarray(z, dtype=float)
+        return out
+
+    def tilted(self, tilt: float) -> "FlankForm":
+        """The same flank, so much further back by height [mm/mm], none in the middle of the width."""
+        out = copy(self)
+        out.tilt = tilt
+        return out
+
+    def _check_size(self) -> None:
+        roll = np.linspace(self.low, self.high, 65)
+        most = LARGEST * self.gear.m_n
+        here = self.at(np.linspace(0, self.gear.b, 17))
+        largest = max(1.0, float(np.abs(self._scales).max(initial=0.0)))
+        eccentric = np.array([self.flank.eccentricity])
+        for what, values in (
+            ("removed from the flank", largest * here._shaped(roll[None, :], 0)),
+            ("of pitch deviation", self._shifts),
+            ("of eccentricity", eccentric),
+            ("of wear", np.zeros(1) if self._worn is None else self._wear(roll, 0)),
+        ):
+            worst = float(np.abs(values).max(initial=0.0))
+            if worst > most:
+                raise ValueError(
+                    f"{worst:.4g} mm {what} of z = {self.gear.z}: more than a tenth of the module, {most:.4g} mm, so that the "
+                    "tooth would be another one; amounts are in mm (20 um are 0.02)"
+                )
+
+    def removed(self, roll: ArrayLike, derivative: int = 0) -> NDArray[np.float64]:
+        """Material removed at roll lengths [mm], or its derivative by the roll length; pitch deviations left out.
+
+        Derivatives are those of the flank without the edge of its tip (for that see `bend`).
+        The fillet goes on with what is removed at the form point.
+        """
+        given, n = np.asarray(roll, dtype=float), derivative
+        at = np.maximum(given, self.low) if self.high > self.low else np.minimum(given, self.low)
+        out = self._shaped(at, n)
+        if self._scales.size:
+            own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
+            out = out * own
+        if self._worn is not None:
+            out = out + self._wear(at, n)
+        if self.edge is not None and n == 0:
+            out = out + self.edge.removed(at)
+        if self.flank.eccentricity and self._tooth is not None:
+            out = out + self._off_centre(at, n)
+        return out
+
+    def slope(self, roll: ArrayLike) -> NDArray[np.float64]:
+        """How far the flank leans towards its gear's tip, the tip's edge included: what is removed by arc length [mm/mm].
+
+        At a kink it is the mean of both sides.
+        """
+        at, step = np.asarray(roll, dtype=float), STEP * self.gear.m_n
+        rise = (self.removed(at + step) - self.removed(at - step)) / (2 * step)
+        return self.gear.outward * rise * self.gear.r_b / np.maximum(at, 1e-3 * self.gear.r_b)
+
+    def _wear(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+        return np.nan_to_num(self._worn(roll, derivative, extrapolate=False))  # type: ignore[misc]  # asked for only if there is any
+
+    def _off_centre(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+        """What an eccentric gear lacks along the flank's normal, which turns with the roll length."""
+        gear, flank = self.gear, self.flank
+        teeth = self.sense * (_along(self._tooth, roll) - flank.eccentric_tooth)  # type: ignore[arg-type]  # there are some here
+        turn = gear.base_half_angle - gear.outward * roll / gear.r_b + 2 * math.pi * teeth / gear.z
+        rate = -gear.outward / gear.r_b
+        return flank.eccentricity * (np.sin(turn), rate * np.cos(turn), -(rate**2) * np.sin(turn))[derivative]
+
+    def _shaped(self, roll: NDArray, derivative: int) -> NDArray[np.float64]:
+        """What is removed by design, alike on all teeth but for their scales."""
+        span, n = self.high - self.low, derivative
+        out = np.zeros(roll.shape)
+        for start, end, amount, exponent in self.reliefs:
+            part = np.maximum((roll - start) / (end - start), 0.0)
+            factor = amount * math.prod(exponent - i for i in range(n)) / (end - start) ** n
+            if factor:
+                out += np.where(part > 0, factor * np.where(part > 0, part, 1.0) ** (exponent - n), 0.0)
+        if self.flank.crowning:
+            place, step = (2 * roll - self.low - self.high) / span, 2 / span
+            out += self.flank.crowning * (place**2, 2 * step * place, 2 * step**2)[n]
+        if self.flank.slope:
+            out += self.flank.slope * ((roll - self.low) / span, 1 / span, 0.0)[n]
+        if self._spline is not None:
+            out += self._spline(np.clip(roll, self._spline.x[0], self._spline.x[-1]), n)
+        if self._lead is not None and self._z is not None:
+            out = out + self._lead.removed(roll, _along(self._z, roll), n)
+        return out
+
+    def before_edge(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Roll lengths, those on the edge of the tip moved to its beginning."""
+        if self.edge is None:
+            return roll
+        return np.minimum(roll, self.edge.start) if self.high > self.low else np.maximum(roll, self.edge.start)
+
+    def bounds(self) -> tuple[float, float]:
+        """Least and most that any place of any tooth lies behind the involute [mm]."""
+        heights = np.linspace(0, self.gear.b, 33)
+        form = self.at(heights)
+        rolls = np.linspace(self.low, self.high, 65)[None, :]
+        shape, rest = form._shaped(rolls, 0), form.shift(np.zeros((heights.size, 1), dtype=int)) - self._shifts[:1].sum()
+        scales, shifts = (
+            values if values.size else np.array([default]) for values, default in ((self._scales, 1.0), (self._shifts, 0.0))
+        )
+        worn = 0.0 if self._worn is None else self._wear(rolls, 0)
+        low, high = (shape * scales.min() + worn + rest, shape * scales.max() + worn + rest)
+        off, edge = abs(self.flank.eccentricity), 0.0 if self.edge is None else self.edge.most
+        low, high = np.minimum(low, high), np.maximum(low, high)
+        return float(low.min() + shifts.min()) - off, float(high.max() + shifts.max()) + off + edge
+
+    def shift(self, tooth: ArrayLike) -> NDArray[np.float64]:
+        """How far the flanks of teeth lie behind their places, along the line of action [mm]."""
+        tooth = np.asarray(tooth, dtype=int)
+        behind = self._shifts[tooth % self.gear.z] if self._shifts.size else np.zeros(tooth.shape)
+        if self.tilt and self._z is not None:
+            behind = behind + self.tilt * (_along(self._z, tooth) - self.gear.b / 2)
+        return behind
+
+    def bend(self, roll: ArrayLike) -> NDArray[np.float64]:
+        """Curvature that the modification adds to the flank, by its arc [1/mm] (kinks left out)."""
+        at = np.maximum(np.asarray(roll, dtype=float), 1e-3 * self.gear.r_b)  # an arc has no roll length at the base circle
+        out = (self.gear.r_b / at) ** 2 * (self.removed(at, 2) - self.removed(at, 1) / at)
+        return out if self.edge is None else np.where(self.edge.on(at), self.edge.bend(at), out)
+
+
+def _along(z: NDArray, places: NDArray) -> NDArray:
+    """Heights with the trailing axes that places have more."""
+    return z.reshape(z.shape + (1,) * max(places.ndim - z.ndim, 0))
