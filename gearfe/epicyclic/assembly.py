@@ -59,16 +59,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """A case with its flexibilities; solves any of its positions.
-
-    Parameters
-    ----------
-    case : PlanetaryCase
-    bodies : Bodies
-    stand : Standing
-    coupled : bool
-        As of `gearfe.epicyclic.solve.planetary_stiffness`.
-    """
+    """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
 
     def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled

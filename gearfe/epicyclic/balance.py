@@ -62,12 +62,7 @@ def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
     Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
-    at a time.
-
-    Raises
-    ------
-    RuntimeError
-        If no forces that only push are in balance, or none were found.
+    at a time. RuntimeError if no forces that only push are in balance, or none were found.
     """
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)

@@ -54,13 +54,7 @@ class Contacts(NamedTuple):
 
 
 class Mesh:
-    """One mesh of a set at many phases, under any load.
-
-    Parameters
-    ----------
-    contact : PairContact
-        At the phases.
-    """
+    """One mesh of a set at the phases of its `PairContact`, under any load."""
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
@@ -91,16 +85,7 @@ class Met(NamedTuple):
 
 
 class Meshes:
-    """All meshes of a case at some positions; equal planets share what they have in common.
-
-    Parameters
-    ----------
-    case : PlanetaryCase
-    stand : Standing
-    refine : float
-        Divides the edge lengths.
-    cache : SolvedGears
-    """
+    """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
 
     def __init__(self, case: Any, stand: Standing, refine: float, cache: Any) -> None:
         self.case, self._options = case, {"refine": refine, "cache": cache}

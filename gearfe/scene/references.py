@@ -115,13 +115,7 @@ class Reference:
 
 
 def read_references(file, tables, pairs):
-    """References of the [[reference]] tables of a scene file.
-
-    Raises
-    ------
-    ValueError
-        Naming file, table and key.
-    """
+    """References of the [[reference]] tables of a scene file; ValueErrors name file, table and key."""
     listed_tables(file, "reference", tables)
     out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
     names = [one.id for one in out]

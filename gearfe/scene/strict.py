@@ -106,10 +106,7 @@ def placed(file, where, make):
 def known_path(file, where, key, tables):
     """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
 
-    Raises
-    ------
-    ValueError
-        If there is no such value; the message names what there is.
+    ValueError if there is no such value; the message names what there is.
     """
     value = tables
     for part in key.split("."):

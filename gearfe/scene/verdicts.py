@@ -34,21 +34,11 @@ class Row(NamedTuple):
 
 
 def judge(reference, found, run=""):
-    """Rows of a reference.
+    """Rows of a `Reference`.
 
-    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced.
-
-    Parameters
-    ----------
-    reference : gearfe.scene.references.Reference
-    found : dict
-        Our value by case, or by (case, pair) where the row names a pair; None where there is none (a measured value).
-    run : str
-        Name of the simulation behind them.
-
-    Returns
-    -------
-    list of Row
+    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced. `found` are
+    our values by case, or by (case, pair) where the row names a pair; None where there is none (a measured value). `run` names
+    the simulation behind them.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)

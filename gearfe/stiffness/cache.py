@@ -38,20 +38,8 @@ def folder():
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Flexibility of a gear's section by finite elements, from the cache if it is there.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    cracks : tuple of Crack
-    cache : bool or SolvedGears
-        False: solve anew, store nothing. See `gearfe.flexibility.solved.solved_gears`; only with the results of this process is
-        the disk used.
-    **options
-        As in `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
-
-    Returns
-    -------
-    Flexibility
+    `cache` as of `gearfe.flexibility.solved.solved_gears`; False: solve anew, store nothing. Only with the results of this
+    process is the disk used. `options` as of `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -66,23 +54,10 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 
 
 def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
-    """Flexibility of a gear of finite width by finite elements of all of it, from the cache if it is there.
+    """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    cracks : tuple of Crack
-    cache : bool or SolvedGears
-        As of `solved_gear`.
-    tell : callable, optional
-        Gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
-    **options
-        As in `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine.
-
-    Returns
-    -------
-    Flexibility3D
+    `cache` as of `solved_gear`, `options` as of `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine. `tell`
+    gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     """
     kept = solved_gears(cache)
     for crack in cracks:
@@ -107,10 +82,7 @@ def _solid_case(material, cracks, options):
 def unsolved(gear, material, cracks=(), *, cache=True, **options):
     """What `solved_solid` of the same would solve: `gearfe.elements.solver.Plan` by key, nothing that is kept or on the disk.
 
-    Raises
-    ------
-    RuntimeError
-        If one of them does not fit into memory, with the numbers.
+    RuntimeError, with the numbers, if one of them does not fit into memory.
     """
     key = ("solid", gear, *_solid_case(material, cracks, options))
     kept = solved_gears(cache)

@@ -139,17 +139,7 @@ def _check(side: str, one: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class OwnGear:
-    """A user's function as what `gearfe.contact.plane.Mesh` reads of a gear.
-
-    Attributes
-    ----------
-    function : callable
-        As in `OwnFlexibility`.
-    gear : Gear
-    material : Material
-    state : str
-    given : {"bulk", "smooth"}
-    """
+    """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.plane.PairContact` reads of a gear."""
 
     function: Callable
     gear: Gear

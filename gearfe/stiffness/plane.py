@@ -49,16 +49,8 @@ def section_curves(row, case, how, phase):
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
     """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
 
-    Parameters
-    ----------
-    row : Method
-    case : Case
-    how : Solve
-    phase : ndarray, shape (n,)
-    hats : float
-        How many times shorter than those of the method the hats at corners are.
-    **coarser
-        ``refine`` and ``order`` of an estimate, instead of those of `how`.
+    At phases ``(n,)``; hats at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and ``order`` of
+    an estimate, instead of those of `how`.
     """
     started = time.perf_counter()
     own, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
@@ -94,17 +86,8 @@ def _numeric(row, how):
 def curve(case, phase, force, solve, meta):
     """`StiffnessCurve` under a force [N] along the line of action; warns if no damaged tooth is in contact.
 
-    To SI, in one place: widths and millimetres become newtons and metres here.
-
-    Parameters
-    ----------
-    case : Case
-    phase : ndarray, shape (n,)
-    force : float
-    solve : callable
-        From the line load [N/mm] to `gearfe.contact.plane.Solved`.
-    meta : dict
-        Without the force.
+    To SI, in one place: widths and millimetres become newtons and metres here. `solve` is from the line load [N/mm] to
+    `gearfe.contact.plane.Solved` at the phases ``(n,)``, `meta` without the force.
     """
     started = time.perf_counter()
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

@@ -22,12 +22,8 @@ CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model i
 def refuses(row, case, how):
     """Raise ValueError for what the method of a `row` of the table does not model of a case, or has no option for.
 
-    Raises
-    ------
-    ValueError
-        The message says what was given, and which methods have it.
-    RuntimeError
-        If a section of finite elements does not fit into memory.
+    The message says what was given, and which methods have it. RuntimeError if a section of finite elements does not fit into
+    memory.
     """
     method = f"method = {row.name!r}"
     of_case = (told for group in (_teeth, _damage, _flanks) for told in group(row, case, method))

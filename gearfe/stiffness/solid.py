@@ -34,22 +34,12 @@ def solid_curves(row, case, how, phase):
     each on its own, the differences added. Of the energy model: an order and a quarter of the axial degrees less. Of finite
     elements: layers of `COARSER` resolution with `LESS` axial degrees less, and what the section lacks in plane strain against
     one of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
-    coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and
-    r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times
-    `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed
-    phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter.
+    coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and r
+    h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
+    The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
+    one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter.
 
-    Parameters
-    ----------
-    row : Method
-    case : Case
-    how : Solve
-    phase : ndarray, shape (n,)
-
-    Returns
-    -------
-    list of StiffnessCurve
-        `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
+    `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
     written = {"face": case.runs, "groove": case.groove, "extended": how.extended, "refine": how.refine}

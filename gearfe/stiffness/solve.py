@@ -256,13 +256,7 @@ def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = Non
 
 
 def asked(function, pair, force, material, options):
-    """`Case` and `Solve` of the arguments of a function that takes both.
-
-    Raises
-    ------
-    TypeError
-        If it has no such argument.
-    """
+    """`Case` and `Solve` of the arguments of a function that takes both; TypeError if it has no such argument."""
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")

@@ -85,12 +85,9 @@ def loaded_phase(case):
 
 
 def stressed_gears(case, phase=0.0, refine=1.0):
-    """Both gears of a spur pair in mesh at `phase`, in plane strain; crack faces may pass through each other.
+    """`Field` of both gears of a spur pair in mesh at `phase`, in plane strain, pinion first, in the pinion's frame.
 
-    Returns
-    -------
-    list of Field
-        Pinion first, in the pinion's frame.
+    Crack faces may pass through each other.
     """
     pair, materials = case.pair, case.materials
     if any(case.pits):

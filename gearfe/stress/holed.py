@@ -65,34 +65,16 @@ class Pressed:
 
 
 def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, sizes=None, strip=None, spread=SPREAD):
-    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+    """`Pressed`: the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
-    Parameters
-    ----------
-    case : Case
-        Damage of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without any it is tooth 0 of
-        the pinion.
-    phases : array, optional
-        Default: the one of 16 at which the damaged tooth carries most.
-    refine, teeth, sizes
-        As of `geometry.mesh.holes.holed_sector`.
-    strip : float, optional
-        Edge length along the loaded contact lines of the damaged tooth [modules]; default: that of the flank.
-    spread : float
-        Of the load to either side of its line, as a hat [modules]; a hat of 1.2 Hertz half widths is as wide as his pressure.
-    removal : bool
-        Solve the tooth without its holes too, for `Pressed.extra`.
+    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both; without any it is tooth
+    0 of the pinion. `phases`: default the one of 16 at which the damaged tooth carries most. `refine`, `teeth`, `sizes` as of
+    `geometry.mesh.holes.holed_sector`; `strip` is the edge length along the loaded contact lines of the damaged tooth [modules],
+    default that of the flank; `spread` that of the load to either side of its line, as a hat [modules]: one of 1.2 Hertz half
+    widths is as wide as his pressure. With `removal` the tooth without its holes is solved too, for `Pressed.extra`.
 
-    Returns
-    -------
-    Pressed
-
-    Raises
-    ------
-    ValueError
-        If the damage is not that of one tooth, or cannot be.
-    RuntimeError
-        If a hole was not cut as it should, or the system does not fit.
+    ValueError if the damage is not that of one tooth, or cannot be. RuntimeError if a hole was not cut as it should, or the
+    system does not fit.
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")

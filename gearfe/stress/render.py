@@ -103,13 +103,9 @@ def render_stress(
 def render_contact(case, path, *, phase=None, title=""):
     """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
 
-    `case` is a `Case`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
-
-    Returns
-    -------
-    dict
-        ``phase``, ``k`` [N/m], ``pressure`` (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the
-        pressure is unbounded, and the largest is that of the rest; nan if nothing else touches.
+    By default at the phase at which the damaged tooth pair (or pair 0) carries most. Gives ``phase``, ``k`` [N/m], ``pressure``
+    (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
+    is that of the rest; nan if nothing else touches.
     """
     found = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
     plot_contact(case.pair, found, path=path, pits=case.pits[0], title=title)

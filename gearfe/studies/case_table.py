@@ -123,21 +123,11 @@ def _percent(value, form):
 
 
 def printed_beside(scene, published, reference, drops):
-    """Our values for the stiffnesses that the source of a scene prints, by id of its reference.
+    """Our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
 
-    Parameters
-    ----------
-    scene : Scene
-    published, reference : dict
-        Mean stiffness [N/m] by (case, pair): by the source's own formulas and by the reference; case "healthy" without damage.
-    drops : dict
-        Largest loss of stiffness [%] by (case, pair).
-
-    Returns
-    -------
-    dict of str to dict
-        For `gearfe.scene.verdicts.judge`; the printed errors are recomputed from the printed (corrected) stiffnesses. Empty
-        without such rows.
+    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`published`) and by the
+    `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed (corrected)
+    stiffnesses. Empty without such rows.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
     said = {one.id: {(row.case, row.pair): row.target for row in one.rows} for one in scene.references}
@@ -194,34 +184,15 @@ def case_curve(chosen, case, method, phase, **options):
 
 
 def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
-    """Every pair and case of a scene by every method that has it.
+    """`CaseTable`: every pair and case of a scene by every method that has it.
 
     The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
     The latter take minutes a gear: those of a built-in scene are read from the file that comes with it; without one for just
     these gears, loads and damages, the energy model `ritz3d` is the reference unless `compute` asks for them.
 
-    Parameters
-    ----------
-    scene : Scene
-        With cases of damage.
-    cases : sequence of (str, str or None), optional
-        Pairs with their cases, each pair with None (healthy) too; default all, pairs without damage too.
-    phases : int
-        Of the mesh cycle; where curves on file are read, theirs.
-    compute : bool
-        Compute three-dimensional finite elements that are not on file.
-    progress : callable, optional
-        Gets a text before each solve.
-
-    Returns
-    -------
-    CaseTable
-        Formulas that have no value for a damage have nan; a warning says why.
-
-    Raises
-    ------
-    ValueError
-        If the scene has no damage.
+    `cases` are (pair, case), each pair with None (healthy) too; default all, pairs without damage too. `phases` counts those of
+    the mesh cycle; where curves on file are read, theirs. `progress` gets a text before each solve. Formulas that have no value
+    for a damage have nan; a warning says why. ValueError if the scene has no damage.
     """
     if not any(pair.damage for pair in scene.pairs.values()):
         names = " or ".join(f"[[{name}]]" for name in DAMAGE)
