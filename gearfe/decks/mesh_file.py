@@ -63,7 +63,8 @@ def export_mesh(
     check_output(path, "mesh")
     check_gear(gear)
     refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
-    _check_damage(damage)
+    if not are(damage):
+        raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
     cracks, pits = split(damage)
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
@@ -71,11 +72,6 @@ def export_mesh(
     made = (_tets if cells == "tetrahedra" else _hexes)(gear, pits, cracks, teeth, refine)
     _write(path, suffix, made, KINDS[cells])
     return made
-
-
-def _check_damage(damage):
-    if not are(damage):
-        raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
 
 
 def _tets(gear, pits, cracks, teeth, refine):

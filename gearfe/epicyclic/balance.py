@@ -45,17 +45,9 @@ class Problem(NamedTuple):
         `closing` ``(n + m, motions)``.
         """
         more = flexibility.shape[0] - self.gap.size
-        zero, one = np.zeros(more), np.ones(more)
-        return Problem(
-            flexibility,
-            np.append(self.gap, zero),
-            np.append(self.coefficient, zero),
-            np.append(self.radius, one),
-            np.append(self.modulus, one),
-            np.append(self.tilt, zero),
-            closing,
-            self.load,
-        )
+        free = {"gap": 0.0, "coefficient": 0.0, "radius": 1.0, "modulus": 1.0, "tilt": 0.0}
+        values = {name: np.append(getattr(self, name), np.full(more, value)) for name, value in free.items()}
+        return self._replace(flexibility=flexibility, closing=closing, **values)
 
 
 def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

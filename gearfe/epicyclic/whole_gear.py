@@ -43,18 +43,9 @@ class WholeGear:
     tip), then into the left one. The held edge has r unknowns a sector, radial and tangential (clockwise) by node: those of its
     left corner first, clockwise, the right corner left out.
 
-    Attributes
-    ----------
-    gear, material
-        As of `whole_gear`.
-    stiffness : ndarray, shape (h, n, n)
-        Complex; the unknowns of the held edge come first.
-    push : ndarray, shape (h, n, 2 PLACES)
-        Loads on the tooth of sector 0.
-    bed : ndarray, shape (h, r, r)
-        Mass matrix of the held edge [mm]: forces of unit tractions spread as displacements are.
-    angle : ndarray, shape (r / 2,)
-        Of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
+    `stiffness` ``(h, n, n)`` is complex, the unknowns of the held edge come first; `push` ``(h, n, 2 PLACES)`` are the loads on
+    the tooth of sector 0; `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
+    displacements are; `angle` ``(r / 2,)`` that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
     """
 
     gear: Gear

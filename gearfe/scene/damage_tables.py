@@ -22,16 +22,14 @@ class Table(NamedTuple):
     words: str
 
 
+PLACE = {"case": (TEXT, REQUIRED), "gear": (TEXT, REQUIRED), "tooth": (WHOLE, 0), "pair": (TEXT, None)}  # of all damage
 CRACK = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "level": (NUMBER, None),
     "length_mm": (NUMBER, None),
     "angle_deg": (NUMBER, 45.0),
     "start": (TEXT, "30deg"),
     "turning": (TRUTH, False),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
     "width_mm": (TWO, None),
     "ends": (NUMBERS, [1.0, 1.0]),
     "rounded": (TRUTH, False),
@@ -62,8 +60,7 @@ CRACK_WORDS = """\
 #pair = "stage"  # only in this pair; left out: in all pairs of the gear
 """
 PITS = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "radius_mm": (NUMBER, REQUIRED),
     "count": (WHOLE, 1),
     "first_mm": (NUMBER, None),
@@ -77,8 +74,6 @@ PITS = {
     "axes_mm": (TWO, REQUIRED),
     "depth_mm": (NUMBER, REQUIRED),
     "angle_deg": (NUMBER, 0.0),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
 }
 PIT_WORDS = """\
 # Pits: a row of ellipses.
@@ -100,16 +95,13 @@ PIT_WORDS = """\
 #pair = "stage"
 """
 SPALL = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "radius_mm": (NUMBER, REQUIRED),
     "z_mm": (NUMBER, REQUIRED),
     "sides_mm": (TWO, REQUIRED),
     "depth_mm": (NUMBER, REQUIRED),
     "corner_mm": (NUMBER, 0.0),
     "both_halves": (TRUTH, False),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
 }
 SPALL_WORDS = """\
 # Spalls: rectangles with rounded corners.

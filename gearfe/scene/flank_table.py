@@ -5,7 +5,7 @@ import math
 from geometry.pair.flanks import Misalignment, tilt_of
 from geometry.tooth.modified import Flank
 
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, placed, sides
 
 RELIEFS = {
     f"{end}_{key}": (NUMBER, default)
@@ -49,21 +49,18 @@ def flanks_of(file, rows, name, pairs, gears):
 
     A flank of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
     """
-    out, pair = {}, pairs[name]
+    out = {}
     for key, row in rows.items():
         where = f"flank.{key}"
-        known(file, where, "gear", row["gear"], gears, "gear")
-        if row["pair"] is not None:
-            known(file, where, "pair", row["pair"], pairs, "pair")
-        made = placed(file, where, lambda r=row: _flank(r, gears[r["gear"]]))
-        for side, gear in (("pinion", "gear_1"), ("wheel", "gear_2")):
-            if pair[gear] == row["gear"] and row["pair"] in (None, name):
-                if side in out:
-                    raise ValueError(
-                        f"{file} [{where}]: gear {row['gear']!r} has a flank in pair {name!r} already; give each its pair"
-                    )
-                placed(file, where, lambda made=made, g=row["gear"]: made.on(gears[g]))
-                out[side] = made
+        stands = sides(file, where, row, name, pairs, gears)
+        flank = placed(file, where, lambda r=row: _flank(r, gears[r["gear"]]))
+        for side in stands:
+            if side in out:
+                raise ValueError(
+                    f"{file} [{where}]: gear {row['gear']!r} has a flank in pair {name!r} already; give each its pair"
+                )
+            placed(file, where, lambda flank=flank, gear=gears[row["gear"]]: flank.on(gear))
+            out[side] = flank
     return out
 
 

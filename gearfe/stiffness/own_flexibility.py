@@ -1,6 +1,6 @@
 """`OwnFlexibility`: a model of the user's own of how one gear gives, in place of `ritz` or `fe`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geometry.tooth.gear import Gear
 
+from ..checks import one_of
 from ..energy.closed import coupled
 from ..energy.closed.beam import Components
 from ..flexibility.plane import singly
@@ -96,8 +97,7 @@ class OwnFlexibility:
 
     def __post_init__(self) -> None:
         """Refuse what has no flexibility; name the model."""
-        if self.given not in GIVEN:
-            raise ValueError(f"given = {self.given!r}, but it must be one of {', '.join(GIVEN)}")
+        one_of("given", self.given, GIVEN)
         if self.wheel is None:
             object.__setattr__(self, "wheel", self.pinion)
         for side in ("pinion", "wheel"):
@@ -137,6 +137,10 @@ def _check(side: str, one: object) -> None:
         )
 
 
+def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
+    """Nothing is known of loads across the normal."""
+
+
 @dataclass(frozen=True, slots=True)
 class OwnGear:
     """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.plane.PairContact` reads of a gear."""
@@ -149,6 +153,8 @@ class OwnGear:
     seam = None
     dofs = 0
     fine = 1.0
+    within = singly
+    yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
@@ -162,13 +168,6 @@ class OwnGear:
             if own.size:
                 out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
         return out
-
-    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
-        """As of `gearfe.flexibility.plane.Flexibility`."""
-        return singly(self, rolls, teeth)
-
-    def yields_across(self, roll: NDArray, tooth: int) -> None:
-        """Nothing is known of loads across the normal."""
 
     def _among(self, roll, teeth):
         """Smooth flexibility between contacts of one phase, the function's values checked."""
@@ -193,6 +192,8 @@ class OwnMatrix:
     seam = None
     dofs = 0
     fine = 1.0
+    within = singly
+    yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] as the object gives it; zeros for contacts off the flank."""
@@ -201,13 +202,6 @@ class OwnMatrix:
         where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
         values = _checked(where, shape, lambda: self.made.matrix(roll, teeth))
         return np.where(on[..., :, None] & on[..., None, :], values, 0.0)
-
-    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
-        """As of `gearfe.flexibility.plane.Flexibility`."""
-        return singly(self, rolls, teeth)
-
-    def yields_across(self, roll: NDArray, tooth: int) -> None:
-        """Nothing is known of loads across the normal."""
 
 
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -19,9 +19,8 @@ from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
 
-MODEL = (
-    1e-3  # of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
-)
+# of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
+MODEL = 1e-3
 
 
 def sum_curves(row, case, how, phase):

@@ -14,12 +14,6 @@ LEAST = 1e-13  # the same at the least, above the rounding of a phase
 MOST = 20
 
 
-def check_pose(pose):
-    """ValueError unless the pose is known."""
-    if pose not in SHIFT:
-        raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(SHIFT)}")
-
-
 def in_pose(curve_at, phase, pair, pose, flanks=None):
     """Stiffness curve of gears of which only one turns (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
 

@@ -6,7 +6,7 @@ from itertools import chain
 
 from geometry.damage.crack import check_through
 
-from ..checks import is_number
+from ..checks import is_number, one_of
 from ..energy.closed.plain_sum import plain_sum
 from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having
@@ -107,5 +107,5 @@ def _check_variants(row, case, how, method):
             raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
         if name == "theta_f" and value is not None and not (is_number(value) and 0 < value < math.pi / 2):
             raise ValueError(f"variants: theta_f = {value!r}, but a root half angle lies between 0 and pi/2 rad")
-        if name == "crack_model" and value not in CRACK_MODELS:
-            raise ValueError(f"variants: crack_model = {value!r}, but it must be one of {', '.join(CRACK_MODELS)}")
+        if name == "crack_model":
+            one_of("variants: crack_model", value, CRACK_MODELS)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.pair.gear_pair import GearPair
 
 from ..case import NAMES, Case, case_of
-from ..checks import checked_refine, is_number, truth
+from ..checks import checked_refine, is_number, one_of, truth
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import check_state
 from ..threads import one_thread
@@ -19,9 +19,9 @@ from .curve import StiffnessCurve
 from .methods import METHODS, Method
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
-from .phases import LONG, check_span, phase_array
+from .phases import LONG, SPANS, phase_array
 from .plausible import check_plausible
-from .pose import check_pose, in_pose
+from .pose import SHIFT, in_pose
 from .turns import over_turns
 
 Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
@@ -117,8 +117,8 @@ class Solve:
         if not isinstance(self.cache, SolvedGears):
             truth("cache", self.cache)
         check_state(self.state)
-        check_pose(self.pose)
-        check_span(self.span)
+        one_of("pose", self.pose, SHIFT)
+        one_of("span", self.span, SPANS)
         order = self.order
         if order is not None and (not is_number(order) or not 2 <= order <= 8 or order != int(order)):
             raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")

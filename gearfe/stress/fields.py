@@ -25,23 +25,10 @@ MISES = "von Mises stress [MPa]"
 class Field:
     """Displacement and stress on second-order elements.
 
-    Attributes
-    ----------
-    points : ndarray, shape (3, n)
-        Nodes [mm].
-    kind : {"triangle6", "tetra10"}
-    cells : ndarray, shape (6 or 10, m)
-        In VTK's order.
-    moved : ndarray, shape (3, n)
-        [mm].
-    stress : ndarray, shape (6, n)
-        xx, yy, zz, xy, yz, xz [MPa].
-    lines : ndarray, shape (2, k)
-        Pieces of edges worth drawing: outline, crack, rims of pits.
-    root : float
-        Largest von Mises stress on the fillets [MPa].
-    opening : float
-        Largest distance of crack faces that lie on each other without load [mm].
+    Nodes `points` ``(3, n)``, displacements `moved` ``(3, n)`` [mm], `stress` ``(6, n)`` (xx, yy, zz, xy, yz, xz) [MPa]; `cells`
+    ``(6 or 10, m)`` in VTK's order, of `kind` ``triangle6`` or ``tetra10``; `lines` ``(2, k)`` are pieces of edges worth drawing:
+    outline, crack, rims of pits. `root` is the largest von Mises stress on the fillets [MPa], `opening` the largest distance of
+    crack faces that lie on each other without load [mm].
     """
 
     points: np.ndarray

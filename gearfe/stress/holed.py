@@ -28,28 +28,15 @@ PARTS = 5  # parts along each side of a loaded triangle: it is cut into the squa
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """A damaged tooth under load at some phases.
+    """A damaged tooth under load at p phases: `load` ``(p,)`` on tooth 0, at right angles to its flank [N].
 
-    Attributes
-    ----------
-    sector : geometry.mesh.holes.Holed
-    nodes : ndarray, shape (3, n)
-        Vertices and edge middles [mm].
-    cells : ndarray, shape (10, m)
-        Of the gear with holes, in VTK's order.
-    contact : Contact3D
-    gear : str
-        ``pinion`` or ``wheel``.
-    load : ndarray, shape (phases,)
-        On tooth 0, at right angles to its flank [N].
-    moved : ndarray, shape (phases, 3, n)
-        Displacement [mm], nan at nodes inside of the pits.
-    stress : ndarray, shape (phases, 6, n)
-        xx, yy, zz, xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume.
-    extra : ndarray, shape (phases,)
-        By how much the removed material adds to the approach of the pair under the same loads, relative; empty if not asked for.
-        The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it less, too.
-    unknowns : int
+    `nodes` ``(3, n)`` are vertices and edge middles of the `sector` [mm], `cells` ``(10, m)`` those of the gear with holes, in
+    VTK's order. `moved` ``(p, 3, n)`` are displacements [mm], nan at nodes inside of the pits; `stress` ``(p, 6, n)`` xx, yy, zz,
+    xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume. `gear` is ``pinion`` or ``wheel``.
+
+    `extra` ``(p,)`` says by how much the removed material adds to the approach of the pair under the same loads, relative; empty
+    if not asked for. The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it
+    less, too.
     """
 
     sector: Holed

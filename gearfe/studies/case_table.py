@@ -25,16 +25,8 @@ COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 1.0}  # about, of a curve, in CPU sec
 class CaseCurve:
     """Stiffness over the cycle in which the damaged tooth is in the middle of its engagement.
 
-    Attributes
-    ----------
-    k : ndarray, shape (n,)
-        Of the mesh [N/m].
-    tooth : ndarray, shape (n,)
-        Of the damaged tooth's own pair: its force over the common approach [N/m].
-    seconds : float
-        What it took, when it was computed.
-    estimate : float
-        Relative error estimate of the mean; nan if there is none.
+    `k` ``(n,)`` of the mesh and `tooth` ``(n,)`` of the damaged tooth's own pair, its force over the common approach [N/m];
+    `seconds` it took, when it was computed; `estimate` of the relative error of the mean, nan if there is none.
     """
 
     k: np.ndarray

@@ -49,13 +49,7 @@ class Pattern:
 
 
 def pattern_of(case: Case, phases: int = 24) -> Pattern:
-    """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one.
-
-    Raises
-    ------
-    ValueError
-        If it can not be solved.
-    """
+    """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one."""
     contact = contact_pattern(case, phases=damage_phases(case, phases) if case.damaged else phases)
     pressures = [np.where(np.isnan(cells.pressure), -math.inf, cells.pressure) for cells in contact.cells]
     most = int(np.argmax([own.max() for own in pressures]))
