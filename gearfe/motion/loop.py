@@ -11,14 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..machine.contact_law import LAW, branches, contact_force
 from .excitation import changing
 from .exponential import UNSTABLE
-from .loop_parts import compiled, lookup, secant, stage
+from .loop_law import force, records
+from .loop_parts import compiled, kept, lookup, secant, stage
 
 GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
 CHUNK = 64  # steps whose stiffnesses are looked up at once
-_force = compiled(contact_force)
 
 
 class Matrices(NamedTuple):
@@ -57,8 +56,8 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     matrices = _matrices(plan, *changing(machine, flat))
     bends = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
     flat = flat._replace(knots=np.concatenate(bends) if bends else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, bends)]))
-    laws = np.array([machine.law[key].astype(float) for key in LAW]).T.copy()
-    kind = plan.affine, len(plan.P) > len(machine.meshes), *branches(machine.law)
+    laws = records(machine.law)
+    kind = plan.affine, len(plan.P) > len(machine.meshes)
     linear = np.stack([plan.k, plan.c])
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
@@ -94,7 +93,7 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, t
 
     Whole forces and stiffnesses of the meshes go into `total` (where it is needed) and `stiff`.
     """
-    affine, rates, bent, stepped, pushing = kind
+    affine, rates = kind
     m, rub, lawful = total.size, rub_mesh.size, table.size > 0
     at = now.shape[1] - (2 * shape.shape[0] if lawful else 0)
     for j in range(at - 3 * m - rub):
@@ -102,22 +101,21 @@ def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, t
     if affine:  # every mesh stays closed: the same, without asking where it is
         for i in range(m):
             k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
-            g[first + i] = (k - linear[0, i]) * x[i] - k * e - (laws[i, 1] + laws[i, 2] * k) * rate
+            g[first + i] = (k - linear[0, i]) * x[i] - k * e - (laws[i].damping + laws[i].beta * k) * rate
             stiff[i] = k
         return
     for i in range(m):
         v = x[m + i] if rates else 0.0
         k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
         if lawful and now[row, at + 2 * i] >= 0:
-            deep = max(x[i] - e, 0.0) + max(-laws[i, 4] - (x[i] - e), 0.0)
+            deep = max(x[i] - e, 0.0) + max(-laws[i].backlash - (x[i] - e), 0.0)
             k = secant(table, shape, i, now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
             for j in range(change_mesh.size):
                 own = at + 2 * (m + j)
                 if change_mesh[j] == i and now[row, own] >= 0:
                     k += secant(table, shape, m + j, now[row, own], now[row, own + 1], deep)
             k = max(k, 0.0)
-        law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
-        whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
+        whole = force(x[i] - e, v - rate, k, laws[i])
         g[first + i] = whole - linear[0, i] * x[i] - linear[1, i] * v
         total[i], stiff[i] = whole, k
     for j in range(rub):
@@ -147,7 +145,7 @@ def _changed(side, x, now, row, laws):
     """Whether a mesh that can open is not on the side given."""
     m = side.size
     for i in range(m):  # noqa: SIM110 (numba has no generators here)
-        if laws[i, 4] > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i, 4]):
+        if laws[i].backlash > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i].backlash):
             return True
     return False
 
@@ -157,8 +155,8 @@ def _losses(side, x, now, row, laws):
     """Bring the sides up to date; how many meshes that can open have opened."""
     m, lost = side.size, 0
     for i in range(m):
-        seen = _side(x[i] - now[row, m + i], laws[i, 4])
-        lost += laws[i, 4] > 0 and side[i] != 0.0 and seen == 0.0
+        seen = _side(x[i] - now[row, m + i], laws[i].backlash)
+        lost += laws[i].backlash > 0 and side[i] != 0.0 and seen == 0.0
         side[i] = seen
     return lost
 
@@ -183,7 +181,7 @@ def _propagate(new, E, level, z):
                 new[i] += E[level, 0, i, j] * z[j]
 
 
-@compiled
+@kept
 def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local, acting):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
     E, Y, S, T, PF, add, push, W, P = matrices

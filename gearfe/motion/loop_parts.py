@@ -2,18 +2,36 @@
 
 import contextlib
 import warnings
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 from numba import njit
 from numba.core import event
 
+compiled = njit(error_model="numpy")  # at the first call
 
-def compiled(function):
-    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write."""
+
+def kept(function):
+    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write.
+
+    It holds what the function calls, in other files and laws of contact too: any edit of these makes it anew.
+    """
     try:
-        return njit(cache=True, error_model="numpy")(function)
+        made = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # no such folder: it is compiled by each process
-        return njit(error_model="numpy")(function)
+        return compiled(function)
+    made._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
+    return made
+
+
+@cache
+def _stamp():
+    """Digest of all files whose functions are compiled together."""
+    home = Path(__file__).parent
+    files = *home.glob("loop*.py"), home / "../machine/contact_law.py", *home.glob("../machine/laws/*.py")
+    return sha256(b"".join(one.read_bytes() for one in sorted(files))).hexdigest()
 
 
 class _Announcer(event.Listener):
