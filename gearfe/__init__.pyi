@@ -136,9 +136,9 @@ from .strength.root_stress import RootStress as RootStress
 from .strength.root_stress import root_stress_along_width as root_stress_along_width
 from .stress.mesh_picture import render_mesh as render_mesh
 from .stress.render import render_stress as render_stress
-from .studies.batches import batch as batch
+from .many.batches import batch as batch
 from .studies.by_zone import compare as compare
-from .studies.errormap import error_map as error_map
+from .many.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
 from .studies.pattern import face_load as face_load

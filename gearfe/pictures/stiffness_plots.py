@@ -111,7 +111,7 @@ def _extended(phase, k, rows, place):
 
 
 def plot_map(found, formulations, x, y, zone, path=None, bins=8):
-    """Heat maps of the median error over two columns of an `gearfe.studies.errormap.ErrorMap`, one for each formulation.
+    """Heat maps of the median error over two columns of an `gearfe.many.errormap.ErrorMap`, one for each formulation.
 
     Columns with few different values (loads) get one bin each, others `bins` of equal width.
     """

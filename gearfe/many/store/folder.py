@@ -146,3 +146,53 @@ def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
         found = about.get("format") if isinstance(about, dict) else about
         raise ValueError(f"{file} says format = {found!r}, not {form!r}: another program's or version's folder; give a new one")
     return about
+
+
+def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
+    """Refuse to go on with a folder that was begun with other inputs, or by another version of the program.
+
+    Parameters
+    ----------
+    folder : str or path
+    stored, about : dict
+        What stands in the folder and what would be written now; ``[what]`` are the inputs, ``["made"]`` the versions.
+    what : str
+        What the inputs are, such as ``"study"``.
+    mixed : bool, optional
+        Take another version too; None: that cannot be asked for.
+
+    Raises
+    ------
+    ValueError
+        With the values that differ.
+    """
+    changed = list(_differences(stored[what], about[what]))
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise ValueError(
+            f"{folder} holds another {what}, begun with {changed[0]}{more}: give a new folder, or the {what} as it was "
+            f"({folder}/{ABOUT} has all of it)"
+        )
+    versions = list(_differences(stored["made"], about["made"]))
+    if versions and not mixed:
+        told = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
+        raise ValueError(
+            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{told}"
+        )
+
+
+def _differences(there, here, path=""):
+    """Texts that say which values differ."""
+    if isinstance(there, dict) and isinstance(here, dict):
+        for name in dict.fromkeys((*there, *here)):
+            yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
+    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        for i, (one, other) in enumerate(zip(there, here, strict=True)):
+            yield from _differences(one, other, f"{path}.{i}")
+    elif there != here and not (there != there and here != here):  # nan is equal to nan
+        yield f"{path} = {_short(there)}, not {_short(here)}"
+
+
+def _short(value):
+    text = repr(value)
+    return text if len(text) < 60 else f"{text[:50]}...{text[-5:]}"

@@ -189,6 +189,23 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
 
 
+def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
+    """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
+
+    Raises
+    ------
+    ValueError
+        If a shard is damaged, or there is one that is none of this `what`.
+    """
+    check_shards(folder)
+    there = {*shard_names(folder), *failed}
+    unknown = sorted(there - set(names))
+    if unknown:
+        name = unknown[0] if unknown[0] in failed else f"{unknown[0]}{SUFFIX}"
+        raise ValueError(f"{folder} holds {name}, which is none of this {what}'s: take it out")
+    return [name for name in names if name not in there]
+
+
 def _alike(folder):
     """Whether all shards say in the same words which columns they have.
 

@@ -16,7 +16,7 @@ from ...case import two_materials
 from ...checks import is_number
 from ...material import Material
 from ...stiffness.solve import mesh_stiffness
-from ...studies.batches import batch
+from ..batches import batch
 from .space import Space, space_of
 from .surrogate import Surrogate
 from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of

@@ -189,9 +189,11 @@ def _computed(study, cases, built):
         built.clear()
         tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
         built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
-    scene = built[key]
-    forces = [one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases]
-    return kind.work(scene, pair, None if damage == "healthy" else damage, options, forces)
+    scene, hurt = built[key], None if damage == "healthy" else damage
+    if kind.whole:
+        return kind.work(scene, hurt, options)
+    forces = tuple(one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases)
+    return kind.work(replace(scene.case(pair, hurt), force=forces), options)
 
 
 def _key(study, case):

@@ -19,9 +19,9 @@ from ..files import written
 from ..material import Material
 from ..stiffness.methods import ROWS
 from ..stiffness.solve import mesh_stiffness
+from ..studies.own_model import OwnModel, own_curve
 from ..threads import own_warnings
 from .batches import batch
-from .own_model import OwnModel, own_curve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
