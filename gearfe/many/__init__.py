@@ -1,4 +1,5 @@
 """Many cases at once: batches, sweeps, labelled data sets, surrogates, error maps, all by one `runner`.
 
-What is resumed stands in folders of a `store`: each file is whole or not there, so that a killed process costs what was under way.
+What can be gone on with stands in folders of a `store`: each file is whole or not there, so that a process that is killed
+costs only what was under way.
 """

@@ -48,10 +48,6 @@ def batch(
     progress : callable, optional
         Called with (cases done, cases in all).
 
-    Returns
-    -------
-    Batch
-
     Raises
     ------
     ValueError

@@ -134,10 +134,6 @@ def error_map(
         As in `gearfe.batch`.
     progress : callable, optional
         As in `gearfe.batch`.
-
-    Returns
-    -------
-    ErrorMap
     """
     if pairs != int(pairs) or pairs < 1:
         raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")

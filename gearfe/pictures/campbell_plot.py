@@ -27,10 +27,6 @@ def plot_campbell(
         Largest frequency [Hz]; default: that of the highest order at the highest speed.
     dpi : int
         Dots per inch of the picture.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     from matplotlib.figure import Figure
 

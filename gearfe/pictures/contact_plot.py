@@ -45,10 +45,6 @@ def plot_contact(
         Of the pinion, to be drawn; only the line of their own tooth pair is cut by them.
     title : str
         What is shown: scene, pair, case.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     from matplotlib.figure import Figure
 

@@ -19,10 +19,6 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
         Default: teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`.
     plain : TransmissionError, optional
         That of the same pair with plain involutes: its peak-to-peak is drawn too.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
     from matplotlib import colormaps
     from matplotlib.figure import Figure

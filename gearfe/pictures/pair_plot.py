@@ -44,10 +44,6 @@ def plot_pair(
     title : str
         What is shown: scene, pair, case.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError

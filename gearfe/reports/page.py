@@ -46,11 +46,6 @@ def report(
     phases : int
         Of the stiffness curves, per mesh cycle.
 
-    Returns
-    -------
-    pathlib.Path
-        Of the page.
-
     Raises
     ------
     ValueError

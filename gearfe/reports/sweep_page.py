@@ -26,11 +26,6 @@ def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[st
     path : path
         A ``.html`` file.
 
-    Returns
-    -------
-    pathlib.Path
-        Of the page.
-
     Raises
     ------
     ValueError

@@ -37,6 +37,14 @@ def samples(name: str, values: Any) -> NDArray[np.float64]:
     return values
 
 
+def oscillation(values: NDArray[np.float64], told: str) -> NDArray[np.float64]:
+    """Values without their mean; ValueError, with what is `told`, if they are constant."""
+    x = values - values.mean()
+    if not np.abs(x).max() > 1e-12 * np.abs(values).max():
+        raise ValueError(told)
+    return x
+
+
 def hertz(name: str, value: Any) -> None:
     """Raise ValueError unless it is a frequency: a positive number of Hz, of those that clocks have."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):

@@ -1,5 +1,6 @@
 """Spectra of signals: amplitude, power density, squared envelope; the analytic signal and the envelope."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -95,14 +96,7 @@ def analytic(signal, band=None):
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
-    return Signal(
-        np.abs(analytic(signal, band)),
-        signal.rate,
-        signal.unit,
-        f"envelope of {signal.name}",
-        signal.angle,
-        signal.shaft_frequency,
-    )
+    return replace(signal, values=np.abs(analytic(signal, band)), name=f"envelope of {signal.name}")
 
 
 def squared_envelope_spectrum(

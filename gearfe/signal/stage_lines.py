@@ -2,6 +2,9 @@
 
 import math
 
+from ..checks import whole
+from .given import hertz
+
 
 def stage_lines(
     sun: int,
@@ -81,14 +84,12 @@ def stage_lines(
 
 def _check(sun, ring, n_planets, carrier, damaged):
     for name, value in {"sun": sun, "ring": ring, "n_planets": n_planets}.items():
-        if isinstance(value, bool) or value != int(value) or value < 1:
-            raise ValueError(f"{name} = {value!r}, but give a whole number above 0")
+        whole(name, value, 1)
     if ring <= sun:
         raise ValueError(f"ring = {ring}, sun = {sun}: a ring has more teeth than its sun")
     if (sun + ring) % n_planets:
         raise ValueError(f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole")
-    if not 0 < carrier < math.inf:
-        raise ValueError(f"carrier = {carrier} Hz, but give a positive number")
+    hertz("carrier", carrier)
     if damaged not in (None, "sun", "planet", "ring"):
         raise ValueError(f"damaged = {damaged!r}, but it must be 'sun', 'planet' or 'ring'")
 

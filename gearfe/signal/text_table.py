@@ -43,10 +43,6 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
     header : str, optional
         Names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others.
 
-    Returns
-    -------
-    Found
-
     Raises
     ------
     ValueError

@@ -46,11 +46,6 @@ def dataset(
     progress : callable, optional
         Called with (conditions done, conditions in all).
 
-    Returns
-    -------
-    Dataset
-        As of `gearfe.open_dataset`.
-
     Raises
     ------
     ValueError
@@ -58,7 +53,8 @@ def dataset(
         window too short to hold the fault, too few conditions for the split...; or the folder holds anything else, was begun by
         another version, or cannot be written.
     RuntimeError
-        If pyarrow is missing, or a process ended with a condition, also when it was tried again alone: what is finished stays, call it again.
+        If pyarrow is missing, or a process ended with a condition, also when it was tried again alone: what is finished stays,
+        call it again.
     """
     check_workers(workers)
     unknown = [one for one in also if one not in EXPORTS]

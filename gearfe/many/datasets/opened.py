@@ -120,10 +120,6 @@ class Dataset:
         form : {"mat", "hdf5"}
             MATLAB 5 (texts are cell arrays), or HDF5.
 
-        Returns
-        -------
-        list of Path
-
         Raises
         ------
         ValueError
@@ -186,10 +182,6 @@ def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
     Parameters
     ----------
     folder : str or path
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------

@@ -61,10 +61,6 @@ def fit_surrogate(
     workers, progress
         As of `gearfe.batch`.
 
-    Returns
-    -------
-    Surrogate
-
     Raises
     ------
     ValueError

@@ -111,11 +111,7 @@ def at(phase: NDArray[np.float64], breaks: NDArray[np.float64], series: NDArray[
     piece = piece_of(phase, breaks)
     low, high = breaks[piece], breaks[piece + 1]
     u = np.clip((2 * phase - low - high) / (high - low), -1.0, 1.0)
-    own = series[piece].T
-    before, out = own[DEGREE], own[DEGREE - 1] + 2 * u * own[DEGREE]  # Clenshaw's recurrence
-    for k in range(DEGREE - 2, 0, -1):
-        before, out = out, own[k] + 2 * u * out - before
-    return own[0] + u * out - before
+    return chebyshev.chebval(u, series[piece].T, tensor=False)
 
 
 def piece_of(phase: NDArray[np.float64], breaks: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -146,10 +146,6 @@ def told_apart(healthy: Any, damaged: Any) -> float:
     ----------
     healthy, damaged : array_like, shape (n,) and (m,)
 
-    Returns
-    -------
-    float
-
     Examples
     --------
     >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])

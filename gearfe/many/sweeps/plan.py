@@ -75,10 +75,6 @@ def plan_sweep(
     workers : int, optional
         Processes; default one per core.
 
-    Returns
-    -------
-    Plan
-
     Raises
     ------
     ValueError

@@ -44,11 +44,6 @@ def sweep(
     progress : callable, optional
         Called with (cases done, cases in all).
 
-    Returns
-    -------
-    Runs
-        As of `gearfe.open_runs`.
-
     Raises
     ------
     ValueError

@@ -164,10 +164,6 @@ def open_runs(folder: str | os.PathLike[str]) -> Runs:
     ----------
     folder : str or path
 
-    Returns
-    -------
-    Runs
-
     Raises
     ------
     ValueError
