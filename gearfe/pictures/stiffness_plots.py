@@ -6,7 +6,7 @@ import numpy as np
 
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
-from .look import SQUASHED, look
+from .look import SQUASHED, blank, look
 
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
@@ -37,10 +37,7 @@ def plot_curves(curves, path=None, title=None):
     matplotlib.figure.Figure
         Its ``axes`` are two.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.5, 5.4), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):
         top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look(number))
     first = next(iter(curves.values()))
@@ -115,10 +112,8 @@ def plot_map(found, formulations, x, y, zone, path=None, bins=8):
 
     Columns with few different values (loads) get one bin each, others `bins` of equal width.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(3.4 * len(formulations) + 1, 3.4), layout="constrained")
-    row = figure.subplots(1, len(formulations), sharex=True, sharey=True, squeeze=False)[0]
+    size = (3.4 * len(formulations) + 1, 3.4)
+    figure, (row,) = blank(size, 1, len(formulations), sharex=True, sharey=True, squeeze=False)
     (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
     for axes, name in zip(row, formulations, strict=True):
         error = 100 * found.columns[f"{name} {zone}"]

@@ -1,5 +1,6 @@
 """What a report shows, computed: comparisons of all pairs, the loaded tooth, the machine's vibration; with what each cost."""
 
+import contextlib
 import time
 from dataclasses import dataclass, field
 
@@ -100,19 +101,14 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     return found
 
 
-class _counted:  # noqa: N801
+@contextlib.contextmanager
+def _counted(found, name):
     """Seconds of a part, and its warnings, into the findings."""
-
-    def __init__(self, found, name):
-        self.found, self.name, self.caught = found, name, own_warnings()
-
-    def __enter__(self):
-        self.told, self.started = self.caught.__enter__(), time.perf_counter()
-
-    def __exit__(self, *error):
-        self.found.seconds[self.name] = time.perf_counter() - self.started
-        self.caught.__exit__(*error)
-        self.found.notes += [f"{self.name}: {one.message}" for one in self.told]
+    started = time.perf_counter()
+    with own_warnings() as told:
+        yield
+    found.seconds[name] = time.perf_counter() - started
+    found.notes += [f"{name}: {one.message}" for one in told]
 
 
 def _tooth(found):
