@@ -95,14 +95,13 @@ def _of_script(work, cases):
 
 
 def _timed(work, job):
-    """Result and seconds of each case of a job."""
-    return [_timed_case(work, case) for case in job[1]]
-
-
-def _timed_case(work, case):
-    started = time.perf_counter()
-    try:
-        result = work(**case)
-    except (ValueError, RuntimeError) as error:
-        result = error
-    return result, time.perf_counter() - started
+    """Result, or error, and seconds of each case of a job."""
+    out = []
+    for case in job[1]:
+        started = time.perf_counter()
+        try:
+            result = work(**case)
+        except (ValueError, RuntimeError) as error:
+            result = error
+        out.append((result, time.perf_counter() - started))
+    return out

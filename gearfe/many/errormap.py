@@ -83,8 +83,7 @@ class ErrorMap:
         with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
             table.writerow(self.columns)
-            for row in zip(*self.columns.values(), strict=True):
-                table.writerow([f"{value:.6g}" for value in row])
+            table.writerows([f"{value:.6g}" for value in row] for row in zip(*self.columns.values(), strict=True))
 
     def plot(
         self,
@@ -153,18 +152,12 @@ def error_map(
 def build(sample):
     """Pair of module 1 and width 1 mm from the sampled numbers."""
     rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "tip_radius": sample["tip_radius"]}
-    gears = []
-    for k in (1, 2):
-        z, x = sample[f"z_{k}"], sample[f"x_{k}"]
-        gears.append(_gear(z, x, sample[f"bore_{k}"], rack))
-    with own_warnings():
-        return GearPair(*gears)
-
-
-def _gear(z, x, bore, rack):
-    """Gear with its bore in root radii."""
     with own_warnings():  # tip radii are capped at the full rounding
-        return Gear(z=int(z), x=x, r_bore=bore * (z / 2 - 1.25 + x), **rack)
+        gears = []
+        for k in (1, 2):
+            z, x = sample[f"z_{k}"], sample[f"x_{k}"]
+            gears.append(Gear(z=int(z), x=x, r_bore=sample[f"bore_{k}"] * (z / 2 - 1.25 + x), **rack))
+        return GearPair(*gears)
 
 
 def _samples(count, seed):

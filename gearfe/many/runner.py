@@ -56,8 +56,9 @@ def results(
 ) -> Iterator[tuple[Any, Any]]:
     """Each job with what `work` gives of it, in the order in which they end; None for a job that is lost.
 
-    Lost is a job that ends its process also when it is computed alone, or with which workers of a scheduler were lost as often
-    as its ``allowed-failures`` says (default 3).
+    Lost is a job that ends its process also when it is computed alone, or with which workers of a scheduler were lost as often as
+    its ``allowed-failures`` says (default 3). ValueError if there is no scheduler at the address, or it has no workers;
+    RuntimeError if ``distributed``, which talks to it, is not installed.
 
     Parameters
     ----------
@@ -70,13 +71,6 @@ def results(
         Address of a Dask scheduler: its workers compute instead.
     own : bool
         Whether processes need what the caller's script defines, see `gearfe.many.processes.processes`.
-
-    Raises
-    ------
-    ValueError
-        If there is no scheduler at the address, or it has no workers.
-    RuntimeError
-        If ``distributed``, which talks to a scheduler, is not installed.
     """
     count = count_of(workers, jobs)
     if scheduler is not None:

@@ -83,10 +83,7 @@ def _check_links(file, h5py):
 def _hdf_values(item):
     """Values of a dataset that stands in the file itself.
 
-    Raises
-    ------
-    ValueError
-        If it is read from other files, or says it is larger than what is stored of it can be.
+    ValueError if it is read from other files, or says it is larger than what is stored of it can be.
     """
     if item.external or item.is_virtual:
         kind = "in other files" if item.external else "put together from datasets, maybe of other files"

@@ -14,10 +14,7 @@ HERTZ = (1e-12, 1e15)  # frequencies that clocks have
 def samples(name: str, values: Any) -> NDArray[np.float64]:
     """A row of real, finite numbers, copied.
 
-    Raises
-    ------
-    ValueError
-        If it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
+    ValueError if it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
     """
     try:
         values = np.array(values)
@@ -54,10 +51,7 @@ def hertz(name: str, value: Any) -> None:
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
     """The ends (low, high) [Hz] of a band within half the rate; of all of it if None.
 
-    Raises
-    ------
-    ValueError
-        If they are no two numbers, or not ``0 <= low < high <= rate / 2``.
+    ValueError if they are no two numbers, or not ``0 <= low < high <= rate / 2``.
     """
     if band is None:
         return 0.0, rate / 2

@@ -155,10 +155,7 @@ def read_signals(
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     """What a file holds: its channels, their units and rates.
 
-    Raises
-    ------
-    ValueError
-        If its suffix is of no format, it cannot be read or is damaged, or holds no channel.
+    ValueError if its suffix is of no format, it cannot be read or is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
     if header is not None and suffix in READERS:

@@ -45,12 +45,8 @@ def tachometer_angle(
 
     Each pulse is ``2 pi / pulses`` further; through their times a cubic spline is laid, exact for a speed that changes evenly. A
     pulse that lies between two samples is placed by a straight line between them, to a small part of a sample. `pulses`, `level`
-    and `falling` are as of `with_tachometer`.
-
-    Raises
-    ------
-    ValueError
-        If there are too few pulses, or one was lost: an interval of about two or more beside ordinary ones.
+    and `falling` are as of `with_tachometer`. ValueError if there are too few pulses, or one was lost: an interval of about two
+    or more beside ordinary ones.
 
     References
     ----------
@@ -74,17 +70,13 @@ def tachometer_angle(
 def with_speed_record(signal: Signal, speed: Signal) -> Signal:
     """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
 
-    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not.
+    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. ValueError if the
+    two differ in rate or length, or the shaft stands still or turns back.
 
     Parameters
     ----------
     signal, speed : Signal
         Of one rate and length; the speed in one of the units of `SPEEDS`.
-
-    Raises
-    ------
-    ValueError
-        If the two differ in rate or length, or the shaft stands still or turns back.
     """
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))

@@ -35,6 +35,8 @@ class Way(NamedTuple):
 def text_table(path: str | os.PathLike[str], lines: list[str], header: str | None = None) -> Found:
     """Channels of a text table.
 
+    ValueError if there are no rows of numbers, or one that does not fit the others: its line is named.
+
     Parameters
     ----------
     path : path
@@ -42,11 +44,6 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
     lines : list of str
     header : str, optional
         Names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others.
-
-    Raises
-    ------
-    ValueError
-        If there are no rows of numbers, or one that does not fit the others: its line is named.
     """
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]

@@ -20,10 +20,7 @@ ABOUT, LOCK, PART = "about.json", ".lock", ".part-"
 def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """File to write into that becomes `path` when the block ends without an error, and is on the disk then.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
+    ValueError if it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
     """
     path = Path(path)
     name = None
@@ -56,10 +53,7 @@ def _sync(folder):
 def locked(folder: str | os.PathLike[str]) -> Iterator[None]:
     """Be the only one who writes into a folder, until the block ends or the process does; leftovers of killed ones are removed.
 
-    Raises
-    ------
-    ValueError
-        If another process writes into it, or the folder cannot be written.
+    ValueError if another process writes into it, or the folder cannot be written.
     """
     folder = Path(folder)
     try:
@@ -92,6 +86,8 @@ def _take(handle, folder):
 def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
     """What an existing folder says of its shards; a new or empty one is made and says what `about` holds.
 
+    ValueError if the folder cannot be made or written, or holds anything else.
+
     Parameters
     ----------
     folder : str or path
@@ -102,11 +98,6 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
     -------
     dict
         What stands in the folder, for the caller to compare with `about`.
-
-    Raises
-    ------
-    ValueError
-        If the folder cannot be made or written, or holds anything else.
     """
     if not os.fspath(folder):
         raise ValueError("an empty name of a folder: give one")
@@ -126,10 +117,7 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
 def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
     """What a folder of shards of the format `form` says of itself.
 
-    Raises
-    ------
-    ValueError
-        If it is no such folder; nothing in it is touched.
+    ValueError if it is no such folder; nothing in it is touched.
     """
     file = Path(folder) / ABOUT
     if not Path(folder).is_dir():

@@ -33,10 +33,7 @@ KINDS = ("number", "whole", "truth", "text", "list", "json")  # list: of numbers
 def arrow() -> Any:
     """Return the package ``pyarrow`` with its parts that read and write Parquet.
 
-    Raises
-    ------
-    RuntimeError
-        If it is not installed; the message names what to install.
+    RuntimeError if it is not installed; the message names what to install.
     """
     try:
         import pyarrow
@@ -50,17 +47,14 @@ def arrow() -> Any:
 def where_of(where: Any, names: Sequence[str]) -> Any:
     """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column.
 
+    ValueError if there is no such column, or it holds no such values.
+
     Parameters
     ----------
     where : dict, pyarrow expression or None
         ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
     names : sequence of str
         Columns that there are.
-
-    Raises
-    ------
-    ValueError
-        If there is no such column, or it holds no such values.
     """
     if not isinstance(where, Mapping):
         return where
@@ -85,11 +79,8 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
 def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
     """Rows as a table with exactly the columns `fields`; what a row lacks is null.
 
-    Raises
-    ------
-    ValueError
-        If a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among whole
-        numbers.
+    ValueError if a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among
+    whole numbers.
     """
     pa = arrow()
     extra = sorted({name for row in rows for name in row} - set(fields))
@@ -159,10 +150,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> None:
     """Put an `encoded` table into a folder; one of the same name is replaced.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be written; all other shards stay as they are.
+    ValueError if it cannot be written; all other shards stay as they are.
     """
     with durable(Path(folder) / f"{name}{SUFFIX}") as file:
         file.write(content)
@@ -183,7 +171,7 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
         try:
             schema = pa.parquet.read_schema(file)
         except (OSError, pa.ArrowInvalid) as error:
-            raise ValueError(f"{file} is damaged: {_line(error)}; delete this file, and what it held is computed anew") from error
+            raise _damaged(file, error) from error
         first = first or schema
         if schema != first:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
@@ -192,10 +180,7 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
 def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
     """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
 
-    Raises
-    ------
-    ValueError
-        If a shard is damaged, or there is one that is none of this `what`.
+    ValueError if a shard is damaged, or there is one that is none of this `what`.
     """
     check_shards(folder)
     there = {*shard_names(folder), *failed}
@@ -209,10 +194,7 @@ def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, 
 def _alike(folder):
     """Whether all shards say in the same words which columns they have.
 
-    Raises
-    ------
-    ValueError
-        If a shard is another one, byte for byte: its rows would count twice.
+    ValueError if a shard is another one, byte for byte: its rows would count twice.
     """
     first: dict[tuple[int, bytes], Path] = {}
     columns = set()
@@ -239,10 +221,7 @@ def _end(file):
 def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
 
-    Raises
-    ------
-    ValueError
-        If there is no shard, one is damaged, has other columns than the first, or is a copy of another.
+    ValueError if there is no shard, one is damaged, has other columns than the first, or is a copy of another.
     """
     pa = arrow()
     files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
@@ -253,9 +232,7 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
         found = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
         alike = _alike(folder)
     except (OSError, pa.ArrowException) as error:
-        raise ValueError(
-            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
-        ) from error
+        raise _damaged(_first_damaged(folder), error) from error
     if not alike:
         check_shards(folder)
     return found
@@ -269,10 +246,7 @@ def checked_scan() -> Any:
 def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
     """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
 
-    Raises
-    ------
-    ValueError
-        If a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
+    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
     """
     pa = arrow()
     found = opened(folder)
@@ -284,9 +258,7 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
         raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
-        raise ValueError(
-            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
-        ) from error
+        raise _damaged(_first_damaged(folder), error) from error
 
 
 def _line(error):
@@ -294,7 +266,11 @@ def _line(error):
     return " ".join(str(error).split())
 
 
-def _damaged(folder):
+def _damaged(file, error):
+    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and what it held is computed anew")
+
+
+def _first_damaged(folder):
     """First shard in a folder that cannot be read as a whole."""
     pa = arrow()
     for name in shard_names(folder):

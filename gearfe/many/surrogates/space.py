@@ -109,10 +109,7 @@ class Space:
     def case(self, point: Mapping[str, float]) -> dict[str, Any]:
         """Arguments ``pair``, ``force`` and ``damage`` of `mesh_stiffness` at a point of the ranges.
 
-        Raises
-        ------
-        ValueError
-            If such gears or such a crack cannot be.
+        ValueError if such gears or such a crack cannot be.
         """
         values = self.held | dict(point)
         gears = []
@@ -135,10 +132,7 @@ class Space:
 def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
     """`Space` of a pair from ranges ``name=(low, high)`` and single numbers.
 
-    Raises
-    ------
-    ValueError
-        If an input is unknown, no range, or does not go with this pair.
+    ValueError if an input is unknown, no range, or does not go with this pair.
     """
     if not isinstance(pair, GearPair):
         raise ValueError(f"pair = {pair!r}, but give a GearPair")

@@ -29,6 +29,8 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> NDArray[np.float64]:
     """Rising phases between which k is smooth, both ends included.
 
+    ValueError if a zone is too short to be told from its neighbours, without load or with it.
+
     Parameters
     ----------
     eps_alpha : float
@@ -41,11 +43,6 @@ def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> NDArray[np.fl
     Returns
     -------
     ndarray, shape (m,)
-
-    Raises
-    ------
-    ValueError
-        If a zone is too short to be told from its neighbours, without load or with it.
     """
     low = math.floor(eps_alpha)
     more = eps_alpha - low

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from ..store.shards import encoded, table
-from .blocks import DONE, jobs, rows
+from .blocks import DONE, rows
 from .blocks import blocks as blocks_of
-from .study import read_study
+from .study import read_study, slim
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,15 +90,15 @@ def plan_sweep(
     """
     checked = read_study(study)
     every, fields = blocks_of(checked)
+    checked = slim(checked)
     chosen = every[len(every) // 2]
-    warm, job = jobs(checked, [chosen.part(0, 1), chosen], fields)
-    rows(warm)  # imports and tables that are made once
+    rows(checked, chosen.single(0))  # imports and tables that are made once
     started = time.process_time()
-    made = rows(job)
+    made = rows(checked, chosen)
     tried = len(made)
     content = encoded(table(made, fields))
     each = (time.process_time() - started) / tried
-    cases = sum(len(one.numbers) for one in every)
+    cases = sum(len(one.cases) for one in every)
     wrong = [row["error"] for row in made if row["status"] != DONE]
     unit = 1 if sys.platform == "darwin" else 1024
     return Plan(

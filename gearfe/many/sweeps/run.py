@@ -3,15 +3,16 @@
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from ...stiffness.cache import program
 from ..runner import Tally, alone, check_workers, results
 from ..store.folder import begin, check_same, locked
 from ..store.shards import unfinished, write_shard
-from .blocks import blocks, compute, jobs, lost, rows, shard, single
+from .blocks import blocks, compute, lost, rows, shard
 from .runs import FORMAT, Runs, open_runs
-from .study import Study, read_study
+from .study import Study, read_study, slim
 
 
 def sweep(
@@ -59,7 +60,7 @@ def sweep(
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
     every, fields = blocks(checked)
-    stored = begin(folder, _about(checked, sum(len(one.numbers) for one in every)))
+    stored = begin(folder, _about(checked, sum(len(one.cases) for one in every)))
     with locked(folder):
         if stored["study"]["block"] != checked.block:  # how it is cut is no other study
             checked = replace(checked, block=stored["study"]["block"])
@@ -67,17 +68,18 @@ def sweep(
         about = _about(checked, stored["cases"])
         check_same(folder, stored, about, "study", mixed=mixed)
         left = unfinished(folder, [one.name for one in every], "study")
-        work = jobs(checked, [one for one in every if one.name in left], fields)
+        todo = [one for one in every if one.name in left]
         tally = Tally("cases", stored["cases"], progress)
-        tally.add(tally.total - sum(len(one.block.numbers) for one in work))
-        for job, found in results(compute, work, workers, scheduler=scheduler):
-            name, content, source = found or (shard(job, lost(job)) if scheduler else _case_by_case(job))
+        tally.add(tally.total - sum(len(one.cases) for one in todo))
+        small = slim(checked)
+        for block, found in results(partial(compute, small, fields), todo, workers, scheduler=scheduler):
+            content, source = found or shard(fields, lost(block) if scheduler else _case_by_case(small, block))
             if source != about["made"]["source"]:
                 raise RuntimeError(
                     f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"
                 )
-            write_shard(folder, name, content)
-            tally.add(len(job.block.numbers))
+            write_shard(folder, block.name, content)
+            tally.add(len(block.cases))
     if tally.done != tally.total:
         raise RuntimeError(
             f"{tally.total - tally.done} of {tally.total} cases were handed out and never came back: start the sweep again"
@@ -85,9 +87,10 @@ def sweep(
     return open_runs(folder)
 
 
-def _case_by_case(job):
-    """Shard of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
-    return shard(job, [row for part, found in alone(rows, single(job)) for row in found or lost(part)])
+def _case_by_case(study, block):
+    """Rows of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
+    each = [block.single(i) for i in range(len(block.cases))]
+    return [row for one, found in alone(partial(rows, study), each) for row in found or lost(one)]
 
 
 def _about(study: Study, cases: int) -> dict[str, Any]:
