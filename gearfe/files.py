@@ -37,27 +37,13 @@ CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text 
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """Numbers to be written.
+    """Numbers to be written."""
 
-    Attributes
-    ----------
-    title : str
-        First line of a text table, ``gearfe stiffness curve, version 1``.
-    columns : dict of str to ndarray, shape (n,)
-        Of a text table, by ``name [unit]``.
-    arrays : dict of str to ndarray
-        The same for all other formats, by name.
-    meta : dict
-        All that is needed to repeat it; JSON.
-    units : dict of str to str
-        Of the arrays: a table in JSON files, JSON text ``units_json`` in the others.
-    """
-
-    title: str
-    columns: dict
-    arrays: dict
-    meta: dict
-    units: dict = field(default_factory=dict)
+    title: str  # first line of a text table, "gearfe stiffness curve, version 1"
+    columns: dict  # of a text table, arrays ``(n,)`` by "name [unit]"
+    arrays: dict  # the same for all other formats, by name
+    meta: dict  # all that is needed to repeat it; JSON
+    units: dict = field(default_factory=dict)  # of the arrays: a table in JSON files, JSON text ``units_json`` in the others
 
 
 @contextlib.contextmanager

@@ -14,7 +14,7 @@ from itertools import islice
 from typing import Any
 
 from ..checks import whole
-from ..extras import missing
+from ..extras import needing
 from ..steps import reached
 from .processes import processes
 
@@ -124,10 +124,8 @@ def alone(work: Callable[[Any], Any], jobs: Iterable[Any], *, own: bool = False)
 
 def _on_cluster(work, jobs, address):
     """The same by the workers of a Dask scheduler, which gives the jobs of a lost worker to others."""
-    try:
+    with needing("distributed"):
         from distributed import Client, KilledWorker, as_completed
-    except ImportError as error:
-        raise missing("distributed", error) from error
     try:
         client = Client(address, timeout=TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:

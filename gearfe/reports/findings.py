@@ -4,43 +4,26 @@ import contextlib
 import time
 from dataclasses import dataclass, field
 
-from ..scene.load import load_scene
+from ..scene.load import Scene, load_scene
 from ..steps import part, steps
 from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
-from ..studies.vibration import analysis, check_run, responses
+from ..studies.vibration import Analysis, analysis, check_run, responses
 from ..threads import own_warnings
 
 
 @dataclass(slots=True)
 class Findings:
-    """All results of one scene.
+    """All results of one scene."""
 
-    Attributes
-    ----------
-    scene : Scene
-    case : str or None
-        Of damage, shown beside healthy.
-    comparisons : dict of (str, str or None) to gearfe.studies.by_zone.Comparison
-        By pair and case.
-    tooth : tuple or None
-        ``(pair name, Pressed, Field)``: the tooth in three dimensions.
-    vibration : gearfe.studies.vibration.Analysis or None
-    responses : dict of str to Response
-    notes : list of str
-        Warnings, and what could not be shown and why.
-    seconds : dict of str to float
-        Wall time of each part.
-    """
-
-    scene: object
-    case: str | None
-    comparisons: dict = field(default_factory=dict)
-    tooth: tuple | None = None
-    vibration: object | None = None
-    responses: dict = field(default_factory=dict)
-    notes: list = field(default_factory=list)
-    seconds: dict = field(default_factory=dict)
+    scene: Scene
+    case: str | None  # of damage, shown beside healthy
+    comparisons: dict = field(default_factory=dict)  # `gearfe.studies.by_zone.Comparison` by (pair, case or None)
+    tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
+    vibration: Analysis | None = None
+    responses: dict = field(default_factory=dict)  # `Response` by case
+    notes: list = field(default_factory=list)  # warnings, and what could not be shown and why
+    seconds: dict = field(default_factory=dict)  # wall time by part
 
     @property
     def headline(self):

@@ -33,15 +33,14 @@ class Way(NamedTuple):
 
 
 def text_table(path: str | os.PathLike[str], lines: list[str], header: str | None = None) -> Found:
-    """Channels of a text table.
+    """Channels of a text table of a file.
 
     ValueError if there are no rows of numbers, or one that does not fit the others: its line is named.
 
     Parameters
     ----------
-    path : path
-        For the messages.
-    lines : list of str
+    path, lines
+        Of the file: its name, for the messages, and what stands in it.
     header : str, optional
         Names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others.
     """

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...extras import missing
+from ...extras import needing
 from ...files import written
 from ..store.folder import read_about
-from ..store.shards import arrow, fields_of, opened, read, shard_names, where_of
+from ..store.shards import arrow, fields_of, frame, opened, read, shard_names, where_of
 
 if TYPE_CHECKING:
     import pandas
@@ -67,10 +67,6 @@ class Dataset:
         RuntimeError
             If pandas is missing; the message names what to install.
         """
-        try:
-            import pandas  # noqa: F401
-        except ImportError as error:
-            raise missing("pandas", error) from error
         return self._read(where, signal=False)[0]
 
     def windows(self, where: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], "pandas.DataFrame"]:
@@ -104,8 +100,7 @@ class Dataset:
         fields = fields_of(found.schema)
         names = [name for name in fields if name != "signal"]
         got = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
-        labels = got.select(names).to_pandas()
-        labels.attrs["units"] = {name: fields[name].unit for name in names}
+        labels = frame(got.select(names), fields)
         if not signal:
             return labels, None
         size = found.schema.field("signal").type.list_size
@@ -153,10 +148,8 @@ def _mat(name, signals, labels, about):
 
 
 def _hdf5(name, signals, labels, about):
-    try:
+    with needing("h5py"):
         import h5py
-    except ImportError as error:
-        raise missing("h5py", error) from error
     with h5py.File(name, "w") as file:
         file.attrs["about"] = json.dumps(about)
         file.create_dataset("signals", data=signals, chunks=(1, signals.shape[1]), compression="gzip", shuffle=True)

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...extras import missing
+from ...extras import needing
 from .folder import durable
 
 if TYPE_CHECKING:
+    import pandas
     import pyarrow
     from pyarrow import dataset
 
@@ -35,12 +36,10 @@ def arrow() -> Any:
 
     RuntimeError if it is not installed; the message names what to install.
     """
-    try:
+    with needing("pyarrow"):
         import pyarrow
         import pyarrow.dataset
         import pyarrow.parquet
-    except ImportError as error:
-        raise missing("pyarrow", error) from error
     return pyarrow
 
 
@@ -259,6 +258,15 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
         raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise _damaged(_first_damaged(folder), error) from error
+
+
+def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":
+    """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
+    with needing("pandas"):
+        made = found.to_pandas()
+    made = made if index is None else made.set_index(index).sort_index()
+    made.attrs["units"] = {name: fields[name].unit for name in made}
+    return made
 
 
 def _line(error):

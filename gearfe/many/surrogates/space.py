@@ -30,21 +30,11 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the cent
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """Ranges of some `INPUTS` about a pair of spur gears; the others are held.
+    """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
 
-    Attributes
-    ----------
-    pair : GearPair
-        What is not given is taken from it.
-    ranges : dict of str to (float, float)
-        Ends of what varies.
-    held : dict of str to float
-        What is given as one number.
-    """
-
-    pair: GearPair
-    ranges: dict[str, tuple[float, float]]
-    held: dict[str, float]
+    pair: GearPair  # what is not given is taken from it
+    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    held: dict[str, float]  # what is given as one number
     logarithmic: int | None = field(init=False, repr=False)  # the place of the force
     middle: NDArray[np.float64] = field(init=False, repr=False, compare=False)
     half: NDArray[np.float64] = field(init=False, repr=False, compare=False)

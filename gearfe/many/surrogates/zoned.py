@@ -108,7 +108,7 @@ def at(phase: NDArray[np.float64], breaks: NDArray[np.float64], series: NDArray[
     piece = piece_of(phase, breaks)
     low, high = breaks[piece], breaks[piece + 1]
     u = np.clip((2 * phase - low - high) / (high - low), -1.0, 1.0)
-    return chebyshev.chebval(u, series[piece].T, tensor=False)
+    return np.asarray(chebyshev.chebval(u, series[piece].T, tensor=False), dtype=float)
 
 
 def piece_of(phase: NDArray[np.float64], breaks: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -18,36 +18,18 @@ from .study import read_study, slim
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What a sweep will take.
+    """What a sweep will take."""
 
-    Attributes
-    ----------
-    cases, blocks : int
-        Cases in all, and shards they make.
-    seconds : float
-        Processor time of all cases together [s].
-    workers : int
-        Processes that share it.
-    memory : float
-        Of each process [bytes]: the largest of this one so far.
-    disk, free : float
-        Of the whole folder, and what is free there [bytes].
-    tried, failed : int
-        Cases that were computed for this, and those of them that cannot be.
-    error : str
-        Of the first that cannot be; empty if there is none.
-    """
-
-    cases: int
-    blocks: int
-    seconds: float
-    workers: int
-    memory: float
-    disk: float
-    free: float
-    tried: int
-    failed: int
-    error: str
+    cases: int  # in all
+    blocks: int  # shards they make
+    seconds: float  # of processor, all cases together
+    workers: int  # processes that share it
+    memory: float  # of each process [bytes]: the largest of this one so far
+    disk: float  # the whole folder [bytes]
+    free: float  # there [bytes]
+    tried: int  # cases that were computed for this
+    failed: int  # of these
+    error: str  # of the first that cannot be; empty if there is none
 
     def text(self) -> str:
         """Lines for people."""

@@ -38,7 +38,7 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -69,38 +69,20 @@ ADDED = (*DAMAGE, "flank")
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A study, checked.
-
-    Attributes
-    ----------
-    title, kind, pair, case : str
-        ``case`` is ``"healthy"`` where there is no damage.
-    name : str
-        Of the scene's file.
-    tables : dict
-        The scene's tables with those the study adds.
-    options : dict
-        Of the kind, defaults filled in.
-    axes : tuple of dict
-        Each holds lists of the same length by key: one axis of the grid.
-    sample : dict
-        As ``[sample]``; empty: none.
-    seed, block : int
-        Of the sample; cases in a shard.
-    """
+    """A study, checked."""
 
     title: str
     kind: str
     pair: str
-    case: str
-    name: str
-    tables: dict[str, Any]
-    options: dict[str, Any]
-    axes: tuple[dict[str, list], ...]
-    sample: dict[str, Any]
-    seed: int
-    block: int
-    keys: tuple[str, ...] = field(default=())
+    case: str  # "healthy" where there is no damage
+    name: str  # of the scene's file
+    tables: dict[str, Any]  # of the scene, with those the study adds
+    options: dict[str, Any]  # of the kind, defaults filled in
+    axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
+    sample: dict[str, Any]  # as ``[sample]``; empty: none
+    seed: int  # of the sample
+    block: int  # cases in a shard
+    keys: tuple[str, ...] = ()  # all that vary
 
     def content(self) -> dict[str, Any]:
         """All that decides the results, as JSON: two studies are the same if this is."""
