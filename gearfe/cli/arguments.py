@@ -5,7 +5,7 @@ import os
 from functools import partial
 
 from ..stiffness.methods import NAMES, described, having
-from . import labelling, shell, signals, sweeping, tools
+from . import filling, shell, signals, tools
 from . import verbs as run
 
 SIGNALS = (".csv", ".txt", ".mat", ".npz", ".h5", ".wav", ".uff", ".tdms", ".parquet")  # as of gearfe.files
@@ -120,14 +120,14 @@ def main(argv=None):
     add("--case", metavar="NAME", help="case of damage shown beside healthy (default: the scene's first)")
     add("--duration", type=float, default=0.2, metavar="S", help="of the machine's vibration [s] (default: 0.2)")
     add("-o", "--output", metavar="FILE", required=True, help="the page: .html")
-    add = verb("sweep", sweeping.sweep, "compute all cases of a study into a folder; stopped, it goes on where it was")
+    add = verb("sweep", filling.sweep, "compute all cases of a study into a folder; stopped, it goes on where it was")
     add("study", metavar="STUDY", help="a .toml file: a scene, and what varies in it")
     add("-o", "--output", metavar="FOLDER", required=True, help="folder of the results: new, or of this study")
     add("--workers", type=int, metavar="N", help="processes of this machine (default: one per core)")
     add("--scheduler", metavar="ADDRESS", help="compute on the workers of this Dask scheduler, tcp://host:8786")
     add("--dry-run", action="store_true", help="say how many cases, how long, how much memory and disk; write nothing")
     add("--mixed", action="store_true", help="go on although another version of gearfe began it")
-    add = verb("dataset", labelling.dataset, "make labelled vibration windows for learning, split without leakage")
+    add = verb("dataset", filling.dataset, "make labelled vibration windows for learning, split without leakage")
     add("plan", metavar="DATASET", help="a .toml file: machine, faults, operation, sensors, noise, split")
     add("-o", "--output", metavar="FOLDER", required=True, help="folder of the data set: new, or of this one")
     add("--also", nargs="+", choices=("mat", "hdf5"), default=[], help="each side of the split as one file too")

@@ -129,10 +129,8 @@ def error_map(
         phase, or a `PairModel`).
     phases : int
         Per mesh cycle.
-    workers : int, optional
-        As in `gearfe.batch`.
-    progress : callable, optional
-        As in `gearfe.batch`.
+    workers, progress
+        As of `gearfe.batch`.
     """
     if pairs != int(pairs) or pairs < 1:
         raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")

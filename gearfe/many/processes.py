@@ -18,11 +18,7 @@ THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 def processes(workers: int, *, own: bool = False) -> Iterator[ProcessPoolExecutor]:
     """Pool of new processes of one thread each, which end when this one does, however it ends.
 
-    Parameters
-    ----------
-    workers : int
-    own : bool
-        Whether they need what the caller's script defines: then they run it again.
+    `own`: they need what the caller's script defines; then they run it again.
     """
     spawn = multiprocessing.get_context("spawn")
     with (

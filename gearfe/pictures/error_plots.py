@@ -8,17 +8,10 @@ from .stiffness_plots import told
 
 
 def plot_transmission_error(found, path=None, title=None, plain=None):
-    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` if given.
+    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` (png, svg, pdf) if given.
 
-    Parameters
-    ----------
-    found : TransmissionError
-    path : path, optional
-        Picture file; its suffix decides (png, svg, pdf).
-    title : str, optional
-        Default: teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`.
-    plain : TransmissionError, optional
-        That of the same pair with plain involutes: its peak-to-peak is drawn too.
+    The `title` is by default teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`. With `plain`, that of the same
+    pair with plain involutes, its peak-to-peak is drawn too.
     """
     from matplotlib import colormaps
 

@@ -19,23 +19,11 @@ COLUMNS = {  # of an error map
 
 
 def plot_curves(curves, path=None, title=None):
-    """Draw stiffness curves over the phase [N/um], the load shares of the first below; save to `path` if given.
+    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below; save to `path` if given.
 
     Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
-    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves.
-
-    Parameters
-    ----------
-    curves : dict of str to StiffnessCurve
-    path : path, optional
-        Picture file; its suffix decides (png, svg, pdf).
-    title : str, optional
-        Default: teeth, damage and load of the first curve, see `told`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Its ``axes`` are two.
+    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves. The `title` is by default
+    teeth, damage and load of the first curve, see `told`.
     """
     figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):

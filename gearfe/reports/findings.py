@@ -40,22 +40,7 @@ class Findings:
 
 
 def find(scene, case=None, *, duration=0.2, phases=64):
-    """Compute all that a report shows.
-
-    Parameters
-    ----------
-    scene : Scene, str or path
-    case : str, optional
-        Default: the first case of damage of the scene, if it has one.
-    duration : float
-        Of the vibration of the scene's machine [s]; 0 leaves it out.
-    phases : int
-        Of the stiffness curves.
-
-    Returns
-    -------
-    Findings
-    """
+    """Compute all `Findings` that a report shows; what is given is that of `gearfe.report`."""
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene

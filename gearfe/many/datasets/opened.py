@@ -82,11 +82,6 @@ class Dataset:
         signals : ndarray of float32, shape (n, samples)
             In the unit of the column ``unit``, `rate_Hz` samples a second.
         labels : pandas.DataFrame
-
-        Raises
-        ------
-        ValueError
-            As `labels`.
         """
         labels, signals = self._read(where, signal=True)
         return signals, labels

@@ -84,20 +84,10 @@ def _take(handle, folder):
 
 
 def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
-    """What an existing folder says of its shards; a new or empty one is made and says what `about` holds.
+    """What an existing folder says of its shards, to be compared; a new or empty one is made and says what `about` holds.
 
-    ValueError if the folder cannot be made or written, or holds anything else.
-
-    Parameters
-    ----------
-    folder : str or path
-    about : dict
-        JSON; its ``"format"`` is a name such as ``"gearfe sweep 1"``.
-
-    Returns
-    -------
-    dict
-        What stands in the folder, for the caller to compare with `about`.
+    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. ValueError if the folder cannot be made or written,
+    or holds anything else.
     """
     if not os.fspath(folder):
         raise ValueError("an empty name of a folder: give one")
@@ -137,22 +127,10 @@ def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
 
 
 def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
-    """Refuse to go on with a folder that was begun with other inputs, or by another version of the program.
+    """Refuse to go on with a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
 
-    Parameters
-    ----------
-    folder : str or path
-    stored, about : dict
-        What stands in the folder and what would be written now; ``[what]`` are the inputs, ``["made"]`` the versions.
-    what : str
-        What the inputs are, such as ``"study"``.
-    mixed : bool, optional
-        Take another version too; None: that cannot be asked for.
-
-    Raises
-    ------
-    ValueError
-        With the values that differ.
+    `stored` stands in the folder, `about` would be written now; ``[what]``, such as ``["study"]``, are their inputs, ``["made"]``
+    their versions. `mixed` is None where it cannot be asked for. ValueError with the values that differ.
     """
     changed = list(_differences(stored[what], about[what]))
     if changed:

@@ -104,11 +104,6 @@ class Surrogate:
         StiffnessCurve
             ``k``, ``lte`` and ``error``, the worst difference found in that zone of the mesh cycle; its `zones` give mean and
             zone values. Load shares, pressures and tangent are not fitted: nan.
-
-        Raises
-        ------
-        ValueError
-            As `k`.
         """
         values = self.space.point(point)
         breaks, series = self._parts(values)

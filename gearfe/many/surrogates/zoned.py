@@ -27,22 +27,10 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> NDArray[np.float64]:
-    """Rising phases between which k is smooth, both ends included.
+    """Rising phases ``(m,)`` between which k is smooth, both ends included; `solve` gives the curve at phases.
 
-    ValueError if a zone is too short to be told from its neighbours, without load or with it.
-
-    Parameters
-    ----------
-    eps_alpha : float
-        Contact ratio.
-    solve : callable
-        From phases to the curve.
-    cracked : bool
-        Over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to that behind; else over a cycle.
-
-    Returns
-    -------
-    ndarray, shape (m,)
+    Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
+    that behind. ValueError if a zone is too short to be told from its neighbours, without load or with it.
     """
     low = math.floor(eps_alpha)
     more = eps_alpha - low
