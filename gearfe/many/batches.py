@@ -72,17 +72,16 @@ def batch(
     size = max(1, min(16, len(cases) // (4 * workers))) if workers > 1 else 1
     parts = [range(start, min(start + size, len(cases))) for start in range(0, len(cases), size)]
     jobs = [(part, [cases[i] for i in part]) for part in parts]
-    done: dict[int, tuple[Any, float]] = {}
+    rows: list[Any] = [None] * len(cases)
     for (part, _), found in results(partial(_timed, work), jobs, workers, own=own):
         if found is None:
-            guard = (
-                'work or cases are defined in this script: write the call under if __name__ == "__main__":; or ' if own else ""
+            guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or '
+            raise RuntimeError(
+                f"{guard if own else ''}a worker process ended before its cases were done: killed, or out of memory"
             )
-            raise RuntimeError(f"{guard}a worker process ended before its cases were done: killed, or out of memory")
         for i, row in zip(part, found, strict=True):
-            done[i] = row
+            rows[i] = row
             tally.add(1)
-    rows = [done[i] for i in range(len(cases))]
     return Batch([row[0] for row in rows], [row[1] for row in rows], time.perf_counter() - started, workers)
 
 

@@ -21,6 +21,15 @@ ERRORS = """\
 The loss is that of the mesh stiffness while the damaged tooth is in contact; errors of the machine take none. The error of the
 motion is that of the integration, relative to its range; that of the stiffness (`gearfe stiffness --error`) comes on top, and
 what the model leaves out, below."""
+READING = """\
+```python
+import gearfe as gf
+
+made = gf.open_dataset(".")
+signals, labels = made.windows({"side": "train"})
+```
+
+or without gearfe `pandas.read_parquet("windows")`."""
 LIMITS = """\
 - Simulated, not measured: a classifier trained on it has shown nothing about a real gearbox until it was tried on one.
 - Speed and torque are constant within a condition; masses, bearings, supports and damping are those of the scene and its model.
@@ -37,7 +46,7 @@ def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:
     parts += ["## Split", _split(plan)]
     parts += ["## Error and loss", _errors(labels), "## Levels", _levels(labels)]
     parts += ["## What it does not model", LIMITS, "## Columns", _columns(plan)]
-    parts += ["## Reading it", _reading(), _failed(made, every), _made(made)]
+    parts += ["## Reading it", READING, _failed(made, every), _made(made)]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
@@ -59,10 +68,6 @@ def _what(plan, every):
         f"- seed {plan.seed}; stiffness curves by `{plan.curves}`, the same method for healthy and faulty machines",
     ]
     return "\n".join(lines)
-
-
-def _heard(sensor):
-    return sensor["channel"] or f"forces of {sensor['housing']} on the housing, at {sensor['angle_deg']:g} degrees"
 
 
 def _listed(values):
@@ -133,11 +138,6 @@ def _columns(plan):
     rows = [["column", "unit", "meaning"], ["---"] * 3]
     rows += [[f"`{name}`", field.unit, COLUMNS[name][1] if name in COLUMNS else ""] for name, field in fields.items()]
     return _table([*rows, ["`signal`", "see `unit`", f"{samples_of(plan)} numbers of 4 bytes"]])
-
-
-def _reading():
-    code = 'import gearfe as gf\n\nmade = gf.open_dataset(".")\nsignals, labels = made.windows({"side": "train"})'
-    return f'```python\n{code}\n```\n\nor without gearfe `pandas.read_parquet("windows")`.'
 
 
 def _failed(made, every):

@@ -122,16 +122,11 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
             rng = np.random.default_rng([plan.seed, condition.number, place, level])
             values = (signal + noise * rng.standard_normal(signal.size)).astype(np.float32).reshape(count, size)
             own = {"sensor": sensor["name"], "unit": fine.unit, "rms": float(np.std(signal)), "noise": noise}
-            own["snr_dB"] = _ratio(own["rms"], noise)
+            own["snr_dB"] = 20 * math.log10(own["rms"] / noise) if noise and own["rms"] else None
             for i, window in enumerate(values):
                 at = {"window": i, "start_s": first + i * size / plan.window["rate_Hz"], "signal": window}
                 out.append(same | own | at)
     return out
-
-
-def _ratio(rms: float, noise: float) -> float | None:
-    """Power of a signal without its mean over that of the noise [dB]; none without noise."""
-    return 20 * math.log10(rms / noise) if noise and rms else None
 
 
 def _labels(plan, condition, machine, response):

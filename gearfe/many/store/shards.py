@@ -227,7 +227,8 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     if not files:
         raise ValueError(f"{folder} holds no results yet")
     try:
-        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked_scan())
+        checked = pa.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
         found = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
         alike = _alike(folder)
     except (OSError, pa.ArrowException) as error:
@@ -235,11 +236,6 @@ def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     if not alike:
         check_shards(folder)
     return found
-
-
-def checked_scan() -> Any:
-    """Return options of a scan that verify the checksums of all pages read."""
-    return arrow().dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
 
 
 def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":

@@ -83,17 +83,13 @@ def plan_sweep(
     cases = sum(len(one.cases) for one in every)
     wrong = [row["error"] for row in made if row["status"] != DONE]
     unit = 1 if sys.platform == "darwin" else 1024
+    place = Path(folder).absolute()
+    there = next(one for one in (place, *place.parents) if one.exists())
     return Plan(
         cases, len(every), each * cases, workers or os.cpu_count() or 1,
         float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit), len(content) / tried * cases,
-        float(shutil.disk_usage(_there(Path(folder))).free), tried, len(wrong), wrong[0] if wrong else "",
+        float(shutil.disk_usage(there).free), tried, len(wrong), wrong[0] if wrong else "",
     )  # fmt: skip
-
-
-def _there(folder):
-    """The folder, or the nearest one above it that exists."""
-    folder = folder.absolute()
-    return next(one for one in (folder, *folder.parents) if one.exists())
 
 
 def _time(seconds):

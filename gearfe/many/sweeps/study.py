@@ -43,12 +43,12 @@ from typing import Any
 
 import numpy as np
 
-from ...scene.load import DAMAGE, read_tables, scene_of
+from ...scene.load import DAMAGE, scene_of
 from ...scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
 from ...scene.toml_file import given_tables
 from . import samples
 from .axes import MOST, axes, checked_sample
-from .keys import check_key, trimmed
+from .keys import check_key, tables_near, trimmed
 from .kinds import KINDS
 
 TOP = {
@@ -121,7 +121,10 @@ def _study(file, place, data):
         raise ValueError(f"{file} seed = {top['seed']}: give a whole number >= 0")
     keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
     for key in keys:
-        _checked_key(file, key, tables, options)
+        try:
+            check_key(key, tables, options)
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from error
         if keys.count(key) > 1:
             raise ValueError(f"{file}: {key!r} varies twice; leave one out")
     _check_names(file, tables, pair if "pair" not in keys else None, top["case"] if "case" not in keys else None)
@@ -134,10 +137,7 @@ def _study(file, place, data):
 
 def _scene(file, place, scene, added):
     """Name and tables of the scene with those that the study adds, tried as a whole."""
-    near = place / scene
-    name, tables = read_tables(near if near.is_file() else scene)
-    for told in ("reference", "assumption", "given", "later"):
-        tables.pop(told, None)
+    name, tables = tables_near(place, scene)
     for kind, one in added.items():
         here = tables.get(kind, {} if kind == "flank" else [])
         if not isinstance(one, type(here)):
@@ -153,13 +153,6 @@ def _check_names(file, tables, pair, case):
     cases = {one["case"] for kind in DAMAGE for one in tables.get(kind, [])}
     if case not in (None, "healthy", *cases):
         raise ValueError(f"{file} case = {case!r}: no such case; there is healthy, {', '.join(sorted(cases))}")
-
-
-def _checked_key(file, key, tables, options):
-    try:
-        check_key(key, tables, options)
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from error
 
 
 def _with_also(of):
