@@ -90,14 +90,8 @@ def check_output(path, kind):
     """Raise ValueError if `path` cannot be written later: to be called before work begins.
 
     A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
-    ValueError if the name is empty, a folder, or has a suffix that holds no such content; if its folder is not there or not
-    writable.
-
-    Parameters
-    ----------
-    path : str or path
-    kind : str
-        What will be written, one that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``page``, ``deck``.
+    `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
+    or has a suffix that holds no such content; if its folder is not there or not writable.
     """
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")

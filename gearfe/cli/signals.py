@@ -102,12 +102,10 @@ def _draw(one, arguments):
     from ..pictures.vibration_plots import plot_cepstrum, plot_spectrogram
     from ..signal.time_frequency import cepstrum, spectrogram
 
-    for path, made, draw in (
-        (arguments.cepstrum, cepstrum, plot_cepstrum),
-        (arguments.spectrogram, spectrogram, plot_spectrogram),
-    ):
+    wanted = (arguments.cepstrum, plot_cepstrum, cepstrum), (arguments.spectrogram, plot_spectrogram, spectrogram)
+    for path, draw, of in wanted:
         if path:
-            draw(made(one), path, one.name)
+            draw(of(one), path, one.name)
             print(f"written: {path}")
 
 

@@ -76,9 +76,8 @@ def batch(
     for (part, _), found in results(partial(_timed, work), jobs, workers, own=own):
         if found is None:
             guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or '
-            raise RuntimeError(
-                f"{guard if own else ''}a worker process ended before its cases were done: killed, or out of memory"
-            )
+            told = "a worker process ended before its cases were done: killed, or out of memory"
+            raise RuntimeError(f"{guard if own else ''}{told}")
         for i, row in zip(part, found, strict=True):
             rows[i] = row
             tally.add(1)

@@ -4,7 +4,7 @@ import csv
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,10 +15,11 @@ from geometry.damage.crack import Crack, crack_path
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
+from ..case import Case
 from ..files import written
 from ..material import Material
 from ..stiffness.methods import ROWS
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
 from ..studies.own_model import OwnModel, own_curve
 from ..threads import own_warnings
 from .batches import batch
@@ -180,11 +181,10 @@ def _samples(count, seed):
 def _one(sample, loads, models, phases):
     """Rows of one pair."""
     pair, steel = build(sample), Material()
-    run = {"material": steel, "phases": (np.arange(phases) + 0.5) / phases, "extended": False}
     forces = [load * 1.0 for load in loads]
-    truth = mesh_stiffness(pair, forces, method="ritz", **run)
-    beyond = mesh_stiffness(pair, forces, method="ritz", **(run | {"extended": True}))
-    found = {name: mesh_stiffness(pair, forces, method=name, **run) for name in HEALTHY}
+    case, how = Case(pair, forces, steel), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
+    truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
+    found = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
     for name, make in models.items():
         found[name] = [own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)]
     rows = [
@@ -195,12 +195,12 @@ def _one(sample, loads, models, phases):
     ]
     if sample["crack"]:
         inside = np.linspace(0, pair.eps_alpha, int(phases * pair.eps_alpha) + 1)
-        run |= {"phases": (inside[1:] + inside[:-1]) / 2, "damage": {"pinion": [Crack(level=sample["crack"])]}}
-        truth = mesh_stiffness(pair, forces, method="ritz", **run)
-        found = {}
+        case = replace(case, damage={"pinion": [Crack(level=sample["crack"])]})
+        how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
+        truth, found = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
             try:
-                found[name] = mesh_stiffness(pair, forces, method=method, variants=variants, **run)
+                found[name] = solve(case, replace(how, method=method, variants=variants))
             except ValueError:  # nothing is left of the beam: the model has no value here
                 continue
         rows += [sample | {"load": load} | _errors(truth, found, i) for i, load in enumerate(loads)]

@@ -64,13 +64,12 @@ def results(
     ----------
     work : callable
         Called with a job; for several processes a function that can be imported by name. It gives something else than None.
-    jobs : sequence
     workers : int or None
         Processes of this machine; None: one per core. Of 1, and of a single job, it is this process.
     scheduler : str, optional
         Address of a Dask scheduler: its workers compute instead.
     own : bool
-        Whether processes need what the caller's script defines, see `gearfe.many.processes.processes`.
+        As of `gearfe.many.processes.processes`.
     """
     count = count_of(workers, jobs)
     if scheduler is not None:

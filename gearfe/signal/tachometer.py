@@ -70,13 +70,8 @@ def tachometer_angle(
 def with_speed_record(signal: Signal, speed: Signal) -> Signal:
     """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
 
-    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. ValueError if the
-    two differ in rate or length, or the shaft stands still or turns back.
-
-    Parameters
-    ----------
-    signal, speed : Signal
-        Of one rate and length; the speed in one of the units of `SPEEDS`.
+    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. The speed is in one
+    of the units of `SPEEDS`. ValueError if the two differ in rate or length, or the shaft stands still or turns back.
     """
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))

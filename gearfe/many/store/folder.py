@@ -31,22 +31,17 @@ def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
             file.flush()
             os.fsync(file.fileno())
         os.replace(name, path)
-        _sync(path.parent)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)  # its list of names
+        finally:
+            os.close(folder)
     except OSError as error:
         raise ValueError(f"cannot write {path}: {error.strerror or error}; nothing written before is lost") from error
     finally:
         if name is not None:
             with contextlib.suppress(OSError):
                 os.unlink(name)
-
-
-def _sync(folder):
-    """Flush a folder's list of names to the disk."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
 
 
 @contextlib.contextmanager

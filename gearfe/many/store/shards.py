@@ -44,16 +44,10 @@ def arrow() -> Any:
 
 
 def where_of(where: Any, names: Sequence[str]) -> Any:
-    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column.
+    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column, of those called `names`.
 
+    ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
     ValueError if there is no such column, or it holds no such values.
-
-    Parameters
-    ----------
-    where : dict, pyarrow expression or None
-        ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
-    names : sequence of str
-        Columns that there are.
     """
     if not isinstance(where, Mapping):
         return where

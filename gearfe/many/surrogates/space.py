@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geometry.damage.crack import Crack
 from geometry.pair.gear_pair import GearPair, free_centre_distance
 
+from ...case import Case
 from ...checks import is_number
 
 INPUTS = {  # name: what it is
@@ -96,8 +97,8 @@ class Space:
                 out[name] = low * (high / low) ** share if name == "force" else low + share * (high - low)
         return out
 
-    def case(self, point: Mapping[str, float]) -> dict[str, Any]:
-        """Arguments ``pair``, ``force`` and ``damage`` of `mesh_stiffness` at a point of the ranges.
+    def case(self, point: Mapping[str, float], material: Any) -> Case:
+        """`Case` at a point of the ranges, of this material (or pair of them).
 
         ValueError if such gears or such a crack cannot be.
         """
@@ -111,12 +112,8 @@ class Space:
             gears.append(replace(gear, **new))
         one, two = gears
         pair = GearPair(one, two) if any(name in values for name in SHAPE) else GearPair(one, two, self.pair.a)
-        out: dict[str, Any] = {"pair": pair, "force": values["force"]}
-        if self.cracked:
-            crack = Crack(level=values["level"])
-            crack = replace(crack, angle=values["angle"]) if "angle" in values else crack
-            out["damage"] = {"pinion": [crack]}
-        return out
+        crack: dict[str, Any] = {name: values[name] for name in ("level", "angle") if name in values}
+        return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
 
 
 def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:

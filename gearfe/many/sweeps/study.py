@@ -161,14 +161,9 @@ def _with_also(of):
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
-    """All cases of a study.
+    """All n cases of a study: their values by key, and numbers ``(n,)`` of their combination and of their draw of the sample.
 
-    Returns
-    -------
-    columns : dict of str to list
-        Value of every case by key.
-    point, draw : ndarray, shape (n,)
-        Number of the combination and of the sample's draw: each draw meets each combination.
+    Each draw meets each combination.
     """
     of = study.sample.get("of", {})
     drawn: dict[str, list] = {}
