@@ -49,12 +49,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.f
 def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """One-sided amplitude spectrum over the orders of the shaft, sharp also when the speed varies.
 
-    `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins.
-
-    Returns
-    -------
-    Spectrum
-        ``axis`` is ``order``; resolution ``1 / turns``.
+    `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins; the resolution is ``1 / turns``.
 
     References
     ----------

@@ -50,17 +50,14 @@ def power_spectral_density(
 ) -> Spectrum:
     """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
 
+    Its unit is ``(unit)^2/Hz``.
+
     Parameters
     ----------
     signal : Signal
     resolution : float, optional
         Distance of two bins [Hz]; a segment lasts ``1 / resolution``. Default: a sixteenth of the record in one segment.
     window : str or tuple
-
-    Returns
-    -------
-    Spectrum
-        Unit ``(unit)^2/Hz``.
 
     References
     ----------

@@ -26,14 +26,7 @@ MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """A data set in a folder.
-
-    Attributes
-    ----------
-    folder : Path
-    about : dict
-        Title, plan, number of conditions, units of the sensors, versions.
-    """
+    """A data set in a folder; `about` has title, plan, number of conditions, units of the sensors and versions."""
 
     folder: Path
     about: dict[str, Any]
@@ -166,10 +159,6 @@ WRITERS = {"mat": (".mat", _mat), "hdf5": (".h5", _hdf5)}
 
 def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
     """Open a data set, finished or not.
-
-    Parameters
-    ----------
-    folder : str or path
 
     Raises
     ------

@@ -136,10 +136,6 @@ def told_apart(healthy: Any, damaged: Any) -> float:
 
     0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
 
-    Parameters
-    ----------
-    healthy, damaged : array_like, shape (n,) and (m,)
-
     Examples
     --------
     >>> told_apart([1.0, 2.0, 3.0], [2.5, 3.5, 4.5])

@@ -23,13 +23,7 @@ FORMAT = "gearfe sweep 1"
 class Runs:
     """Results of a sweep, in a folder.
 
-    Attributes
-    ----------
-    folder : Path
-    about : dict
-        Title, study, number of cases, versions.
-    fields : dict of str to (kind, unit)
-        Columns; those of kind ``list`` are curves and signals.
+    `about` has title, study, number of cases and versions; `fields` kind and unit by column, of kind ``list`` curves and signals.
     """
 
     folder: Path
@@ -151,10 +145,6 @@ def _longest(phase):
 
 def open_runs(folder: str | os.PathLike[str]) -> Runs:
     """Open the folder of a sweep, finished or not.
-
-    Parameters
-    ----------
-    folder : str or path
 
     Raises
     ------
