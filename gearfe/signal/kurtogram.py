@@ -28,7 +28,8 @@ def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...
         SK(f) = <|X(t, f)|**4> / <|X(t, f)|**2>**2 - 2
 
     0 for stationary Gaussian noise (3 is subtracted at 0 Hz and Nyquist's frequency, where X is real), -1 for a sine, large
-    where impulses are; without unit ("1"). Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the largest get 0.
+    where impulses are; without unit ("1"). Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the
+    largest get 0.
 
     Parameters
     ----------
