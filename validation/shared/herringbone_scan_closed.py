@@ -9,6 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 import gearfe as gf
 from gearfe.energy.closed import published, textbook
+from gearfe.energy.closed.section import ToothDamage
 from gearfe.energy.closed.slices import faces, stations
 from gearfe.flexibility.hertz import linear_hertz
 
@@ -55,7 +56,7 @@ class Closed:
         self.tooth = PchipInterpolator(STEPS[: len(table)], np.array(table), extrapolate=False)
 
     def _beams(self, gear, which, roll, cracks):
-        return self.formulas.components(gear, self.materials[which], roll, cracks=cracks, foundation="none").total
+        return self.formulas.components(gear, self.materials[which], roll, damage=ToothDamage(cracks), foundation="none").total
 
     def _bodies(self, bores, foundation):
         gears = zip((self.pair.gear_1, self.pair.gear_2), (*bores, None), strict=False)
