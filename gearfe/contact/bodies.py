@@ -188,8 +188,8 @@ def mirrors_of(cells, bodies):
         for half in np.unique(cells.half).tolist():
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
-            low[at], high[at] = (np.array(ends) if not other else body.width - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (other, offset, body.width)  # faces of equally wide gears are flush
+            low[at], high[at] = (np.array(ends) if not other else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (other, offset, body.gear.b)  # faces of equally wide gears are flush
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 

@@ -93,7 +93,7 @@ def solid_flexibility(
     kept = _resolved(gear, material, whole[0, :, 0], degree, refine, cache) if healthy is None else healthy.degree
     own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
     between = {(i, j): whole[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    made = parted(gear, material, gear.b, kept, between, found.dofs, healthy, cache=cache)
+    made = parted(gear, material, kept, between, found.dofs, healthy, cache=cache)
     if not found.mutual.size:
         return made
     opening = {tooth: (found.opening[:, k].reshape(-1, size) * unit)[:, own] for k, tooth in enumerate(teeth)}
@@ -125,7 +125,7 @@ def _resolved(gear, material, own, degree, refine, cache):
     """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
-        flat = half_space(material) * own_distance(gear, gear.b, kept, cache=cache)
+        flat = half_space(material) * own_distance(gear, kept, cache=cache)
         least = eigh(own[np.ix_(at, at)], flat, eigvals_only=True)[0]
         if least >= RESOLVED:
             return kept

@@ -29,7 +29,7 @@ def hats_at():
 def test_the_finest_section_is_that_of_the_energy_model_in_plane_strain(hats_at):
     model = flexibility3d(GEAR, gf.Material(), axial=0, order=5)
     half = half_space(gf.Material())
-    local = own_distance(GEAR, GEAR.b, 0) + edge_factor(gf.Material()) * own_mirrors(GEAR, GEAR.b, 0)
+    local = own_distance(GEAR, 0) + edge_factor(gf.Material()) * own_mirrors(GEAR, 0)
     assert_allclose(hats_at[2.0], model.near[0] + half * local, rtol=1e-3)
 
 
@@ -93,7 +93,7 @@ def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at, monkeypatch)
     monkeypatch.setattr(section_error, "FINER", 2.0)
     size = 2 * PLACES
     near, far = {0: np.zeros((size, size)), 1: np.zeros((size, size))}, {(0, 1): np.ones((size, size))}
-    plain = Flexibility3D(GEAR, 6.0, 1, 1.0, near, far, 0)
+    plain = Flexibility3D(GEAR, 1, 1.0, near, far, 0)
     crack = gf.Crack(level=0.4, tooth=1, width=(0.0, 2.0))
     options = {"refine": 0.5, "per_hat": PER_HAT, "sizes": SIZES}
     more = finer_section(plain, gf.Material(), (crack,), **options)

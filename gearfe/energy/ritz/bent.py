@@ -22,7 +22,7 @@ DEPTHS = 7  # at which the section's matrices are computed, or more in proportio
 CHECKED = 6  # order at whose quadrature points the triangles are checked
 
 
-def bent(gear, sector, number, crack, width):
+def bent(gear, sector, number, crack):
     """How a sector follows its crack `number`: the shift ``(2, n)`` [mm] of its vertices, and the `Front`.
 
     Raises
@@ -36,7 +36,7 @@ def bent(gear, sector, number, crack, width):
 
     bulges, outline = sector.edge_bulges, np.unique(np.array(list(sector.bulge)))
     line = np.array(sector.faces[number])
-    return follow(gear, crack, width, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
+    return follow(gear, crack, gear.b, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
 
 
 @dataclass(frozen=True, slots=True)
