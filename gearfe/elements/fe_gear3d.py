@@ -92,22 +92,16 @@ class WholeGear:
 
 
 def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
-    """Flexibility of a gear of finite width by finite elements of all of it.
+    """`Flexibility3D` of a `WholeGear` by finite elements.
 
     Parameters
     ----------
-    whole : WholeGear
-    material : Material
     healthy : Flexibility3D, optional
         Of the gear without cracks; needed if it has cracks.
     tell
         As in `gearfe.elements.fe3d.influence`.
     cache : bool or SolvedGears
         Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
 
     Raises
     ------

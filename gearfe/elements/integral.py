@@ -24,15 +24,6 @@ from .solver import factor
 def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
     """`gearfe.elements.fe3d.influence` of a gear on the stubs of its shaft.
 
-    Parameters
-    ----------
-    mesh : geometry.mesh.solid.Solid
-    material : Material
-    patches : Patches
-    shaft : Shaft
-    tell, zones
-        As of `gearfe.elements.fe3d.influence`.
-
     Raises
     ------
     ValueError

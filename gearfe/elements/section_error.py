@@ -28,20 +28,8 @@ THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
 def finer_section(found, material, cracks=(), *, refine, cache=True):
     """A gear's `Flexibility3D` with what a section of `FINER` resolution adds to every tooth.
 
-    Parameters
-    ----------
-    found : Flexibility3D
-        By hexahedra whose section has resolution `refine`.
-    material : Material
-    cracks : tuple of Crack
-        Of the gear; those of part of the width or of a depth that changes count with their whole section.
-    refine : float
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
+    `found` is of hexahedra whose section has resolution `refine`. Cracks of part of the width or of a depth that changes count
+    with their whole section.
     """
     gear, kept = found.gear, solved_gears(cache)
     even = np.eye(found.degree + 1)

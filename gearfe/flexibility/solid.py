@@ -1,7 +1,7 @@
 """`Flexibility3D`: what a gear of finite width is to its contact lines, whoever solved for it.
 
 Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. What a patch does to itself
-like a half-space is taken out (`energy.halfspace`), the rest is smooth and carried between the patches by polynomials.
+like a half-space is taken out (`halfspace`), the rest is smooth and carried between the patches by polynomials.
 """
 
 import math
@@ -87,18 +87,6 @@ class Flexibility3D:
                 return found.T if turned else found
         return None
 
-    def matrix(self, tooth, roll, z):
-        """Displacements ``(n, n)`` [mm/N] of loads at `roll`, `z` [mm] of teeth `tooth` on each other, half-space left out."""
-        tooth, rows = np.asarray(tooth), self.basis(roll, z)
-        out = np.zeros((tooth.size,) * 2)
-        members = {number: np.flatnonzero(tooth == number) for number in np.unique(tooth).tolist()}
-        for first, own in members.items():
-            for second, theirs in members.items():
-                kernel = self.between(first, second)
-                if kernel is not None:
-                    out[np.ix_(own, theirs)] = rows[own] @ kernel @ rows[theirs].T
-        return out
-
     def opening(self, tooth, roll, z):
         """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
         tooth, rows = np.asarray(tooth) % self.gear.z, self.basis(roll, z)
@@ -137,32 +125,15 @@ def solved_teeth(gear, cracks, neighbours):
 def parted(gear, material, degree, influence, unknowns, healthy=None, *, cache=True):
     """`Flexibility3D` from the influence between patches.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    degree : int
-        Highest axial mode.
-    influence : dict of (int, int) to ndarray, shape (n, n)
-        Between the patches of `solved_teeth`: `hats` of unit area times `halfspace.modes`, modes innermost [mm/N mm].
-    unknowns : int
-    healthy : Flexibility3D, optional
-        If the gear is cracked: of the gear without cracks.
-    cache : bool or SolvedGears
-        Where to look for `own_distance`, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
+    `degree` is the highest axial mode; `influence` ``{(i, j): (n, n)}`` that between the patches of `solved_teeth`, `hats` of
+    unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without cracks if there are any.
     """
     edge = edge_factor(material) * half_space(material)
     local = half_space(material) * own_distance(gear, degree, cache=cache)
     local = local + edge * own_mirrors(gear, degree, cache=cache)
-    cracked = healthy is not None
-    near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
-    far = {
-        (i, j): value for (i, j), value in influence.items() if i != j and (j - i) % gear.z <= gear.z // 2 and (cracked or i == 0)
-    }
+    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # healthy teeth are alike
+    near = {i: value - local for (i, j), value in wanted.items() if i == j}
+    far = {(i, j): value for (i, j), value in wanted.items() if i != j and (j - i) % gear.z <= gear.z // 2}
     return Flexibility3D(gear, degree, half_space(material), near, far, unknowns, healthy, edge=edge)
 
 

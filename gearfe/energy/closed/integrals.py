@@ -44,11 +44,8 @@ def integrals(gear, roll, root="fillet", damage=HEALTHY):
     roll : ndarray, shape (n,)
         Roll lengths of the load [mm].
     root : {"fillet", "base", "line", "prism"}
-        Where the beam begins. ``fillet``: the true fillet, from the root circle. The others extend the involute down to the
-        larger of base and root circle and, where the base circle is the larger, add nothing (``base``), a straight radial
-        flank down to the root circle (``line``), or a prism of constant thickness down to it (``prism``).
+        Where the beam begins, see `gearfe.energy.closed.textbook.components`.
     damage : ToothDamage
-        See `gearfe.energy.closed.section`.
 
     Returns
     -------

@@ -119,10 +119,9 @@ def section(gear, h, y, arc, found, pits):
 
     Returns
     -------
-    area, inertia : ndarray, shape (n,)
-        [mm] and [mm**3]: means over the face width; the inertia is about the centroid of what is left.
-    uncracked : ndarray, shape (n,)
-        Area without the cracks (for axial compression).
+    area, inertia, uncracked : ndarray, shape (n,)
+        [mm], [mm**3] about the centroid of what is left, and the area without the cracks, for axial compression [mm]: means
+        over the face width.
 
     Raises
     ------

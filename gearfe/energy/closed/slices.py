@@ -56,19 +56,17 @@ def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None)
 
     Parameters
     ----------
-    pair : GearPair
-    phase : ndarray
+    pair, phase
     pits : (sequence, sequence)
-        Pits of pinion and wheel, teeth numbered in each gear's own frame.
+        Of pinion and wheel, teeth numbered in each gear's own frame.
     bands : list
         From `faces`.
     lost : {"hertz", "slices", "summed"}
-        What pits take from a pair: part of its contact stiffness (the touching part of the line), the slices they cover with all
-        their stiffness, or of its contact stiffness their widths altogether, wherever the line is.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications: each slice touches where its section first does.
+        What pits take from a pair, see `gearfe.energy.closed.plain_sum.plain_sum`.
     edges : callable, optional
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
+    flanks : (FlankForm, FlankForm), optional
+        Modifications: each slice touches where its section first does.
 
     Returns
     -------

@@ -96,14 +96,7 @@ class Section(NamedTuple):
 def body_of(section, axial, *, seams=(), kinds=None, bent=None):
     """`SectorBody` of a `Section` and the functions along its width.
 
-    Parameters
-    ----------
-    section : Section
-    axial : gearfe.energy.ritz.axial.Axial
-    seams : sequence of (ndarray, ndarray)
-    kinds : ndarray, shape (nodes + loads,), optional
-        Default: all have the polynomials over the whole width.
-    bent : BentTriangles, optional
+    `seams` and `bent` are as of `SectorBody`, and `kinds` is its `kind`, by default that all have the polynomials over the width.
     """
     numbers, load = section.numbers, section.load
     nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]

@@ -45,24 +45,16 @@ class Panel:
 
 
 def panel(gear, sector, material, roll, *, order, state="plane strain", tilt=0.0):
-    """Reduce a sector to its sides.
+    """The `Panel` of a `geometry.mesh.sector.Sector`.
 
     Parameters
     ----------
-    gear : Gear
-    sector : geometry.mesh.sector.Sector
-    material : Material
     roll : ndarray, shape (n,)
         Roll lengths of unit line loads on the loaded flank [mm]; none for a sector that only supports others.
     order : int
         Polynomial order of the displacements.
-    state : {"plane strain", "plane stress"}
     tilt : float or ndarray, shape (n,)
         By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
-
-    Returns
-    -------
-    Panel
     """
     modulus = material.plane_modulus(state)
     ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu

@@ -59,12 +59,10 @@ class SolidModel:
 
 
 def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
-    """Reduce a sector to its two helicoidal sides.
+    """Reduce a `geometry.mesh.sector.Sector` of a `SolidModel` to its two helicoidal sides.
 
     Parameters
     ----------
-    model : SolidModel
-    sector : geometry.mesh.sector.Sector
     knots : ndarray, shape (3, n)
         Start, top and end of hats of unit area along the arc of the loaded flank [mm]: unit loads per width along the inward
         normal of the helicoid, times each axial mode of `halfspace.modes`.
@@ -128,8 +126,6 @@ def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
 
     Parameters
     ----------
-    model, sector, knots
-        As in `panel3d`.
     plane : bool
         As if it were a spur gear's.
     bent : BentTriangles, optional

@@ -29,7 +29,7 @@ KNOTS = 48  # of the splines that carry their polynomial
 
 
 def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
-    """Flexibility of a gear by the energy model.
+    """`Flexibility` of a gear by the energy model.
 
     Parameters
     ----------
@@ -46,10 +46,6 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
         Divides the edge lengths of the triangles and the hats at corners.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility
 
     Raises
     ------

@@ -22,16 +22,7 @@ from .plane import carry, loaded_sector
 def missing(model, cracks, sections, *, cubic=False, cache=True):
     """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    Parameters
-    ----------
-    model : SolidModel
-    cracks : tuple of Crack
-        On tooth 0.
-    sections : tuple of Sector
-        With `cracks`, and without.
-    cubic : bool
-        Whether short edges are cubic, see `panel3d.section_of`.
-    cache : bool or SolvedGears
+    `cracks` are on tooth 0, `sections` the `Sector` with them and that without; `cubic` as of `panel3d.section_of`.
     """
     gear, material = model.gear, model.material
     one = plane_panel(model, sections[1], cubic)

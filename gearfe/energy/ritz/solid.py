@@ -40,7 +40,7 @@ SIZES = {
 
 
 def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
-    """Flexibility of a gear of finite width by the energy model.
+    """`Flexibility3D` of a gear of finite width by the energy model.
 
     Parameters
     ----------
@@ -61,10 +61,6 @@ def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=Non
         Divides the edge lengths of the triangles.
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
 
     Raises
     ------
