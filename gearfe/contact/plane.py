@@ -57,17 +57,7 @@ def _aligned(rows):
 class PairContact:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
-    Parameters
-    ----------
-    pair : GearPair
-    materials : (Material, Material)
-    flexibility : (Flexibility, Flexibility)
-        Of pinion and wheel.
-    phase : ndarray
-    extended : bool
-    state : str
-    flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel, `geometry.tooth.modified.flank_forms`.
+    Of the `Flexibility` of pinion and wheel; `extended`, `state` as of a `Solve`, `flanks` the forms of a `Case`.
     """
 
     def __init__(self, pair, materials, flexibility, phase, *, extended, state, flanks=None):

@@ -15,6 +15,7 @@ from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.axial import axial
 from gearfe.energy.ritz.join import join
+from gearfe.energy.ritz.panel import SectionModel
 from gearfe.flexibility import halfspace
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.hertz import half_plane, hat_logarithm
@@ -102,7 +103,7 @@ def test_plane_strain_is_the_constant_along_the_width():
     knots = flexibility3d.hats(gear)
     local = half_plane(STEEL) * hat_logarithm(knots, knots)
     for cracks in ((), (gf.Crack(level=0.5),)):
-        plane = [ritz.loaded_sector(gear, STEEL, own, order=6) for own in (cracks, ())]
+        plane = [ritz.loaded_sector(SectionModel(gear, STEEL, order=6), own) for own in (cracks, ())]
         solid = [ritz3d.solid_sector(panel3d.SolidModel(replace(gear, b=10.0), STEEL), own) for own in (cracks, ())]
         want, _ = join(gear, dict(enumerate(plane)), plane[1])
         got, _ = join(gear, dict(enumerate(solid)), solid[1])

@@ -14,7 +14,7 @@ from . import published
 from .beam import load_angle
 from .integrals import flank_edges
 from .section import ToothDamage
-from .slices import faces, stations
+from .slices import faces_of, stations
 
 CONTACTS = ("linear", "published", "weber", "palmgren")
 
@@ -71,10 +71,9 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
     for gear, (cracks, pits) in zip(gears, damage, strict=True):
         check_through(cracks, "a plain sum")
         check_hollows(gear, pits)
-    bands = faces(pair, case.face or "spur", case.groove)
     root = variants.get("root", defaults.get("root", "fillet"))
     edges = partial(_edges, pair, damage=damage, crack_model=crack_model, root=root)
-    at = stations(pair, phase, case.pits, bands, lost=lost, edges=edges, flanks=case.forms)
+    at = stations(case, phase, lost=lost, edges=edges)
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
         raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage takes the whole width; make it smaller")
@@ -86,8 +85,7 @@ def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lo
             one = formulas.components(gear, material, roll[where], damage=here, **variants)
             teeth[where] += one.total
             outside |= dict.fromkeys(one.outside)
-    law = _law(pair, materials, at, contact, bands)
-    return _solver(at, phase.size, teeth, law), {"outside": tuple(outside)}
+    return _solver(at, phase.size, teeth, _law(case, at, contact)), {"outside": tuple(outside)}
 
 
 def _by_tooth(gear, tooth, damage, crack_model):
@@ -115,13 +113,14 @@ def _edges(pair, order, *, damage, crack_model, root):
     return out
 
 
-def _law(pair, materials, at, contact, bands):
+def _law(case, at, contact):
     """Contact law: from the line load on the touching length to secant and tangent flexibility [mm per N/mm]."""
+    pair, materials = case.pair, case.materials
     if contact in ("linear", "published"):
         constant = linear_hertz(materials) if contact == "linear" else published.contact(materials)
         return lambda line: (constant, constant)
     if contact == "palmgren":
-        width = sum(abs(last - first) for first, last, _ in bands)
+        width = sum(abs(last - first) for first, last, _ in faces_of(case))
         return lambda line: palmgren_line(line, materials, width * at.touching)
     radius = pair.relative_radius(at.roll_1, at.roll_2)
     depth = [_depth(gear, roll) for gear, roll in ((pair.gear_1, at.roll_1), (pair.gear_2, at.roll_2))]

@@ -13,7 +13,7 @@ from ...flexibility.hertz import half_plane, hat_logarithm
 from ...flexibility.solid import hats
 from ...flexibility.solved import solved_gears
 from .join import join
-from .panel import Panel
+from .panel import Panel, SectionModel
 from .panel3d import polar, section_of
 from .plane import PLACES as LOADS
 from .plane import carry, loaded_sector
@@ -66,7 +66,7 @@ def plane_hats(gear, material, cracks=(), *, cache=True):
     kept = solved_gears(cache)
 
     def solve():
-        panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
+        panels = {k: loaded_sector(SectionModel(gear, material), own, kept) for k, own in enumerate((cracks, ()))}
         influence = join(gear, panels, panels[1])[0][0, 0][:LOADS, :LOADS]
         points, weight = hat_points(hats(gear), 12)
         mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))

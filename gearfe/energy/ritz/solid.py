@@ -20,6 +20,7 @@ from ...flexibility.solved import solved_gears
 from .bent import bent
 from .dissection import dissect
 from .join import join
+from .panel import check_order
 from .panel3d import SolidModel, panel3d
 from .plane_strain import missing
 
@@ -68,8 +69,7 @@ def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=Non
         If an option is out of range, or a tooth has cracks that the model has not.
     """
     axial = axial_degree(gear.b, gear.m_n) if axial is None else axial
-    if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
-        raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
+    check_order(order)
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
     model = SolidModel(gear, material, int(order), int(axial), float(refine))
