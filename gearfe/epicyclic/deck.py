@@ -29,17 +29,11 @@ from .standing import directions
 
 @dataclass(frozen=True, slots=True)
 class SetDeck:
-    """What is needed to read the result.
+    """What is needed to read the result of a deck of a whole set.
 
-    Attributes
-    ----------
-    case : PlanetaryCase
-    held, place : list of ndarray, shape (n,) and (2, n)
-        Numbers of the held nodes of sun, planets and ring, and their places from the gear's centre [mm].
-    rim, around : ndarray, shape (n,) and (2, n)
-        Numbers and places [mm] of the nodes of the ring's outer edge.
-    angle : float
-        Clockwise angle of the ring's tooth 0 [rad].
+    `held` and `place` are the numbers ``(n,)`` of the held nodes of sun, planets and ring, and their places ``(2, n)`` from the
+    gear's centre [mm]; `rim` and `around` those of the nodes of the ring's outer edge; `angle` that of the ring's tooth 0,
+    clockwise [rad].
     """
 
     case: PlanetaryCase
@@ -53,12 +47,7 @@ class SetDeck:
         """What CalculiX printed to the ``.dat`` file `path`, per width [N/mm].
 
         ``"sun"``, ``"ring"``: torque over the base radius. ``"outer"``, ``"inner"`` ``(planets,)``: forces of the meshes of each
-        planet with sun and ring, from its pin's force and torque.
-
-        Raises
-        ------
-        RuntimeError
-            If the file is not there, or holds no forces.
+        planet with sun and ring, from its pin's force and torque. RuntimeError if the file is not there, or holds no forces.
         """
         reaction = read_rows(path, "forces")
         moments, sums = [], []

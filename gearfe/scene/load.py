@@ -77,13 +77,7 @@ class ScenePair:
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
 
     def case(self, name: str | None = None) -> Case:
-        """The pair as it is solved, in a case of damage; None: healthy.
-
-        Raises
-        ------
-        ValueError
-            If there is no such case of this pair.
-        """
+        """The pair as it is solved, in a case of damage; None: healthy. ValueError if there is no such case of this pair."""
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         given = {own: getattr(self, own) or None for own in ("flanks", "misalignment", "supports", "face")}
@@ -111,13 +105,7 @@ class Scene:
     changed: tuple[str, ...] = ()
 
     def pair(self, name: str | None = None) -> ScenePair:
-        """The pair called `name`; the first one if None.
-
-        Raises
-        ------
-        ValueError
-            If there is no such pair.
-        """
+        """The pair called `name`; the first one if None. ValueError if there is no such pair."""
         if name is None:
             return next(iter(self.pairs.values()))
         if name not in self.pairs:
@@ -127,10 +115,7 @@ class Scene:
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
         """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
 
-        Raises
-        ------
-        ValueError
-            If there is no such pair or case.
+        ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
 
@@ -196,8 +181,8 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     title, source = top["title"], top["source"]
     if own:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
-    found = () if own else read_references(file, printed, pairs)
-    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, found, changed)
+    references = () if own else read_references(file, printed, pairs)
+    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, references, changed)
 
 
 def _pair(file, name, rows, damage, gears, materials):

@@ -148,7 +148,8 @@ def text(references, rows):
             printed = _shown(reference, row.printed)
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
-            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
+            verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
+            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict)
             lines.append(table_row(cells))
     return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
 
@@ -197,7 +198,3 @@ def _away(reference, row):
     if math.isnan(row.difference) or reference.unit == "statement":
         return ""
     return f"{row.difference:+.3g}" if reference.relative is None else f"{row.difference:+.2f} %"
-
-
-def _bold(word):
-    return f"**{word}**" if word in (NOT, NEVER) else word

@@ -146,12 +146,13 @@ def _unit_stress(gear, material, state, arc, half_width, edges, refine):
     """Largest principal stress on the fillet [MPa] under a unit load [N/mm]."""
     mesh, _, moved = _solve(gear, material, state, arc, half_width, edges, refine)
     nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
-    _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
+    shapes, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
     along = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], slopes)
     stretch = np.einsum("ned,np->dep", moved.reshape(-1, 2)[nodes], slopes)
     length = np.hypot(*along)
     stress = material.plane_modulus(state) * ((along * stretch).sum(axis=0) / length**2).ravel()
-    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(_gauss_places(mesh, nodes), axis=1)))])
+    points = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)
+    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
     return _peak(place, stress)
 
 
@@ -171,8 +172,3 @@ def _peak(place, stress):
     curve = Polynomial.fit(place[first:last] / scale, stress[first:last] / stress[top], 4)
     around = np.linspace(place[max(top - 2, first)], place[min(top + 2, last - 1)], 401) / scale
     return float(stress[top] * curve(around).max())
-
-
-def _gauss_places(mesh, nodes):
-    shapes, _ = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
-    return np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)

@@ -13,6 +13,7 @@ from geometry.tooth.profile import arc_at
 
 from ..elements.elasticity import Body
 from ..elements.fe import EDGES, flank_load
+from ..elements.one_tooth import edge_lengths
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from ..steps import steps
@@ -125,7 +126,7 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
 
 def _loaded_gear(gear, material, loads, refine, cracks):
     """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
-    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    edge = edge_lengths(gear, EDGES, refine)
     rolls, arcs = {}, {}
     for tooth, (roll, _, a) in loads.items():
         top = arc_at(gear, gear.roll_a)

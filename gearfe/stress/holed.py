@@ -16,7 +16,7 @@ from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 from ..contact.solid import Contact3D, pair_stiffness3d
 from ..elements.hexahedron import assemble
 from ..elements.solver import factor, plan
-from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
+from ..elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order, tet_stiffness
 from ..steps import part
 from ..stiffness.supported import check_integral
 from .fields import Field
@@ -84,7 +84,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     loads = np.column_stack([_pressure(sector, nodes, number, found, spread) for found in lines])
-    held = _held(sector, number)
+    held = nodes_of(np.hstack([sector.faces["held"], sector.faces["sides"]]), number)
     with part("stress", 0.5, 1.0):
         moved, unknowns = _moved(nodes, kept, materials[side], held, loads)
     extra = np.zeros(0)
@@ -199,12 +199,6 @@ def _strips(gear, lines, edge, spread):
                 radius, angle = flank(gear, roll[load > 0])
                 out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * spread, edge))
     return out
-
-
-def _held(sector, number):
-    faces = np.hstack([sector.faces["held"], sector.faces["sides"]])
-    a, b, c = faces
-    return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
 
 
 def _moved(nodes, cells, material, held, loads):

@@ -153,11 +153,6 @@ def damage_cycle(chosen):
     return length / 2 - 0.5 + (np.arange(PHASES) + 0.5) / PHASES
 
 
-def _cycle(chosen, phases):
-    """Phases of tooth 0 of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
-    return damage_phases(chosen.case(), phases) if phases else damage_cycle(chosen)
-
-
 def is_wide(chosen):
     """Whether a scene's pair needs three dimensions in any of its cases."""
     return any(chosen.case(case).why_wide for case in (None, *chosen.damage))
@@ -197,7 +192,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
     taken = {(key, "fe3d") for key in stored}
-    curves, cycles = {}, {name: _cycle(pair, 0 if stored else phases) for name, pair in scene.pairs.items()}
+    phases_of = damage_cycle if stored else (lambda chosen: damage_phases(chosen.case(), phases))
+    curves, cycles = {}, {name: phases_of(chosen) for name, chosen in scene.pairs.items()}
     work = [(name, case, method) for name, case in wanted for method in methods]
     cost = [0.0 if (key[:2], key[2]) in taken else COST.get(key[2], 0.1) for key in work]
     for name, case, method in steps(work, lambda key: f"{key[0]} {key[1] or 'healthy'}: {key[2]}", cost):
