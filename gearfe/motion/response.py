@@ -94,7 +94,7 @@ class Response:
         """Unit of a channel."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
-            power = self.machine.meshes[self._meshes.index(tail)].power
+            power = self.machine.meshes[self._meshes.index(tail)].contact.power
             return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
