@@ -53,7 +53,7 @@ def check(arguments):
         chosen = scene.pair(arguments.pair)
         case = arguments.case or next(iter(chosen.damage), None)
         title = ", ".join((scene.name, arguments.pair or next(iter(scene.pairs)), case or "healthy"))
-        plot_pair(chosen.pair, chosen.case(case).damage, arguments.picture, title)
+        plot_pair(chosen.case(case), path=arguments.picture, title=title)
         print(f"written: {arguments.picture}")
 
 

@@ -85,7 +85,7 @@ def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float
     lines = ["** gearfe: gear pair in contact, plane strain; mm, N, MPa, per mm of width", "*NODE, NSET=ALL"]
     blocks, ends, held, place, first, element = [], [], [], [], 0, 0
     for number, (body, material, angle) in enumerate(zip(bodies, materials, turned, strict=True), 1):
-        x, y = _posed(body.mesh.doflocs, turns[number - 1], (1, pair.outward)[number - 1])
+        x, y = posed(body.mesh.doflocs, turns[number - 1], (1, pair.outward)[number - 1])
         centre = (0.0, pair.centre_2)[number - 1]
         lines += [f"{first + i}, {u:.12e}, {v:.12e}, 0." for i, (u, v) in enumerate(zip(x, y + centre, strict=True), 1)]
         nodes = element_nodes(body.mesh, np.array([x, y]))
@@ -95,12 +95,12 @@ def write_contact_section(path: str | os.PathLike[str], case: Case, phase: float
         blocks += [f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}\n1."]
         for k, tooth in enumerate(((1, -1)[number - 1] * order % body.gear.z).tolist()):
             blocks += [f"*SURFACE, NAME=C{number}P{k}, TYPE=ELEMENT"]
-            blocks += [f"{element + j}, S{face}" for j, face in _flank_faces(body, nodes, tooth)]
+            blocks += [f"{element + j}, S{face}" for j, face in flank_faces(body, nodes, tooth)]
         fixed = held_nodes(body.mesh)
         held.append(fixed + first + 1)
         place.append(np.array([x[fixed], y[fixed]]))
         blocks += [f"*NSET, NSET=H{number}", *(f"{n}," for n in held[-1].tolist())]
-        moved = np.array(_posed(place[-1], angle, 1)) - place[-1]
+        moved = np.array(posed(place[-1], angle, 1)) - place[-1]
         for n, u, v in zip(held[-1], *moved, strict=True):
             ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}"]
         first, element = first + x.size, element + nodes.shape[1]
@@ -128,12 +128,12 @@ def _meshed(gear, teeth, arcs, widths, per_width, refine):
     return section(gear, rolls, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
 
 
-def _posed(points, turn, mirror):
+def posed(points, turn, mirror):
     x, y = mirror * points[0], points[1]
     return math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x
 
 
-def _flank_faces(body, nodes, tooth):
+def flank_faces(body, nodes, tooth):
     """(element, face) of the loaded flank of `tooth`, numbered from 1; CalculiX counts the faces 1-2, 2-3, 3-1."""
     middles = edge_nodes(body.mesh, body.flank[tooth])[2]
     for face in range(3):

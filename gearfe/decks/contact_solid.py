@@ -23,7 +23,7 @@ from geometry.tooth.side import on_fillet
 from ..case import Case
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
-from .contact_deck import ContactDeck, _posed
+from .contact_deck import ContactDeck, posed
 from .pressing import Pressing
 from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
@@ -175,7 +175,7 @@ def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, 
             body = replace(body, points=relieved_points(body.points, gear, forms[number], teeth))
         turn = float(pair.turn(nominal_at(pair, phase, low))[number])
         mirror = (1, pair.outward)[number]
-        x, y = _posed(body.points[:2], turn, mirror)
+        x, y = posed(body.points[:2], turn, mirror)
         place = np.array([x, y + (0.0, pair.centre_2)[number], body.points[2] + low])
         parts.append(placed(body, place, mirrored=mirror < 0))
     turned = how.turned(pair, approach)
@@ -222,7 +222,7 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
         raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
-    own = [(np.array([*_posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
+    own = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
     least = min((min(pit.axes) for pit in holes), default=1.0)
     rim = RIM * how.refine * min(size for *_, size in strips) / least
     sizes = TETS | {"rim": min(rim, HOLES["rim"])}
@@ -230,7 +230,7 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
     body = holed_part(made if how.pits == "cut" else filled(made, teeth=None), own)
     if how.pits == "lost":
         body = replace(body, faces=_uncovered(body.faces))
-    points = np.array([*_posed(body.points[:2], turn, 1), body.points[2]])
+    points = np.array([*posed(body.points[:2], turn, 1), body.points[2]])
     faces = {_renamed(name, tooth, gear.z): found for name, found in body.faces.items()}
     return replace(body, points=points, faces=faces)
 
@@ -268,7 +268,7 @@ def _text(case, parts, found, turned, penalty):
         yield f"*NSET, NSET=H{number + 1}"
         yield from (f"{n}," for n in held.tolist())
         at = _from_centre(pair, part, number)
-        moved = np.array(_posed(at, turned[number], 1)) - at
+        moved = np.array(posed(at, turned[number], 1)) - at
         for n, u, v in zip(held.tolist(), *moved, strict=True):
             ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", f"{n}, 3, 3"]
         first, element = first + part.points.shape[1], element + part.cells.shape[1]

@@ -16,7 +16,7 @@ from geometry.mesh.outline import stations
 from geometry.tooth.profile import arc_at
 
 from ..checks import checked_refine, is_number
-from ..decks.contact_deck import TIP, _flank_faces, _posed
+from ..decks.contact_deck import TIP, flank_faces, posed
 from ..decks.deck import element_nodes, held_nodes
 from ..elements.fe import EDGES
 from ..files import check_output, written
@@ -155,7 +155,7 @@ def write_set_inp(
         rolls = _rolls(gear, [one for pair in pressed for one in pair if one["body"] == number], per_width, refine)
         edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
         made, fixed = meshed(case, gear, rolls, edge["fillet"], edge["near"], edge["far"], 0.05 / refine)
-        own = np.array(_posed(made.mesh.doflocs, angle, 1))
+        own = np.array(posed(made.mesh.doflocs, angle, 1))
         lines += [f"{first + k}, {u:.12e}, {v:.12e}, 0." for k, (u, v) in enumerate((own.T + centre).tolist(), 1)]
         nodes = element_nodes(made.mesh, own)
         blocks += _body_lines(number, material, made, nodes, first, element)
@@ -187,7 +187,7 @@ def _body_lines(number, material, made, nodes, first, element):
     yield f"*SOLID SECTION, ELSET=G{number}, MATERIAL=M{number}\n1."
     for tooth, side in made.flank:
         yield f"*SURFACE, NAME={_surface(number, tooth, side)}, TYPE=ELEMENT"
-        yield from (f"{element + j}, S{face}" for j, face in _flank_faces(made, nodes, (tooth, side)))
+        yield from (f"{element + j}, S{face}" for j, face in flank_faces(made, nodes, (tooth, side)))
 
 
 def _contact_lines(pressed):

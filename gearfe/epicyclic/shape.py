@@ -11,7 +11,7 @@ from geometry.mesh.outline import stations
 from geometry.tooth.profile import cartesian
 
 from ..checks import is_number
-from ..decks.contact_deck import _posed
+from ..decks.contact_deck import posed
 from ..elements.elasticity import Body
 from ..files import check_output
 from ..pictures.set_plot import draw_set
@@ -94,12 +94,12 @@ def _shape(case, body, sides):
     for one in sides:
         at = one["tooth"], one["side"]
         unit = line_loads(gear, mesh, made.flank[at], rolls[at], np.array([one["roll"]]), one["side"])
-        turned = _posed(unit.reshape(-1, 2).T, 2 * math.pi * one["tooth"] / gear.z, 1)
+        turned = posed(unit.reshape(-1, 2).T, 2 * math.pi * one["tooth"] / gear.z, 1)
         load += one["force"] * np.array(turned).T.reshape(-1, 1)
     solver = Body(mesh, material)
     u = solver.solve(load)[:, 0]
     xx, yy, xy = solver.stress(u)
     zz = material.nu * (xx + yy)
     mises = np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * xy**2)
-    place, moved = (np.array(_posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
+    place, moved = (np.array(posed(one, angle, 1)) for one in (mesh.doflocs, u.reshape(-1, 2).T))
     return Shape(place + centre[:, None], moved, solver.nodes, mises)

@@ -12,6 +12,7 @@ from geometry.pair.gear_pair import GearPair
 from geometry.tooth.drawing import outline_points
 from geometry.tooth.profile import cartesian
 
+from ..case import Case
 from ..files import save_figure
 from .look import COLOURS, GEARS
 
@@ -23,7 +24,7 @@ NEAR = 3.6  # half height of the close-up [modules]
 
 
 def plot_pair(
-    pair: GearPair,
+    pair: GearPair | Case,
     damage: Mapping[str, Sequence[Damage]] | None = None,
     path: str | os.PathLike[str] | None = None,
     title: str = "",
@@ -34,9 +35,10 @@ def plot_pair(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or Case
     damage : dict, optional
-        As of `gearfe.mesh_stiffness`. Cracks of part of the width are drawn with their full length, pits over their height.
+        As of `gearfe.mesh_stiffness`; default that of the case. Cracks of part of the width are drawn with their full length,
+        pits over their height.
     path : path, optional
         Picture file; its suffix decides (png, svg, pdf).
     title : str
@@ -62,6 +64,8 @@ def plot_pair(
     """
     from matplotlib.figure import Figure
 
+    if isinstance(pair, Case):
+        damage, pair = pair.damage if damage is None else damage, pair.pair
     hurt = by_side(damage)
     tooth = next((one.tooth for own in hurt for one in own), 0)
     pitch = pair.gear_1.r_b * math.tan(pair.alpha_w)  # roll length at the pitch point

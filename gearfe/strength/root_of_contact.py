@@ -6,6 +6,7 @@ import numpy as np
 
 from geometry.pair.gear_pair import GearPair
 
+from ..case import Case
 from ..contact.bodies import seen_gears
 from ..contact.solid import Contact3D
 from ..elements.line_load import check_spread
@@ -19,10 +20,10 @@ SAMPLES = 2001  # heights at which the load is added up
 
 @single
 def root_stress_of_contact(
-    pair: GearPair,
+    pair: GearPair | Case,
     contact: Contact3D,
     index: int,
-    material: Material,
+    material: Material | None = None,
     *,
     gear: str = "pinion",
     order: int = 0,
@@ -36,13 +37,13 @@ def root_stress_of_contact(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or Case
     contact : Contact3D
         Of `gearfe.contact_pattern`, of a spur or helical pair without damage.
     index : int
         Number of the phase in `contact`.
-    material : Material
-        Of the gear.
+    material : Material, optional
+        Of the gear; default that of the case.
     gear : {"pinion", "wheel"}
     order : int
         Of the tooth pair, as in ``contact.order``.
@@ -67,6 +68,9 @@ def root_stress_of_contact(
     >>> contact = gf.contact_pattern(pair, 1800.0, steel, phases=[0.6])
     >>> gf.root_stress_of_contact(pair, contact, 0, steel).largest  # doctest: +SKIP
     """
+    if isinstance(pair, Case):
+        material = pair.materials[gear == "wheel"] if material is None else material
+        pair = pair.pair
     if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
         given = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
         raise ValueError(f"{given}: give a GearPair, and what gearfe.contact_pattern gives for it")
