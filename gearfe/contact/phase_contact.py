@@ -161,7 +161,7 @@ class PhaseContact:
                     closings[i] = self.deepest
                 else:
                     raise RuntimeError(
-                        f"no contact at phase {phases[i]:g}: pits cover it all, or the pair has left its path of contact"
+                        f"no contact at phase {phases[i]:g}: damage covers it all, or the pair has left its path of contact"
                     )
             open_ = sorted([*again, *empty])
         return found

@@ -129,6 +129,7 @@ def _meshed(gear, teeth, arcs, widths, per_width, refine):
 
 
 def posed(points, turn, mirror):
+    """Points `(2, n)` of a gear's frame turned clockwise by an angle [rad]; `mirror` -1: seen in the mirror first."""
     x, y = mirror * points[0], points[1]
     return math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x
 

@@ -80,7 +80,7 @@ def _check_damage(damage):
 
 def _tets(gear, pits, cracks, teeth, refine):
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
-        raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without pits")
+        raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without holes")
     return holed_part(holed_sector(gear, pits, *cracks, teeth=teeth, refine=refine))
 
 

@@ -99,7 +99,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
     which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
     if len(which) > 1 or len(cracks[which[0]]) > 1:
-        raise ValueError("give pits, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+        raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
     side = which[0]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
@@ -171,8 +171,8 @@ def _own(pair, side, face, groove, pits):
     parts = [tuple(pit for pit in pits if (pit.z > gear.b / 2) is upper) for upper in (False, True)]
     if all(parts) and not _mirrored(gear, *parts):
         raise ValueError(
-            "pits in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give those "
-            "of one"
+            "holes in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give "
+            "those of one"
         )
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
@@ -179,31 +178,43 @@ class Spall:
         """
         slope, reach = z[1] - z[0], self.axes[1]
         change = (roll[1] - roll[0]) / slope
-        w = Polynomial([0.0, reach])  # of v, which is between -1 and 1 in the spall, whatever the line's length
-        u = gear.outward / (2 * gear.r_b) * Polynomial([roll[0] + change * (self.z - z[0]), change * reach]) ** 2
-        u -= centre_arc(gear, self)
-        limits = [u - sign * half for half in (self.axes[0], self.axes[0] - self.corner) for sign in (-1, 1)]
+        # in v = (z - self.z) / reach, which is between -1 and 1 in the spall, whatever the line's length
+        one = np.array([1.0, 0.0, 0.0])
+        u = (
+            gear.outward / (2 * gear.r_b) * _square(roll[0] + change * (self.z - z[0]), change * reach)
+            - centre_arc(gear, self) * one
+        )
         inner = [half - self.corner for half in self.axes]
-        if self.corner:
-            limits += [(u - i * inner[0]) ** 2 + (w - j * inner[1]) ** 2 - self.corner**2 for i in (-1, 1) for j in (-1, 1)]
-        found = np.concatenate([_roots(limit.coef) for limit in limits])
+        limits = [u - sign * half * one for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
+        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
+            circle = _square(*(u - i * inner[0] * one))
+            circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * one
+            limits.append(circle)
+        found = np.concatenate([_roots(limit) for limit in limits])
         places = np.unique([-1.0, *found[np.abs(found) < 1], 1.0])
         middles = (places[1:] + places[:-1]) / 2
+        there = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
         ends: list[list[float]] = []
-        for first, last, inside in zip(places[:-1], places[1:], self.covers(u(middles), w(middles)), strict=True):
+        for first, last, inside in zip(places[:-1], places[1:], there, strict=True):
             if inside and ends and ends[-1][1] == first:
                 ends[-1][1] = last
             elif inside:
                 ends.append([first, last])
-        parts = [np.clip((self.z + reach * np.array(one) - z[0]) / slope, 0.0, 1.0) for one in ends]
+        parts = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in ends]
         return [(float(t.min()), float(t.max())) for t in parts if t.max() > t.min()]
 
 
+def _square(*coefficients):
+    """Coefficients of the square of a polynomial."""
+    return np.convolve(coefficients, coefficients)
+
+
 def _roots(coefficients):
-    """Real roots of a polynomial."""
+    """Real roots of a polynomial, if it may have some between -1 and 1."""
     size = np.abs(coefficients)
-    there = np.flatnonzero(size > 1e-15 * size.max())
-    found = np.polynomial.polynomial.polyroots(coefficients[: there[-1] + 1] if there.size else [1.0])
+    if size[0] > size[1:].sum() or not size.any():
+        return np.zeros(0)
+    found = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
     return found.real[np.abs(found.imag) < 1e-9]
 
 

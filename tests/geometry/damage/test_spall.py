@@ -118,7 +118,7 @@ def test_spalls_over_the_tip_and_the_end_face_and_of_a_ring_are_cut():
 
 
 @pytest.mark.parametrize("corner", [0.0, 0.4])
-def test_section_has_the_area_and_inertia_that_the_literature_prints(corner):
+def test_section_has_the_area_and_inertia_of_the_parallel_axis_theorem(corner):
     """``dI = l s**3 / 12 + A dA (h - s / 2)**2 / (A - dA)``, l the length and s the depth: of a section 2 h x b."""
     found, h, b, s = spall(corner=corner), 1.7, GEAR.b, 0.2
     for u in (0.0, 0.6):
