@@ -42,14 +42,10 @@ class CornerLaw:
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
     line_load : float
         Even load [N/mm] of the width.
     further : (float, float)
         How far before the start and after the end of the path contact is looked for [mm].
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     """
 
     def __init__(self, pair, materials, line_load, further, *, cache=True):

@@ -35,14 +35,10 @@ class KinkLaw:
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
     line_load : float
         Even load [N/mm] of the width.
     flanks : (FlankForm, FlankForm)
         What they have along the width is left out: it shifts the contact, but not its form.
-    cache : bool or SolvedGears
-        See `gearfe.flexibility.solved.solved_gears`.
     """
 
     def __init__(self, pair, materials, line_load, flanks, *, cache=True):

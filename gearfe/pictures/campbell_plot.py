@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..files import save_figure
-from .look import COLOURS
+from .look import COLOURS, blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,15 +27,8 @@ def plot_campbell(
         Largest frequency [Hz]; default: that of the highest order at the highest speed.
     dpi : int
         Dots per inch of the picture.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 5), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((9, 5))
     end = top or max(found.orders.values()) * found.speed[-1]
     axes.plot(found.speed, np.where(found.natural > 0, found.natural, np.nan), color=COLOURS[0], linewidth=1.0)
     for name, value in found.orders.items():

@@ -17,7 +17,7 @@ import geometry
 from geometry.damage.crack import meshed_path
 
 from ..elements import fe
-from ..elements.fe_gear3d import solid_flexibility, solid_plan
+from ..elements.fe_gear3d import WholeGear, solid_flexibility
 from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
 from ..flexibility.solved import PROCESS, solved_gears
 from .flexibility_file import read_flexibility, write_flexibility
@@ -78,7 +78,7 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     tell : callable, optional
         Gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     **options
-        As in `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine.
+        As in `gearfe.elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section, shaft.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
         own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(gear, material, cracks, **own, **options)
+        return solid_flexibility(WholeGear(gear, cracks, **options), material, **own)
 
     return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
 
@@ -117,7 +117,7 @@ def unsolved(gear, material, cracks=(), *, cache=True, **options):
     if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
         return {}
     before = unsolved(gear, material, cache=kept, **options) if cracks else {}
-    return before | {key: solid_plan(gear, cracks, **options)}
+    return before | {key: WholeGear(gear, cracks, **options).plan()}
 
 
 def _file(key):

@@ -6,7 +6,7 @@ help, `compare`, `case_table` and `error_map` list its names. It imports nothing
 To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in `ROWS`:
 
 - kind "sum", if it describes one tooth and the pairs are springs side by side: the file has ``components(gear, material, roll,
-  *, cracks=(), pits=(), crack_model="constant", ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
+  *, damage=ToothDamage(), ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
   its other keywords become the variants of the method. ``DEFAULTS``, if it is there, holds its contact law and root profile;
 - kind "section", if it describes what a whole gear gives to all its contacts: the file has ``flexibility(gear, material, *,
   neighbours, state)``, which gives `gearfe.flexibility.plane.Flexibility`, as ``coupled.py``.

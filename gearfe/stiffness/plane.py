@@ -26,10 +26,10 @@ MODEL = (
 
 def sum_curves(row, case, how, phase):
     """Curves of a plain sum of tooth pairs, one for each load."""
-    face, variants = case.face or "spur", how.variants or {}
-    of_teeth = {"cracks": case.cracks, "pits": case.pits, "flanks": case.forms, "face": face, "groove": case.groove}
-    solve, details = plain_sum(case.pair, case.materials, phase, row.load(), **of_teeth, **variants)
-    said = variants | {"face": face, "groove": case.groove, "outside": [asdict(place) for place in details["outside"]]}
+    variants = how.variants or {}
+    solve, details = plain_sum(case, phase, row.load(), **variants)
+    said = variants | {"face": case.face or "spur", "groove": case.groove}
+    said |= {"outside": [asdict(place) for place in details["outside"]]}
     meta = provenance(case, row.name, said)
     return [curve(case, phase, force, yielding(solve, case), meta) for force in case.forces]
 

@@ -12,10 +12,7 @@ from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having
 from .supported import check_integral, check_tilt
 
-NO_VARIANTS = (
-    *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
-    "flanks",
-)
+NO_VARIANTS = ("case", "phase", "formulas", "variants", "gear", "material", "roll", "damage")
 CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 

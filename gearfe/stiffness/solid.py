@@ -8,7 +8,6 @@ import numpy as np
 
 from ..contact.bodies import Bodies, energy_bodies
 from ..contact.solid import pair_stiffness3d
-from ..elements.fe_gear3d import PER_HAT, SIZES
 from ..elements.section_error import FINER, finer_section
 from ..steps import part, steps
 from .cache import solved_solid, unsolved
@@ -156,5 +155,4 @@ def _coarser(case, phase, options, how):
 def _finer_section(how, gear, material, cracks=(), **options):
     """A gear whose section is finer."""
     found = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
-    section = {"refine": how.refine, "per_hat": PER_HAT, "sizes": SIZES}
-    return finer_section(found, material, cracks, cache=how.cache, **section)
+    return finer_section(found, material, cracks, refine=how.refine, cache=how.cache)
