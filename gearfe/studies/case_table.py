@@ -158,9 +158,9 @@ def is_wide(chosen):
     return any(chosen.case(case).why_wide for case in (None, *chosen.damage))
 
 
-def case_curve(chosen, case, method, phase, **options):
-    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `Solve`."""
-    known, variants, _ = fitted(method, chosen.case(case))
+def case_curve(case, method, phase, **options):
+    """`CaseCurve` of a `Case` by a method, as far as that knows it; `options` as of `Solve`."""
+    known, variants, _ = fitted(method, case)
     started = time.perf_counter()
     curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
     seconds = time.perf_counter() - started
@@ -204,8 +204,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
         if progress:
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
-            tooth = scene.case(name, case).first_tooth or 0
-            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name] - tooth)
+            given = scene.case(name, case)
+            curves[name, case, method] = case_curve(given, method, cycles[name] - (given.first_tooth or 0))
         except ValueError as error:
             if METHODS[method].converged:
                 raise
