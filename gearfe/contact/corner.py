@@ -24,8 +24,8 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
+from .pair_contact import BEYOND, CORNER, PairContact
 from .pieces import AT_END, cut
-from .plane import BEYOND, CORNER, PairContact
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 

@@ -19,7 +19,7 @@ from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
 from .corner import pressed
 from .kinks import REACH, kink_rows
-from .plane import PairContact
+from .pair_contact import PairContact
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
 PLACES = 9  # of the table on each side of a kink, within what a contact is wide

@@ -16,7 +16,7 @@ SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
 
 
 def near_kink(contact, line_load):
-    """For each phase and pair of a `gearfe.contact.plane.PairContact`: whether a kink lies within its contact."""
+    """For each phase and pair of a `gearfe.contact.pair_contact.PairContact`: whether a kink lies within its contact."""
     found = contact.found
     out = np.zeros(found.gap.shape, dtype=bool)
     if contact.flanks is None:

@@ -72,7 +72,7 @@ class PhaseContact:
     force : float
         One of its loads, in the transverse section [N].
     step, extended
-        As in `gearfe.contact.solid.pair_stiffness3d`.
+        As in `gearfe.contact.wide_contact.pair_stiffness3d`.
     longer : int
         Of `gearfe.contact.cells.cells_of`.
     cache

@@ -113,7 +113,7 @@ def _knots(tops, ends):
 
 
 def corner_rows(contact, wanted):
-    """`Row` of each `Wanted` of a `gearfe.contact.plane.PairContact`."""
+    """`Row` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
     out = [None] * len(wanted)
     for host in (0, 1):
         own = [k for k, one in enumerate(wanted) if _host(one) == host]
@@ -142,7 +142,7 @@ def _on_side(contact, wanted, host):
 
 
 def hat_rows(contact, at, knots, kernels, host, tips):
-    """Rows of hats of a `gearfe.contact.plane.PairContact` on the side of one gear.
+    """Rows of hats of a `gearfe.contact.pair_contact.PairContact` on the side of one gear.
 
     Parameters
     ----------

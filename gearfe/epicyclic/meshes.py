@@ -1,7 +1,7 @@
 """What the contact of a pair says of one mesh of a set at one phase: contacts, their gaps, how they yield among themselves.
 
-All of it is the pair's (`gearfe.contact.plane.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at corners and
-kinks, exact gaps, cracks.
+All of it is the pair's (`gearfe.contact.pair_contact.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at
+corners and kinks, exact gaps, cracks.
 """
 
 import math
@@ -14,7 +14,7 @@ from scipy.linalg import block_diag
 from geometry.pair.contacts import near_pitches
 
 from ..contact.kinks import kink_rows, near_kink
-from ..contact.plane import KINK, PairContact, _closing
+from ..contact.pair_contact import KINK, PairContact, _closing
 from ..contact.rows import Wanted
 from ..contact.sliding import bounded
 from ..energy.ritz.plane import flexibility

@@ -16,7 +16,7 @@ from .look import blank
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..contact.solid import Contact3D
+    from ..contact.wide_contact import Contact3D
 
 PLACES = 400  # along the width, of the load of a whole cycle
 
@@ -36,7 +36,7 @@ def plot_contact(
     Parameters
     ----------
     pair : GearPair
-    contact : gearfe.contact.solid.Contact3D
+    contact : gearfe.contact.wide_contact.Contact3D
         As `gearfe.contact_pattern` gives it.
     phase : int, optional
         Which of its phases; None: all of them together, the contact pattern.

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
 WAYS = {  # who makes curves of a kind of method
-    "section": "gearfe.stiffness.plane:section_curves",
-    "sum": "gearfe.stiffness.plane:sum_curves",
-    "solid": "gearfe.stiffness.solid:solid_curves",
+    "section": "gearfe.stiffness.section_curves:section_curves",
+    "sum": "gearfe.stiffness.section_curves:sum_curves",
+    "solid": "gearfe.stiffness.wide_curves:solid_curves",
 }
 
 

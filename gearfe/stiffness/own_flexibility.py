@@ -143,7 +143,7 @@ def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
 
 @dataclass(frozen=True, slots=True)
 class OwnGear:
-    """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.plane.PairContact` reads of a gear."""
+    """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.pair_contact.PairContact` reads of a gear."""
 
     function: Callable
     gear: Gear

@@ -37,8 +37,8 @@ class Solve:
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
         same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
-        (`gearfe.contact.solid`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says why.
-        To compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
+        (`gearfe.contact.wide_contact`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says
+        why. To compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
         sections, the independent reference (`gearfe.elements.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.elements.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.closed.coupled`). All with line
@@ -73,7 +73,7 @@ class Solve:
         ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
-        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.solid_curves`).
+        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.

@@ -1,7 +1,7 @@
 """A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
 
-The load is that of `gearfe.contact.solid` along the true contact lines, spread over a narrow strip to either side. The sector of
-the gear is held at the bore (or the outside of a ring) and where it was cut off.
+The load is that of `gearfe.contact.wide_contact` along the true contact lines, spread over a narrow strip to either side. The
+sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
 """
 
 import math
@@ -13,7 +13,7 @@ from geometry.mesh.holes import Holed, holed_sector, skin
 from geometry.pair.pit_lines import in_both_halves
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
-from ..contact.solid import Contact3D, pair_stiffness3d
+from ..contact.wide_contact import Contact3D, pair_stiffness3d
 from ..elements.hexahedron import assemble
 from ..elements.solver import factor, plan
 from ..elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order, tet_stiffness

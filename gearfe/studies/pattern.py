@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case
-from ..contact.solid import Contact3D
+from ..contact.wide_contact import Contact3D
 from ..pictures.contact_plot import plot_contact
 from ..stiffness.pattern import contact_pattern
 from .losses import damage_phases

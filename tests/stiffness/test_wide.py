@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.hertz import contact_modulus, peak_pressure
-from gearfe.stiffness import solid as wide
+from gearfe.stiffness import wide_curves as wide
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 FORCE = 1500.0

@@ -173,7 +173,8 @@ def isolated(gear, material, formula, *, state="plane strain"):
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
     """Flexibility of a healthy external gear in closed form, to be used where `gearfe.elements.fe.flexibility` is.
 
-    It has no tip hats, so `gearfe.contact.plane.PairContact` takes it with ``extended=False`` only. The arguments are as there.
+    It has no tip hats, so `gearfe.contact.pair_contact.PairContact` takes it with
+    ``extended=False`` only. The arguments are as there.
 
     Raises
     ------

@@ -10,7 +10,7 @@ import numpy as np
 from geometry.pair.contacts import near_pitches
 
 from ..case import SIDES
-from ..contact.plane import PairContact
+from ..contact.pair_contact import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from ..steps import part, steps
 from .curve import StiffnessCurve
@@ -46,7 +46,7 @@ def section_curves(row, case, how, phase):
 
 
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
-    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
+    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and what `meta` says of it.
 
     At phases ``(n,)``; hats at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and ``order`` of
     an estimate, instead of those of `how`.
@@ -86,7 +86,7 @@ def curve(case, phase, force, solve, meta):
     """`StiffnessCurve` under a force [N] along the line of action; warns if no damaged tooth is in contact.
 
     To SI, in one place: widths and millimetres become newtons and metres here. `solve` is from the line load [N/mm] to
-    `gearfe.contact.plane.Solved` at the phases ``(n,)``, `meta` without the force.
+    `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``, `meta` without the force.
     """
     started = time.perf_counter()
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

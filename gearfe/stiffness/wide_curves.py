@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..contact.bodies import Bodies, energy_bodies
-from ..contact.solid import pair_stiffness3d
+from ..contact.wide_contact import pair_stiffness3d
 from ..elements.section_error import FINER, finer_section
 from ..steps import part, steps
 from .cache import solved_solid, unsolved
