@@ -223,8 +223,8 @@ def _face_columns(mesh):
         normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
         columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
     at = np.arange(len(columns))
-    left, right = (np.array([one[side] for one in columns]) for side in (0, 1))
-    normal = np.array([one[2] for one in columns]).T
+    left, right = (np.array([column[side] for column in columns]) for side in (0, 1))
+    normal = np.array([column[2] for column in columns]).T
     rows = [2 * nodes + d for nodes in (left, right) for d in (0, 1)]
     forces = np.concatenate([*normal, *-normal])
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()

@@ -174,7 +174,7 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([found.roll_1[i, k], found.roll_2[i, k], *contact.turns[:, i, k]])
         else:
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
-    values = np.hstack([np.reshape(one, (4, -1)) for one in places])
+    values = np.hstack([np.reshape(place, (4, -1)) for place in places])
     near = built["gap"] - least <= reach
     seams = [flexible.seam for flexible in contact.flexibility if flexible.seam]
     return Contacts(

@@ -67,7 +67,7 @@ def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
     Besides those of the laws: `kind`, the row of `LAWS`; ``damping, beta, backlash, film``; and `least`, 0 where flanks push and
     never pull, otherwise ``-inf``.
     """
-    names = dict.fromkeys(one.name for law in LAWS for one in fields(law))
+    names = dict.fromkeys(field.name for law in LAWS for field in fields(law))
     out = {name: np.array([float(getattr(mesh.contact, name, 0.0)) for mesh in meshes]) for name in names}
     out |= {name: np.array([float(getattr(mesh, name)) for mesh in meshes]) for name in ("damping", "beta", "backlash")}
     return out | {

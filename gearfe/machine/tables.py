@@ -214,14 +214,14 @@ class Machine:
     def __repr__(self):
         """One line: how many of everything."""
         meshes = ", ".join(one.name for one in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
-        speeds = ", ".join(f"{one.mesh:.4g} Hz" for one in self.stages)
+        speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (
             f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
             f"{len(self.loads)} loads{f', mesh frequency {speeds}' if speeds else ''}>"
         )
 
     def _repr_html_(self):
-        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(one.name for one in self.meshes)}
+        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(mesh.name for mesh in self.meshes)}
         notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
         return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 

@@ -58,7 +58,7 @@ def flatten(machine, times):
     changes = [(i, z, first, made, *add(made)) for i, m in enumerate(meshes) for z, first, made in m.changes]
     errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
-    knots = [_knots(one, times) for one in machine.loads]
+    knots = [_knots(load, times) for load in machine.loads]
     laws = [m.secants[0] if m.secants else None for m in meshes]
     laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     whole = np.int64
@@ -88,15 +88,15 @@ def flatten(machine, times):
 def _laid_out(laws):
     """`Flat.secant` and `Flat.shape` of laws; one that several meshes share is laid out once."""
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
-    for one in laws:
-        if one is None:
+    for law in laws:
+        if law is None:
             shape.append((0, 0, 0, 0))
             continue
-        if id(one.k) not in places:
-            places[id(one.k)] = end
-            parts.append(one.k.T.ravel())
-            end += one.k.size
-        shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
+        if id(law.k) not in places:
+            places[id(law.k)] = end
+            parts.append(law.k.T.ravel())
+            end += law.k.size
+        shape.append((places[id(law.k)], *law.k.shape, 1 / law.deepest))
     return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)
 
 

@@ -31,7 +31,7 @@ def _stamp():
     """Digest of all files whose functions are compiled together."""
     home = Path(__file__).parent
     files = *home.glob("loop*.py"), home / "../machine/contact_law.py", *home.glob("../machine/laws/*.py")
-    return sha256(b"".join(one.read_bytes() for one in sorted(files))).hexdigest()
+    return sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()
 
 
 class _Announcer(event.Listener):

@@ -65,7 +65,7 @@ class Plan:
 
 def is_affine(machine):
     """Whether all mesh forces are ``k(t) (x - e) + (damping + beta k(t)) (x - e)'`` at any time, and the loads never bend."""
-    smooth = all(one.breaks.size < 2 for one in machine.loads) and not any(m.friction for m in machine.meshes)
+    smooth = all(load.breaks.size < 2 for load in machine.loads) and not any(m.friction for m in machine.meshes)
     return closed(machine.law) and smooth and not machine.curved
 
 
@@ -95,7 +95,7 @@ def plan(machine, h, x=None, adapt=False):
     P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     opens = bool((law["backlash"] > 0).any())
     local = adapt and opens and is_bent(machine)
-    count = 1 + (DEEPER if local else LEVELS if opens or any(one.breaks.size > 1 for one in machine.loads) else 0)
+    count = 1 + (DEEPER if local else LEVELS if opens or any(load.breaks.size > 1 for load in machine.loads) else 0)
     levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
     told = [_told(P, F[:, 2 * B.shape[1] :], k, c) for *_, F in levels]
     allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf

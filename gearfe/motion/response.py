@@ -205,7 +205,7 @@ def acceleration(machine, flat, t, q, v, side=None, meshes=None):
     if rub:
         out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)
     if machine.loads:
-        out = out + excitation.loads(flat, t) @ np.array([one.row for one in machine.loads])
+        out = out + excitation.loads(flat, t) @ np.array([load.row for load in machine.loads])
     return out / machine.mass
 
 

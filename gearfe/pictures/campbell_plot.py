@@ -35,7 +35,7 @@ def plot_campbell(
         axes.plot(found.speed, value * found.speed, color="gray", linewidth=0.8, linestyle="--")
         axes.annotate(name, (found.speed[-1], min(value * found.speed[-1], end)), fontsize=8, xytext=(3, 0),
                       textcoords="offset points", va="center", annotation_clip=False)  # fmt: skip
-    met = [one for one in found.crossings if one.frequency <= end]
+    met = [crossing for crossing in found.crossings if crossing.frequency <= end]
     axes.plot([one.speed for one in met], [one.frequency for one in met], "o", color=COLOURS[1], markersize=4)
     axes.set(xlabel="speed over that of the machine", ylabel="frequency [Hz]")
     axes.set(ylim=(0, end), xlim=(found.speed[0], found.speed[-1]))

@@ -29,11 +29,11 @@ def draw_set(
     """Picture of `gearfe.epicyclic.shape.plot_planetary_set`: `shapes` as of there, places `supports` ``(2, n)`` [mm]."""
     from matplotlib.tri import Triangulation
 
-    radius = max(float(np.abs(one.place).max()) for one in shapes)
-    largest = max(float(np.hypot(*one.moved).max()) for one in shapes)
+    radius = max(float(np.abs(shape.place).max()) for shape in shapes)
+    largest = max(float(np.hypot(*shape.moved).max()) for shape in shapes)
     times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
     figure, axes = blank((8, 8))
-    top = max(float(np.percentile(one.stress, BRIGHT)) for one in shapes)
+    top = max(float(np.percentile(shape.stress, BRIGHT)) for shape in shapes)
     for one in shapes:
         x, y = one.place + times * one.moved
         corners = np.concatenate([one.triangles[[0, 3, 5]], one.triangles[[3, 1, 4]], one.triangles[[5, 4, 2]],

@@ -177,7 +177,7 @@ def _table(markdown):
 
 def _methods(found):
     """Methods that were used, and what each is."""
-    used = dict.fromkeys(name for one in found.comparisons.values() for name in one.curves)
+    used = dict.fromkeys(name for comparison in found.comparisons.values() for name in comparison.curves)
     return {name: METHODS[name] for name in used if name in METHODS}
 
 

@@ -48,4 +48,4 @@ def _away(file, where, values, tables):
 
 def of_stiffness(assumptions):
     """Those of a scene's assumptions on which the mesh stiffness depends, or that do not say what depends on them."""
-    return [one for one in assumptions if not one["depends"] or OF_STIFFNESS.search(one["depends"])]
+    return [assumption for assumption in assumptions if not assumption["depends"] or OF_STIFFNESS.search(assumption["depends"])]

@@ -144,10 +144,10 @@ def _row(file, where, table, reference, pairs):
 def printed_stiffness(scene, pair, case=None):
     """Lines of text with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy)."""
     out, damaged = [], scene.pair(pair).damage
-    for one in scene.references:
-        for row in one.rows if one.unit == "N/m" else ():
+    for reference in scene.references:
+        for row in reference.rows if reference.unit == "N/m" else ():
             if row.pair == pair and (row.case == case if case else row.case not in damaged):
                 value, corrected = (None if k is None else f"{k / NEWTON_PER_UM:.4g} N/um" for k in (row.value, row.corrected))
                 more = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
-                out.append(f"printed, {one.quantity}: {value} ({one.source}){more}")
+                out.append(f"printed, {reference.quantity}: {value} ({reference.source}){more}")
     return out

@@ -117,7 +117,7 @@ def counts(rows):
         parts.append(f"{_count(rest, 'input')} and arithmetic on printed numbers: {_words(rest)}")
     if len(rows) > len(printed):
         parts.append(f"{_count(rows[len(printed) :], 'value')} without a printed number")
-    return "; apart from them ".join(parts[:2]) + "".join(f"; {one}" for one in parts[2:])
+    return "; apart from them ".join(parts[:2]) + "".join(f"; {part}" for part in parts[2:])
 
 
 def _count(rows, noun):

@@ -90,7 +90,7 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
 
 def _free(found, name):
     """Name, with a number behind it if it is taken."""
-    taken = [one for one in found.vectors if one == name or one.startswith(f"{name} (")]
+    taken = [vector for vector in found.vectors if vector == name or vector.startswith(f"{name} (")]
     return f"{name} ({len(taken) + 1})" if taken else name
 
 

@@ -127,7 +127,7 @@ def read_signals(
     pulse = None if tachometer is None else _choose(path, found, tachometer)
     names = [one for one in found.channels() if one != pulse]
     if columns is not None:
-        names = [_choose(path, found, one) for one in columns]
+        names = [_choose(path, found, column) for column in columns]
     if not names:
         _choose(path, found, None)
     given = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
@@ -267,7 +267,7 @@ def _rate(path, found, name, given, time):
     if time is None:
         if rate is None:
             others = found.channels() if len(found.channels()) > 1 else []
-            rising = [one for one in others if np.all(np.diff(found.vectors[one]) > 0)]
+            rising = [other for other in others if np.all(np.diff(found.vectors[other]) > 0)]
             clock = f"; if {rising[0]!r}, which rises all along, is the time, name it so by header=" if rising else ""
             told = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
             raise ValueError(f"{path} states no sampling rate: {told}{clock}")

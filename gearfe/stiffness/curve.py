@@ -203,19 +203,19 @@ class StiffnessCurve:
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
     """One curve of several that follow each other, of the same gears under the same load; columns of pairs by their order."""
-    order = np.unique(np.concatenate([one.order for one in curves]))
+    order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> NDArray[np.float64]:
-        out = [np.zeros((one.phase.size, order.size)) for one in curves]
+        out = [np.zeros((curve.phase.size, order.size)) for curve in curves]
         for part, one in zip(out, curves, strict=True):
             part[:, np.searchsorted(order, one.order)] = getattr(one, name)
         return np.concatenate(out)
 
     def row(name: str) -> NDArray[np.float64] | None:
-        parts = [getattr(one, name) for one in curves]
+        parts = [getattr(curve, name) for curve in curves]
         return None if parts[0] is None else np.concatenate(parts)
 
-    whole = {name: np.concatenate([getattr(one, name) for one in curves]) for name in ("phase", "k", "k_tangent", "lte")}
+    whole = {name: np.concatenate([getattr(curve, name) for curve in curves]) for name in ("phase", "k", "k_tangent", "lte")}
     return StiffnessCurve(
         **whole,
         order=order,
@@ -230,5 +230,5 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
     """What is said of the first, and of the phases of all of them."""
-    marked = [name for name in MARKS if any(name in one.meta for one in curves)]
-    return curves[0].meta | {name: [at for one in curves for at in one.meta.get(name, ())] for name in marked}
+    marked = [name for name in MARKS if any(name in curve.meta for curve in curves)]
+    return curves[0].meta | {name: [at for curve in curves for at in curve.meta.get(name, ())] for name in marked}

@@ -110,7 +110,7 @@ class OwnFlexibility:
     @property
     def extended(self) -> bool:
         """Whether both gears know what to do at a corner."""
-        return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "own", None)) for one in self.gears)
+        return all(METHODS[gear].extended if isinstance(gear, str) else bool(getattr(gear, "own", None)) for gear in self.gears)
 
     @property
     def gears(self) -> tuple[Any, Any]:
@@ -119,7 +119,7 @@ class OwnFlexibility:
 
     def told(self) -> dict[str, Any]:
         """What `meta` says of it."""
-        names = [one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__) for one in self.gears]
+        names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 
 

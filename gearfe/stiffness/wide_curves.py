@@ -126,7 +126,7 @@ def _foretold(how, bodies, *, neighbours):
         for given, held in bodies:
             plans |= unsolved(*given, cache=how.cache, neighbours=neighbours, **level, **held)
     if how.tell and len(plans) > 1:
-        seconds = float(f"{sum(one.seconds for one in plans.values()):.2g}")
+        seconds = float(f"{sum(plan.seconds for plan in plans.values()):.2g}")
         how.tell(f"{len(plans)} solves, about {seconds:g} s in all")
 
 

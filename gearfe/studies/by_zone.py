@@ -97,7 +97,7 @@ class Comparison:
     def losses(self) -> dict[str, dict[str, float]]:
         """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy."""
         two = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
-        return {name: loss(*(within(one, self.cycle) for one in curves)) for name, curves in two.items()}
+        return {name: loss(*(within(curve, self.cycle) for curve in curves)) for name, curves in two.items()}
 
     @property
     def headline(self) -> str:

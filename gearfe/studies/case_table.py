@@ -131,7 +131,7 @@ def printed_beside(scene, published, reference, drops):
 
 def printed_cases(scene):
     """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears; none if it does not."""
-    rows = [row for one in scene.references if one.id == "stiffness_fe" for row in one.rows]
+    rows = [row for reference in scene.references if reference.id == "stiffness_fe" for row in reference.rows]
     return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
 
 
@@ -143,7 +143,7 @@ def printed_text(scene, table):
     }
     drops = {(case, pair): 100 * table.drops(pair, case, table.reference)[0] for pair, case in table.cases() if case}
     ours = printed_beside(scene, means["published"], means[table.reference], drops)
-    asked = [one for one in scene.references if one.id in ours]
+    asked = [reference for reference in scene.references if reference.id in ours]
     return text(asked, [row for one in asked for row in judge(one, ours[one.id])]) if asked else ""
 
 

@@ -54,7 +54,7 @@ def pattern_of(case: Case, phases: int = 24) -> Pattern:
     pressures = [np.where(np.isnan(cells.pressure), -math.inf, cells.pressure) for cells in contact.cells]
     most = int(np.argmax([own.max() for own in pressures]))
     cells, at = contact.cells[most], int(np.argmax(pressures[most]))
-    corners = sum(bool(((one.corner > 0) & (one.load > 0)).any()) for one in contact.cells)
+    corners = sum(bool(((cell.corner > 0) & (cell.load > 0)).any()) for cell in contact.cells)
     load = face_load(contact)[1]
     return Pattern(
         contact, float(pressures[most][at]), float(contact.phase[most]), math.hypot(case.pair.gear_1.r_b, cells.roll_1[at]),

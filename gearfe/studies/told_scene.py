@@ -123,7 +123,7 @@ def _start(flank: Flank, end: str, gear: Gear) -> float:
 
 def _held(held: Support | Shaft) -> str:
     if isinstance(held, Shaft):
-        parts = ", ".join(f"{one.length:g} mm of {one.diameter:g} mm" for one in held.segments)
+        parts = ", ".join(f"{segment.length:g} mm of {segment.diameter:g} mm" for segment in held.segments)
         places = " and ".join(f"{at:g}" for at in held.bearings)
         stiff = " and ".join("rigid" if math.isinf(one) else f"{1e-3 * one:g} N/um" for one in held.bearing_stiffness)
         whole = ", one piece" if held.integral else ""

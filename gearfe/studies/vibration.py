@@ -55,7 +55,7 @@ class Analysis:
     @property
     def too_short(self):
         """What to do if the record is too short to resolve the lines of the fault; empty if it is not."""
-        return too_short(min(one.duration for one in self.signals.values()), self.resolving)
+        return too_short(min(signal.duration for signal in self.signals.values()), self.resolving)
 
     @property
     def unit(self):
@@ -176,7 +176,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
     found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
     damage = [] if scene.machine.get("contact") == "impact" else found
-    along = not all(one.through for one in damage)
+    along = not all(hurt.through for hurt in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):

@@ -122,9 +122,9 @@ def _levels(labels):
     units = labels.groupby("sensor")["unit"].first()
 
     def cells(part):
-        return [f"{part.loc[part['sensor'] == one, 'rms'].median():.3g}" for one in sensors]
+        return [f"{part.loc[part['sensor'] == sensor, 'rms'].median():.3g}" for sensor in sensors]
 
-    table = _by_class(labels, [f"{one} [{units[one]}]" for one in sensors], cells)
+    table = _by_class(labels, [f"{sensor} [{units[sensor]}]" for sensor in sensors], cells)
     silent = [one for one in sensors if any(level[HEALTHY, 0.0, one] < SILENT * level[(*two, one)] for two in classes)]
     out = f"Median rms before noise, without the mean.\n\n{table}"
     if silent:

@@ -82,7 +82,7 @@ def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]
     rate = plan.window["rate_Hz"]
     finer = max(1, math.ceil(1 / (default_step(machine) * rate)))
     count = samples_of(plan) * plan.window["count"] + 2 * EDGE
-    start = condition.start * max(one.teeth[0] / abs(one.frequency) for one in machine.meshes)  # of the slowest turn
+    start = condition.start * max(mesh.teeth[0] / abs(mesh.frequency) for mesh in machine.meshes)  # of the slowest turn
     return machine, recorded(machine, count / rate, rate * finer, start=start), finer
 
 
