@@ -56,9 +56,11 @@ from .machine.tables import Machine as Machine
 from .machine.tables import Spring as Spring
 from .machine.tables import Stage as Stage
 from .machine.tables import pulses as pulses
+from .many.batches import batch as batch
 from .many.datasets.make import dataset as dataset
 from .many.datasets.opened import Dataset as Dataset
 from .many.datasets.opened import open_dataset as open_dataset
+from .many.errormap import error_map as error_map
 from .many.surrogates.fit import fit_surrogate as fit_surrogate
 from .many.surrogates.surrogate import Surrogate as Surrogate
 from .many.sweeps.effects import curve_bands as curve_bands
@@ -136,9 +138,7 @@ from .strength.root_stress import RootStress as RootStress
 from .strength.root_stress import root_stress_along_width as root_stress_along_width
 from .stress.mesh_picture import render_mesh as render_mesh
 from .stress.render import render_stress as render_stress
-from .studies.batches import batch as batch
 from .studies.by_zone import compare as compare
-from .studies.errormap import error_map as error_map
 from .studies.model_file import read_model as read_model
 from .studies.own_model import PairModel as PairModel
 from .studies.pattern import face_load as face_load

@@ -44,7 +44,7 @@ class Case(Mapping[str, Any]):
     torque : float or sequence of float, optional
         Instead of `force`: torque on the pinion [N m], ``force = torque / r_b`` with the pinion's base radius.
     damage : dict, optional
-        Cracks and pits by gear: ``{"pinion": [Crack(...), Pit(...)], "wheel": [...]}``.
+        Cracks, pits and spalls by gear: ``{"pinion": [Crack(...), Spall(...)], "wheel": [...]}``.
     flanks : dict, optional
         Modifications and deviations of the loaded flanks: ``{"pinion": Flank(...), "wheel": Flank(...)}``.
     misalignment : Misalignment, optional

@@ -1,6 +1,7 @@
 """Checks of what functions are given, before any work: numbers, truth values, lengths, resolution."""
 
 import math
+from collections.abc import Collection
 from numbers import Integral
 from typing import Any
 
@@ -33,6 +34,12 @@ def whole(name: str, value: Any, least: int) -> int:
         told = f": give {name} = {int(value)}" if close else f" from {least} on"
         raise ValueError(f"{name} = {value!r}, but it is a whole number{told}")
     return int(value)
+
+
+def one_of(name: str, value: Any, known: Collection[str]) -> None:
+    """ValueError unless the value is one of those that are known."""
+    if value not in known:
+        raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
 
 
 def truth(name: str, value: Any) -> bool:

@@ -1,8 +1,10 @@
 """What the project's extras bring, read from its own metadata; what to say where an optional library is missing."""
 
+import contextlib
 import functools
 import importlib.metadata
 import re
+from collections.abc import Iterator
 
 COLLECTIONS = ("all", "docs", "test")  # extras that nobody installs for the sake of one library
 
@@ -50,3 +52,12 @@ def command(package: str) -> str:
 def missing(package: str, error: ImportError) -> RuntimeError:
     """Return what to raise where an optional package cannot be imported: a RuntimeError with the command for it."""
     return RuntimeError(f"this needs {package} ({error}): {command(package)}")
+
+
+@contextlib.contextmanager
+def needing(package: str) -> Iterator[None]:
+    """Around imports of an optional package: where they fail, a RuntimeError with the command that installs it."""
+    try:
+        yield
+    except ImportError as error:
+        raise missing(package, error) from error

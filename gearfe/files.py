@@ -37,37 +37,20 @@ CONTROLS = re.compile("[\x00-\x08\x0e-\x19\x1b-\x1f]")  # what no table in text 
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """Numbers to be written.
+    """Numbers to be written."""
 
-    Attributes
-    ----------
-    title : str
-        First line of a text table, ``gearfe stiffness curve, version 1``.
-    columns : dict of str to ndarray, shape (n,)
-        Of a text table, by ``name [unit]``.
-    arrays : dict of str to ndarray
-        The same for all other formats, by name.
-    meta : dict
-        All that is needed to repeat it; JSON.
-    units : dict of str to str
-        Of the arrays: a table in JSON files, JSON text ``units_json`` in the others.
-    """
-
-    title: str
-    columns: dict
-    arrays: dict
-    meta: dict
-    units: dict = field(default_factory=dict)
+    title: str  # first line of a text table, "gearfe stiffness curve, version 1"
+    columns: dict  # of a text table, arrays ``(n,)`` by "name [unit]"
+    arrays: dict  # the same for all other formats, by name
+    meta: dict  # all that is needed to repeat it; JSON
+    units: dict = field(default_factory=dict)  # of the arrays: a table in JSON files, JSON text ``units_json`` in the others
 
 
 @contextlib.contextmanager
 def written(path):
     """Path of a temporary file beside `path` that replaces it when the block ends without an error.
 
-    Raises
-    ------
-    ValueError
-        If the folder does not exist or cannot be written.
+    ValueError if the folder does not exist or cannot be written.
     """
     name = _beside(path)
     try:
@@ -107,17 +90,8 @@ def check_output(path, kind):
     """Raise ValueError if `path` cannot be written later: to be called before work begins.
 
     A file is made in the folder and taken away again, so that nothing is left to chance; what stands at `path` is not touched.
-
-    Parameters
-    ----------
-    path : str or path
-    kind : str
-        What will be written, one that `FORMATS` names: ``curve``, ``response``, ``picture``, ``stress``, ``page``, ``deck``.
-
-    Raises
-    ------
-    ValueError
-        If the name is empty, a folder, or has a suffix that holds no such content; if its folder is not there or not writable.
+    `kind` is what will be written, as `FORMATS` names it (``curve``, ``picture``...). ValueError if the name is empty, a folder,
+    or has a suffix that holds no such content; if its folder is not there or not writable.
     """
     if isinstance(path, (str, os.PathLike)) and not str(path):
         raise ValueError(f"an empty file name for a {kind}: give one that ends in {', '.join(suffixes(kind))}")
@@ -138,10 +112,7 @@ def suffixes(kind, *, reading=False):
 def suffix_of(path, kind, *, reading=False):
     """Suffix of `path` in small letters.
 
-    Raises
-    ------
-    ValueError
-        If no such file holds what `kind` says; the message lists those that do.
+    ValueError if no such file holds what `kind` says; the message lists those that do.
     """
     known = suffixes(kind, reading=reading)
     if not isinstance(path, (str, os.PathLike)):
@@ -177,10 +148,7 @@ def save_figure(figure, path, dpi):
 def read(path, kind):
     """What stands in a file: its lines if it is text, else its arrays by name.
 
-    Raises
-    ------
-    ValueError
-        If its suffix holds no such content, or it cannot be read or is no file of its format.
+    ValueError if its suffix holds no such content, or it cannot be read or is no file of its format.
     """
     return FORMATS[suffix_of(path, kind, reading=True)].read(path)
 

@@ -76,18 +76,10 @@ def _fits(count, most):
 
 
 def variables(data: bytes) -> dict[str, Any]:
-    """Variables of a file by name, from all its bytes.
+    """Variables of a file by name, from all its bytes; ValueError if it is no such file, or damaged.
 
-    Returns
-    -------
-    dict
-        Numbers as arrays of MATLAB's class (truth as uint8), texts as arrays of str without their last axis, cells as arrays of
-        objects, structs as structured arrays of objects, `Unread` for anything else.
-
-    Raises
-    ------
-    ValueError
-        If it is no such file, or damaged.
+    Numbers are arrays of MATLAB's class (truth is uint8), texts arrays of str without their last axis, cells arrays of objects,
+    structs structured arrays of objects; anything else is `Unread`.
     """
     if 0 in data[:4]:
         return _old(data)

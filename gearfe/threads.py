@@ -16,7 +16,6 @@ from typing import Any, ParamSpec, TypeVar
 P = ParamSpec("P")
 R = TypeVar("R")
 CHOSEN = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
-LARGE = "fe3d"  # the one method whose matrices are large: more threads make it faster
 
 # Python's own locks are of single modules: of two threads that load parts of a package at the same time one may be told that
 # they wait for each other
@@ -81,11 +80,11 @@ def one_thread() -> Iterator[None]:
 
 
 def single(function: Callable[P, R]) -> Callable[P, R]:
-    """The function with `one_thread` around it, unless its ``method`` is `LARGE`."""
+    """The function with `one_thread` around it."""
 
     @functools.wraps(function)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:
-        with contextlib.nullcontext() if kwargs.get("method") == LARGE else one_thread():
+        with one_thread():
             return function(*args, **kwargs)
 
     return limited

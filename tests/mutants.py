@@ -27,8 +27,6 @@ from queue import SimpleQueue
 ROOT = Path(__file__).parents[1]
 LIST = Path(__file__).with_suffix(".toml")
 COPIED = ("gearfe", "geometry", "tests", "validation", "pyproject.toml", "README.md")
-COMPILED = ("gearfe/motion/loop.py", "gearfe/motion/loop_parts.py", "gearfe/machine/contact_law.py")  # what is kept of them on
-# the disk, in other files' names too, does not see that they changed
 LIMIT = 900.0  # seconds that tests may take
 PASSED, FAILED = 0, 1  # exit codes of pytest; any other says that the tests could not be run
 
@@ -123,8 +121,7 @@ def judged(mutant, tree):
     """Verdict on a mutant, "killed", "survives" or what hindered its tests, and the first test that fails."""
     place = tree / mutant.file
     place.write_text(mutant.text(), encoding="utf-8", newline="\n")
-    with tempfile.TemporaryDirectory() as empty:
-        code, said = run(tree, mutant.tests(), "-x", **({"NUMBA_CACHE_DIR": empty} if mutant.file in COMPILED else {}))
+    code, said = run(tree, mutant.tests(), "-x")
     shutil.copy2(ROOT / mutant.file, place)
     failed = [line.removeprefix("FAILED ").split(" - ")[0] for line in said.splitlines() if line.startswith("FAILED ")]
     if code == FAILED and failed:

@@ -31,7 +31,7 @@ ZSH += "autoload -Uz compinit bashcompinit\n(( $+functions[compdef] )) || compin
 def script(shell, verbs):
     """Completion script for `shell`, ``bash`` or ``zsh``, of argparse's parsers by verb."""
     places = (resources.files("gearfe.scenes")).iterdir()
-    scenes = sorted(one.name.removesuffix(".toml") for one in places if one.name.endswith(".toml"))
+    scenes = sorted(place.name.removesuffix(".toml") for place in places if place.name.endswith(".toml"))
     options, choices, with_scene = [], [], []
     for name, parser in verbs.items():
         found = [text for action in parser._actions for text in action.option_strings]

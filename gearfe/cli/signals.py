@@ -99,18 +99,14 @@ def _read(arguments):
 
 def _draw(one, arguments):
     """Cepstrum and spectrogram of the last case."""
-    if arguments.cepstrum:
-        from ..pictures.vibration_plots import plot_cepstrum
-        from ..signal.time_frequency import cepstrum
+    from ..pictures.vibration_plots import plot_cepstrum, plot_spectrogram
+    from ..signal.time_frequency import cepstrum, spectrogram
 
-        plot_cepstrum(cepstrum(one), arguments.cepstrum, one.name)
-        print(f"written: {arguments.cepstrum}")
-    if arguments.spectrogram:
-        from ..pictures.vibration_plots import plot_spectrogram
-        from ..signal.time_frequency import spectrogram
-
-        plot_spectrogram(spectrogram(one), arguments.spectrogram, one.name)
-        print(f"written: {arguments.spectrogram}")
+    wanted = (arguments.cepstrum, plot_cepstrum, cepstrum), (arguments.spectrogram, plot_spectrogram, spectrogram)
+    for path, draw, of in wanted:
+        if path:
+            draw(of(one), path, one.name)
+            print(f"written: {path}")
 
 
 def _draw_orders(signals, arguments):

@@ -16,12 +16,6 @@ def _check_outputs(arguments, **kinds):
         raise ValueError(f"{' and '.join(f'--{option}' for option in given)} name the same file: give each its own")
 
 
-def _print_scene(scene):
-    print(f"{scene.title}\n")
-    _print_notes(scene)
-    print()
-
-
 def _print_notes(scene):
     """All assumptions of a scene, what was changed, and what is not modelled."""
     for note in scene.assumptions:
@@ -320,4 +314,6 @@ def scenes(arguments):
         scene = load_scene(name)
         cases = {case for pair in scene.pairs.values() for case in pair.damage}
         print(f"{name}: pairs {', '.join(scene.pairs)}" + (f"; cases {', '.join(sorted(cases))}" if cases else ""))
-        _print_scene(scene)
+        print(f"{scene.title}\n")
+        _print_notes(scene)
+        print()

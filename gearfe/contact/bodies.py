@@ -69,16 +69,10 @@ def energy_bodies(order=3, axial=None, refine=1.0, cache=True):
 
 
 def bodies_of(case, bands, flexible, ahead=None):
-    """Flexibilities of both gears in each band: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
+    """Flexibilities of both gears in each band, and where contact begins: ``[[(Flexibility3D, offset [mm]), ...], ...]``.
 
-    Parameters
-    ----------
-    case : Case
-        Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
-    bands : list of (float, float)
-        See `geometry.pair.lines.bands_of`.
-    flexible, ahead : callable
-        As of `Bodies`, the number of neighbours given.
+    `flexible` and `ahead` are as of `Bodies`, with the number of neighbours given; `bands` as of `geometry.pair.lines.bands_of`.
+    Gears that are one piece with their shaft get it as ``shaft``, seen from the end that touches first.
 
     Raises
     ------
@@ -111,18 +105,9 @@ def _as_seen(shaft, band):
 
 
 def between(cells, bodies):
-    """Approach ``(n, n)`` per unit normal force on each of the cells of a phase, half-space left out [mm/N].
+    """Approach ``(n, n)`` per unit normal force on each of the `Cells` of each phase, half-space left out [mm/N].
 
-    Parameters
-    ----------
-    cells : list of Cells
-        Of each phase.
-    bodies : list
-        Both gears by half, each with where contact begins on it [mm].
-
-    Returns
-    -------
-    list of ndarray
+    `bodies` are those of `bodies_of`.
     """
     out = [np.zeros((own.z.size,) * 2) for own in cells]
     order, half, depth, *rolls = (
@@ -177,10 +162,7 @@ def _add(out, body, rows, lines):
 def mirrors_of(cells, bodies):
     """End faces of both bodies: weight of the loads mirrored there [mm**2/N], ends of the cells from there along the lines [mm].
 
-    Returns
-    -------
-    list of (float, ndarray (n,), ndarray (n,))
-        Nearer ends first.
+    As ``[(float, (n,), (n,)), ...]``, nearer ends first.
     """
     faces = {}
     for side, other in ((False, False), (False, True), (True, False), (True, True)):
@@ -188,8 +170,8 @@ def mirrors_of(cells, bodies):
         for half in np.unique(cells.half).tolist():
             at, (body, offset) = cells.half == half, bodies[half][side]
             ends = [cells.depth[at] + offset + sign * cells.width[at] / 2 for sign in (-1, 1)]
-            low[at], high[at] = (np.array(ends) if not other else body.width - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
-            weight, place = body.edge, (other, offset, body.width)  # faces of equally wide gears are flush
+            low[at], high[at] = (np.array(ends) if not other else body.gear.b - np.array(ends[::-1])) / math.cos(body.gear.beta_b)
+            weight, place = body.edge, (other, offset, body.gear.b)  # faces of equally wide gears are flush
         faces[place] = (weight + faces.get(place, (0.0,))[0], low, high)
     return list(faces.values())
 

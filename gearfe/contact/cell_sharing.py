@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotrs
 
 from .joined_lines import FLOOR, JoinedLines
-from .plane import OVERLAP
+from .pair_contact import OVERLAP
 from .sharing import share
 
 MOST = 60  # steps, the second half of them with exact contact problems

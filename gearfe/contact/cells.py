@@ -72,13 +72,10 @@ class Cells:
 
 
 def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None):
-    """`Cells` of the pieces of some phases, and the number of the phase each belongs to ``(n,)``.
+    """`Cells` of the `pieces` of some phases, and the number of the phase each belongs to ``(n,)``.
 
     Parameters
     ----------
-    pair : GearPair
-    pieces : list of list of Piece
-        Of each phase.
     bands : list
         Of `geometry.pair.lines.bands_of`.
     slope : float
@@ -131,17 +128,8 @@ def carrying(cells, phase, pieces, force, bed):
     """`fine` of `cells_of` for lines on which only a few cells carry, by their gaps on a bed of springs.
 
     Lead crowning presses a few hundredths of the width together under a light load: cells that are longer than that would keep
-    the gap of their middles for ever, however light the load.
-
-    Parameters
-    ----------
-    cells, phase
-        As `cells_of` returns them.
-    pieces : list of list of Piece
-    force : float
-        That the cells of a phase carry together [N].
-    bed : float
-        Stiffness of both teeth per width [N/mm**2].
+    the gap of their middles for ever, however light the load. `cells` and `phase` are as `cells_of` gives them; the cells of
+    a phase carry the `force` together [N], on a `bed` of both teeth's stiffness per width [N/mm**2].
     """
     out = {}
     for i, own in enumerate(pieces):

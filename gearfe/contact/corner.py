@@ -24,8 +24,8 @@ from ..flexibility.hats import TIP_ZONE
 from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solid import carry
 from ..flexibility.solved import solved_gears
+from .pair_contact import BEYOND, CORNER, PairContact
 from .pieces import AT_END, cut
-from .plane import BEYOND, CORNER, PairContact
 from .rows import LEAST, RESOLVED, Wanted, finest_hat
 from .sharing import approaches, stacked
 
@@ -42,14 +42,10 @@ class CornerLaw:
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
     line_load : float
         Even load [N/mm] of the width.
     further : (float, float)
         How far before the start and after the end of the path contact is looked for [mm].
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
     """
 
     def __init__(self, pair, materials, line_load, further, *, cache=True):

@@ -34,7 +34,6 @@ def met(contact, at, roll, host):
 
     Parameters
     ----------
-    contact : gearfe.contact.plane.PairContact
     at : (ndarray of int, ndarray of int)
         Number of the phase and column of the pair of each place, shapes like that of `roll`.
     roll : ndarray
@@ -69,11 +68,8 @@ def _parts(gear, roll, arm, out):
 def leaning(contact, matrices):
     """What modified flanks change where single contacts stand: their forces lean away from the involutes' normals.
 
-    Parameters
-    ----------
-    contact : gearfe.contact.plane.PairContact
-    matrices : sequence of two ndarray, shape (phases, pairs, pairs)
-        Smooth flexibility of pinion and wheel between contacts along the involutes' normals [mm per N/mm].
+    `matrices` are the smooth flexibilities ``(phases, pairs, pairs)`` of pinion and wheel between contacts along the involutes'
+    normals [mm per N/mm].
 
     Returns
     -------

@@ -3,18 +3,11 @@
 import numpy as np
 
 
-def hubs_of(supports):
-    """`gearfe.supports.hub.Hub` of pinion and wheel, None where rigid; None if both are."""
-    if not any(supports or ()):
-        return None
-    return [held and held.hub() for held in supports]
-
-
 def given_way(cells, pair, hubs, bands, beta_b):
     """Approach ``(n, n)`` of `Cells` per unit normal force on each, by the hubs alone [mm/N].
 
-    The force on a cell has its axial part towards the depth: contact lines run back there. `bands` are those of
-    `geometry.pair.lines.bands_of`.
+    `hubs` are the `gearfe.supports.hub.Hub` of pinion and wheel, None where rigid. The force on a cell has its axial part towards
+    the depth: contact lines run back there. `bands` are those of `geometry.pair.lines.bands_of`.
     """
     hand = np.sign([last - first for first, last in bands])[cells.half]
     z = cells.z - min(pair.gear_1.b, pair.gear_2.b) / 2

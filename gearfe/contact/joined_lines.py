@@ -77,22 +77,22 @@ class JoinedLines:
 
     def __init__(self, systems, kernel, modulus):
         self.systems, self.kernel, self.modulus = systems, kernel, modulus
-        count = np.array([one.gap.size for one in systems])
+        count = np.array([system.gap.size for system in systems])
         self.slices = [slice(int(end) - int(n), int(end)) for n, end in zip(count, np.cumsum(count), strict=True)]
         self.problem = np.repeat(np.arange(count.size), count)
-        self.start, self.stop = (np.concatenate([one.ends[side] for one in systems]) for side in (0, 1))
-        self.width, self.radius = self.stop - self.start, np.concatenate([one.radius for one in systems])
-        lines = np.concatenate([one.line for one in systems])
+        self.start, self.stop = (np.concatenate([system.ends[side] for system in systems]) for side in (0, 1))
+        self.width, self.radius = self.stop - self.start, np.concatenate([system.radius for system in systems])
+        lines = np.concatenate([system.line for system in systems])
         self.line = np.cumsum(np.append(True, (np.diff(lines) != 0) | (np.diff(self.problem) > 0))) - 1
         self.first = np.flatnonzero(np.append(True, np.diff(self.line) > 0))  # cell of each line
-        self.floor = np.concatenate([np.zeros(one.gap.size) if one.floor is None else one.floor for one in systems])
+        self.floor = np.concatenate([np.zeros(system.gap.size) if system.floor is None else system.floor for system in systems])
         lowest = np.minimum.reduceat(self.floor, np.cumsum(count) - count)
         flat = (self.floor == lowest[self.problem]).astype(float)
         self.length = np.bincount(self.problem, self.width * flat)
         self.mean_radius = np.bincount(self.problem, self.radius * flat) / np.bincount(self.problem, flat)
         self.widest = self._pieces() / 2  # a piece shorter than it is wide acts as one as wide as it is long
         self._arrange()
-        mirrors = zip(*(one.mirrors for one in systems), strict=True)
+        mirrors = zip(*(system.mirrors for system in systems), strict=True)
         self.mirrors = [(own[0][0], *(np.concatenate([one[k] for one in own]) for k in (1, 2))) for own in mirrors]
         self.near, self.images = None, []
 
@@ -105,7 +105,7 @@ class JoinedLines:
 
     def _arrange(self):
         """Of each problem its whole flexibility (a view of one array), gaps, weights and blocks, faces of cracks included."""
-        sizes = [one.gap.size + (0 if one.faces is None else one.faces[2].size) for one in self.systems]
+        sizes = [system.gap.size + (0 if system.faces is None else system.faces[2].size) for system in self.systems]
         base = np.concatenate([[0], np.cumsum(np.square(sizes))])
         self.flat, self.base, self.sizes = np.zeros(base[-1]), base[:-1], np.array(sizes)
         self.totals = [self.flat[at : at + n * n].reshape(n, n) for at, n in zip(base[:-1].tolist(), sizes, strict=True)]

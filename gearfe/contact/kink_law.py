@@ -19,7 +19,7 @@ from ..flexibility.hertz import contact_modulus, half_plane, half_width
 from ..flexibility.solved import solved_gears
 from .corner import pressed
 from .kinks import REACH, kink_rows
-from .plane import PairContact
+from .pair_contact import PairContact
 
 LOADS = 2.0 ** np.arange(-5, 4)  # line loads of the table, of the even one
 PLACES = 9  # of the table on each side of a kink, within what a contact is wide
@@ -35,14 +35,10 @@ class KinkLaw:
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
     line_load : float
         Even load [N/mm] of the width.
     flanks : (FlankForm, FlankForm)
         What they have along the width is left out: it shifts the contact, but not its form.
-    cache : bool or SolvedGears
-        See `gearfe.flexibility.solved.solved_gears`.
     """
 
     def __init__(self, pair, materials, line_load, flanks, *, cache=True):

@@ -16,7 +16,7 @@ SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
 
 
 def near_kink(contact, line_load):
-    """For each phase and pair of a `gearfe.contact.plane.PairContact`: whether a kink lies within its contact."""
+    """For each phase and pair of a `gearfe.contact.pair_contact.PairContact`: whether a kink lies within its contact."""
     found = contact.found
     out = np.zeros(found.gap.shape, dtype=bool)
     if contact.flanks is None:
@@ -29,23 +29,11 @@ def near_kink(contact, line_load):
 
 
 def kink_rows(contact, where, line_load):
-    """Unknowns of pairs as rows of hats around their touching points, as of `PairContact`.
+    """`Row` of pairs of a `PairContact` around their touching points, by phase and column.
 
     A row is as long as Hertz's contact under the whole load, with margins. It stands on the flank that has the kink, one top on
-    the kink itself, so that the other flank, which is smooth there, gives the normals. Pressure ends at the tip.
-
-    Parameters
-    ----------
-    contact : PairContact
-    where : ndarray, shape (n, 2)
-        Number of the phase and column of the pair.
-    line_load : float
-        [N/mm].
-
-    Returns
-    -------
-    dict of (int, int) to gearfe.contact.rows.Row
-        By phase and column.
+    the kink itself, so that the other flank, which is smooth there, gives the normals. Pressure ends at the tip. `where`
+    ``(n, 2)`` has the number of the phase and the column of each pair.
     """
     if not len(where):
         return {}

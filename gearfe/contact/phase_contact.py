@@ -16,7 +16,7 @@ from .bodies import between, faces_of, mirrors_of
 from .cell_sharing import SharedLines
 from .cells import SETTLED, TIMES, Cells, carrying, cells_of
 from .corner import CornerLaw, in_fillet, plain_radius
-from .hubs import given_way, hubs_of
+from .hubs import given_way
 from .joined_lines import System
 from .kink_law import KinkLaw
 from .pieces import beyond, gaps, pieces_of
@@ -72,7 +72,7 @@ class PhaseContact:
     force : float
         One of its loads, in the transverse section [N].
     step, extended
-        As in `gearfe.contact.solid.pair_stiffness3d`.
+        As in `gearfe.contact.wide_contact.pair_stiffness3d`.
     longer : int
         Of `gearfe.contact.cells.cells_of`.
     cache
@@ -84,7 +84,7 @@ class PhaseContact:
         self.pair, self.pits, self.step, self.extended, self.longer = pair, pits, step, extended, longer
         self.force = force
         outside = [None if held and held.integral else held for held in case.held or ()]  # other shafts are part of the bodies
-        self.hubs = hubs_of(outside) if outside else None
+        self.hubs = [held and held.hub() for held in outside] if any(outside) else None
         self.flanks, self.least = flanks, 0.0 if flanks is None else sum(form.bounds()[0] for form in flanks)
         self.floors = sorted({pit.depth for own in pits for pit in own if pit.side == "loaded"})
         self.deepest = DEEPEST * pair.gear_1.m_n
@@ -161,7 +161,7 @@ class PhaseContact:
                     closings[i] = self.deepest
                 else:
                     raise RuntimeError(
-                        f"no contact at phase {phases[i]:g}: pits cover it all, or the pair has left its path of contact"
+                        f"no contact at phase {phases[i]:g}: damage covers it all, or the pair has left its path of contact"
                     )
             open_ = sorted([*again, *empty])
         return found

@@ -74,26 +74,19 @@ def beyond(pair, reach):
 def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
     """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
 
-    Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor.
+    Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
+    line, from the end that touches first to the other.
 
     Parameters
     ----------
-    pair : GearPair
-    phase : float
     pits : (sequence of Pit, sequence of Pit)
         In each gear's own frame.
     bands : list
         Of `geometry.pair.lines.bands_of`.
-    beta_b : float
     further : (float, float)
         Of `beyond`.
     closing : float
         Normal approach [mm] that closes shallower pits.
-
-    Returns
-    -------
-    list of Piece
-        From the end that touches first to the other, line by line.
     """
     start, end = pair.path
     slope, width = math.tan(beta_b), abs(bands[0][1] - bands[0][0])

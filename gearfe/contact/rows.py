@@ -113,17 +113,7 @@ def _knots(tops, ends):
 
 
 def corner_rows(contact, wanted):
-    """Rows of hats of pairs at corners.
-
-    Parameters
-    ----------
-    contact : gearfe.contact.plane.PairContact
-    wanted : sequence of Wanted
-
-    Returns
-    -------
-    list of Row
-    """
+    """`Row` of each `Wanted` of a `gearfe.contact.pair_contact.PairContact`."""
     out = [None] * len(wanted)
     for host in (0, 1):
         own = [k for k, one in enumerate(wanted) if _host(one) == host]
@@ -152,11 +142,10 @@ def _on_side(contact, wanted, host):
 
 
 def hat_rows(contact, at, knots, kernels, host, tips):
-    """Rows of hats on the side of one gear.
+    """Rows of hats of a `gearfe.contact.pair_contact.PairContact` on the side of one gear.
 
     Parameters
     ----------
-    contact : gearfe.contact.plane.PairContact
     at : sequence of (int, int)
         Number of the phase and column of the pair of each row.
     knots : sequence of ndarray, shape (3, n)
@@ -167,10 +156,6 @@ def hat_rows(contact, at, knots, kernels, host, tips):
         Whose side it is: 0 the pinion's, 1 the wheel's.
     tips : sequence of (bool, bool)
         Whether the tips of pinion and wheel may press into the mate's fillet.
-
-    Returns
-    -------
-    list of Row
     """
     found, pair = contact.found, contact.pair
     gear = (pair.gear_1, pair.gear_2)[host]

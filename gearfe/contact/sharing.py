@@ -1,5 +1,7 @@
 """Who carries how much: contacts that push but do not pull, with the logarithmic softness of line contact."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.linalg.lapack import dposv
@@ -104,7 +106,24 @@ def _settled(flexibility, gap, load, weight, active):
     return None
 
 
-def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=None, start=None, tilt=0.0):
+class LineContacts(NamedTuple):
+    """Line contacts that carry a load together: of one set ``(n,)``, or of many ``(sets, n)``.
+
+    `flexibility` ``(..., n, n)`` of both gears together, local contact excluded [mm per N/mm]; `gap` [mm]; `coefficient` the sum
+    of both half-plane coefficients [mm per N/mm], 0 for contacts whose `flexibility` is complete; `radius` the relative radius of
+    curvature [mm]; `modulus` the contact modulus E* [MPa]. Contact k comes ``tilt_k P_k**2`` closer because it moves to where it
+    yields less [mm per (N/mm)**2].
+    """
+
+    flexibility: Any
+    gap: Any
+    coefficient: Any
+    radius: Any
+    modulus: float
+    tilt: Any = 0.0
+
+
+def line_contact(contacts, load, weight=None):
     """Share a line load over line contacts: `share` plus the half-plane logarithm of each contact.
 
     Contact k adds ``coefficient * (ln(2 / a_k) + 1/2) P_k`` to the approach, ``a_k`` its Hertz half width (the mean of the
@@ -113,40 +132,26 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
 
     Parameters
     ----------
-    flexibility : ndarray, shape (n, n)
-        Of both gears together, local contact excluded [mm per N/mm].
-    gap : ndarray, shape (n,)
-        [mm].
+    contacts : LineContacts
+        Of one set.
     load : float
         Line load of all contacts together [N/mm].
-    coefficient : ndarray, shape (n,)
-        Sum of both half-plane coefficients [mm per N/mm]; 0 for contacts whose `flexibility` is complete.
-    radius : ndarray, shape (n,)
-        Relative radius of curvature [mm].
-    modulus : float
-        Contact modulus E* [MPa].
     weight : ndarray, shape (n,), optional
         As in `share`.
-    start : ndarray, shape (n,), optional
-        Line loads at nearly the same place and load, in any unit.
-    tilt : ndarray, shape (n,)
-        Contact k comes ``tilt_k P_k**2`` closer because it moves to where it yields less [mm per (N/mm)**2].
 
     Returns
     -------
     force, approach, tangent : ndarray (n,), float, float
         Line loads [N/mm], approach [mm], and stiffness d load / d approach of the contacts in touch [N/mm per mm].
     """
+    flexibility, gap, coefficient, radius, modulus, tilt = contacts
     weight = np.ones(gap.size) if weight is None else weight
-    force = np.full(gap.size, load / gap.size) if start is None else start * load / (weight @ start)
-    floor, touch = 1e-9 * load, None if start is None else start > 0
+    force, touch = np.full(gap.size, load / gap.size), None
     for _ in range(60):
-        width = half_width(np.maximum(force, floor), radius, modulus)
-        slope = coefficient * np.log(2 / width) - 2 * tilt * np.maximum(force, floor)
-        total = flexibility + np.diag(slope)
-        offset = (coefficient / 2 + tilt * np.maximum(force, floor)) * np.maximum(force, floor)
-        new, approach = share(total, gap + offset, load, weight, touch)
-        touch = new > floor
+        carried = np.maximum(force, 1e-9 * load)
+        total = flexibility + np.diag(coefficient * np.log(2 / half_width(carried, radius, modulus)) - 2 * tilt * carried)
+        new, approach = share(total, gap + (coefficient / 2 + tilt * carried) * carried, load, weight, touch)
+        touch = new > 1e-9 * load
         settled = np.abs(new - force).max() < 1e-10 * load
         force = new
         if settled or not np.any(coefficient):
@@ -157,22 +162,18 @@ def line_contact(flexibility, gap, load, coefficient, radius, modulus, weight=No
     return force, approach, float(tangent)
 
 
-def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible, tilt=0.0, start=None):
+def line_contacts(contacts, load, possible, start=None):
     """`line_contact` for many independent sets of contacts at once, by Newton and an active set.
 
     Sets whose active set does not settle are left to `line_contact`; the others satisfy its conditions.
 
     Parameters
     ----------
-    flexibility : ndarray, shape (sets, n, n)
-    gap, radius : ndarray, shape (sets, n)
+    contacts : LineContacts
+        `coefficient` and `tilt` may be numbers.
     load : float or ndarray, shape (sets,)
-    modulus : float
-    coefficient : float or ndarray, shape (sets, n)
     possible : ndarray of bool, shape (sets, n)
         Contacts that may carry load; at least one in each set.
-    tilt : float or ndarray, shape (sets, n)
-        As of `line_contact`.
     start : ndarray of bool, shape (sets, n), optional
         Of the possible ones, those that are likely in touch, at least one in each set; default: all.
 
@@ -180,34 +181,35 @@ def line_contacts(flexibility, gap, load, coefficient, radius, modulus, possible
     -------
     force, approach, tangent, settled : ndarray (sets, n), (sets,), (sets,), (sets,) of bool
     """
-    sets = len(gap)
-    gap, load = np.where(possible, gap, 0.0), np.broadcast_to(load, sets)[:, None]
-    coefficient, tilt = (np.broadcast_to(values, gap.shape) for values in (coefficient, tilt))
-    force, approach, tangent = np.zeros(gap.shape), np.zeros(sets), np.zeros(sets)
-    open_, case = np.arange(sets), (flexibility, gap, load, coefficient, radius, tilt, possible)
-    active = possible if start is None else start
+    sets, shape = len(contacts.gap), contacts.gap.shape
+    load = np.broadcast_to(load, sets)[:, None]
+    coefficient, tilt = (np.broadcast_to(values, shape) for values in (contacts.coefficient, contacts.tilt))
+    case = contacts._replace(gap=np.where(possible, contacts.gap, 0.0), coefficient=coefficient, tilt=tilt)
+    force, approach, tangent = np.zeros(shape), np.zeros(sets), np.zeros(sets)
+    open_, active = np.arange(sets), possible if start is None else start
     old = load / active.sum(axis=1, keepdims=True) * active
     for _ in range(30):
-        new, approach[open_], tangent[open_] = _newton(*case[:-1], modulus, active, old)
+        new, approach[open_], tangent[open_] = _newton(case, load, active, old)
         force[open_] = np.where(active, new, 0.0)
-        flexibility, gap, load, *_, possible = case
-        free = gap + (flexibility @ np.maximum(new, 0.0)[..., None])[..., 0]
+        free = case.gap + (case.flexibility @ np.maximum(new, 0.0)[..., None])[..., 0]
         wanted = np.where(active, new > 0, possible & (free < approach[open_, None]))
         on = (wanted != active).any(axis=1) | ~(np.abs(new - old) < 1e-10 * load).all(axis=1)
         if not on.any():
             open_ = open_[on]
             break
         if not on.all():
-            open_, case, wanted, new = open_[on], [values[on] for values in case], wanted[on], new[on]
-        active = np.where(wanted.any(axis=1, keepdims=True), wanted, case[-1])
-        old = np.where(wanted, np.where(new > 0, new, 1e-9 * case[2]), 0.0)
+            open_, wanted, new, load, possible = (values[on] for values in (open_, wanted, new, load, possible))
+            case = LineContacts(*(values[on] if np.ndim(values) else values for values in case))
+        active = np.where(wanted.any(axis=1, keepdims=True), wanted, possible)
+        old = np.where(wanted, np.where(new > 0, new, 1e-9 * load), 0.0)
     settled = np.ones(sets, dtype=bool)
     settled[open_] = False
     return force, approach, tangent, settled
 
 
-def _newton(flexibility, gap, load, coefficient, radius, tilt, modulus, active, force):
+def _newton(contacts, load, active, force):
     """Forces, approach and d load / d approach of `line_contacts` with the `active` contacts, the logarithm taken at `force`."""
+    flexibility, gap, coefficient, radius, modulus, tilt = contacts
     (sets, n), diagonal = gap.shape, np.arange(gap.shape[1])
     carried = np.maximum(force, 1e-9 * load)
     system, right = np.zeros((sets, n + 1, n + 1)), np.zeros((sets, n + 1, 2))
@@ -233,7 +235,7 @@ def approaches(flexibility, gap, load, possible):
     possible : ndarray of bool, shape (sets, n)
         Contacts that there are; at least one in each set.
     """
-    _, found, _, settled = line_contacts(flexibility, gap, load, 0.0, np.ones(gap.shape), 1.0, possible)
+    _, found, _, settled = line_contacts(LineContacts(flexibility, gap, 0.0, np.ones(gap.shape), 1.0), load, possible)
     for k in np.flatnonzero(~settled).tolist():
         on = possible[k]
         found[k] = share(flexibility[k][np.ix_(on, on)], gap[k, on], float(load[k]))[1]

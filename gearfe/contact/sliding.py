@@ -18,10 +18,6 @@ def sliding(contact):
     Under a line load P the flanks tilt by ``P S' / 2``, half the change of the pair's flexibility S along them; the contact moves
     by ``x = -R P S' / 2`` to where they are parallel again, and comes closer by ``P S' x + x**2 / 2 R = -3/8 R (P S')**2``. That
     counts where flanks nearly conform: 0.5 % of ring pairs under a heavy load. At the ends of flanks it is left out.
-
-    Parameters
-    ----------
-    contact : gearfe.contact.plane.PairContact
     """
     found, step = contact.found, STEP * contact.pair.gear_1.m_n
     ahead, behind = _alone(contact, step * np.array([1, -1])[:, None, None])
@@ -60,13 +56,8 @@ def left_out(contact, line, closing, beyond):
     path that changes nothing. Off it, where a place with relative radius R is the gap g away, ``s = sqrt(2 R g)`` from where the
     flanks would meet, the gap changes by about ``(s u + u**2 / 2) / R``, more the smaller R is: most near base circles.
 
-    Parameters
-    ----------
-    contact : gearfe.contact.plane.PairContact
-    line, beyond : ndarray, shape (phases, pairs)
-        Line loads [N/mm], and gaps beyond the first touch [mm].
-    closing : ndarray, shape (phases,)
-        How far the load moves the gears [mm].
+    Of line loads `line` [N/mm] and gaps `beyond` the first touch [mm] ``(phases, pairs)``; `closing` ``(phases,)`` is how far the
+    load moves the gears [mm].
     """
     found, (start, end) = contact.found, contact.pair.path
     off = (line > 0) & ((found.nominal < start) | (found.nominal > end))

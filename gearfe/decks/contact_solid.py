@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.damage.kinds import split
 from geometry.mesh.holes import SIZES as HOLES
 from geometry.mesh.holes import filled, holed_sector
-from geometry.mesh.relieved import relieved_points
+from geometry.mesh.relieved_solid import relieved_points
 from geometry.mesh.solid import solid
 from geometry.pair.contacts import FORM, Contacts, contacts
 from geometry.pair.gear_pair import GearPair
@@ -21,9 +21,9 @@ from geometry.tooth.profile import arc_at, cartesian, flank
 from geometry.tooth.side import on_fillet
 
 from ..case import Case
-from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from .contact_deck import ContactDeck, posed
+from .pressed import pressing, write_lines
 from .pressing import Pressing
 from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, placed, surface_lines
 
@@ -69,10 +69,7 @@ class SolidDeck(ContactDeck):
 def contact_sums(path: str | os.PathLike[str]) -> dict[str, tuple[NDArray[np.float64], ...]]:
     """Force [N], moment about the origin [N mm], middle of the area [mm] by slave surface that touches, of the last increment.
 
-    Raises
-    ------
-    RuntimeError
-        If the ``.dat`` file has none.
+    RuntimeError if the ``.dat`` file has none.
     """
     rows = [line.split() for line in Path(path).read_text(encoding="ascii").splitlines() if line.strip()]
     out: dict[str, tuple[NDArray[np.float64], ...]] = {}
@@ -150,7 +147,7 @@ def _modified(pair, found, heights, forms):
 def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, approach: float, how: Pressing) -> SolidDeck:
     """The deck of `contact_inp.write_contact_inp` for gears of finite width.
 
-    Nodes lie on modified flanks (`geometry.mesh.relieved`); axes askew are among them.
+    Nodes lie on modified flanks (`geometry.mesh.relieved_solid`); axes askew are among them.
     """
     pair, forms, fineness = case.pair, case.forms, (how.per_width or SOLID) * how.refine
     common = min(pair.gear_1.b, pair.gear_2.b)
@@ -183,8 +180,7 @@ def write_contact_solid(path: str | os.PathLike[str], case: Case, phase: float, 
     for k, order in enumerate(found.order):
         side = found.slave[k]
         slaves[order] = side, _faces(pair, parts[side], found, side, k)
-    with written(path) as name:
-        Path(name).write_text("\n".join(_text(case, parts, found, turned, how.penalty)), encoding="ascii")
+    write_lines(path, _text(case, parts, found, turned, how.penalty))
     starts = [0, parts[0].points.shape[1]]
     held = [part.held + start + 1 for part, start in zip(parts, starts, strict=True)]
     centred = [_from_centre(pair, part, number) for number, part in enumerate(parts)]
@@ -219,7 +215,7 @@ def _holed(gear: Gear, damage, strips, how) -> Part:
     """A whole gear in tets, its pits cut out or not, if it has some; its damaged tooth is tooth 0 while it is meshed."""
     cracks, holes = split(damage)
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
-        raise ValueError("beside pits cut out a gear has at most one crack, through the whole width: leave out the others")
+        raise ValueError("beside holes cut out a gear has at most one crack, through the whole width: leave out the others")
     tooth = damage[0].tooth % gear.z if damage else 0
     turn = 2 * math.pi * tooth / gear.z
     own = [(np.array([*posed(line[:2], -turn, 1), line[2]]), *rest) for line, *rest in strips]
@@ -272,13 +268,8 @@ def _text(case, parts, found, turned, penalty):
         for n, u, v in zip(held.tolist(), *moved, strict=True):
             ends += [f"{n}, 1, 1, {u:.10e}", f"{n}, 2, 2, {v:.10e}", f"{n}, 3, 3"]
         first, element = first + part.points.shape[1], element + part.cells.shape[1]
-    yield "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield f"{penalty * max(m.E for m in materials):.6e}"
-    for k, slave in enumerate(found.slave):
-        yield "*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE"
-        yield (f"C1P{k}, C2P{k}", f"C2P{k}, C1P{k}")[slave]
-    yield from ("*STEP, INC=200, NLGEOM\n*STATIC\n1., 1.", "*BOUNDARY", *ends)
+    contacts = [(f"C{slave + 1}P{k}", f"C{2 - slave}P{k}") for k, slave in enumerate(found.slave)]
+    yield from pressing(penalty * max(m.E for m in materials), contacts, ends)
     yield "*NODE PRINT, NSET=H1\nRF\n*NODE PRINT, NSET=H2\nRF"
-    for k, slave in enumerate(found.slave):
-        yield (f"*CONTACT PRINT, SLAVE=C{slave + 1}P{k}, MASTER=C{2 - slave}P{k}\nCF")
+    yield from (f"*CONTACT PRINT, SLAVE={slave}, MASTER={master}\nCF" for slave, master in contacts)
     yield "*CONTACT FILE\nCDIS\n*END STEP\n"

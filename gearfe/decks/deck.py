@@ -8,13 +8,11 @@ import numpy as np
 from scipy.sparse import spmatrix
 
 from geometry.damage.crack import Crack
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 
 from ..elements.elasticity import Body
 from ..elements.fe import EDGES
-from ..elements.one_tooth import check_cracks, check_line_load, check_one, edge_lengths, load_at, narrow_load
+from ..elements.one_tooth import NARROW, check_cracks, check_line_load, check_one, edge_lengths, load_at, narrow_section
 from ..files import check_output, written
 from ..material import Material, check_state
 
@@ -62,13 +60,9 @@ def write_inp(
     check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     check_cracks(cracks)
-    edge = edge_lengths(gear, EDGES, refine)
-    arc, width = load_at(gear, radius), 0.05 * gear.m_n
-    roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])
-    sizes = {"fillet_size": edge["fillet"], "size": edge["near"], "far_size": edge["far"]}
-    mesh = section(gear, {0: roll}, **sizes, cracks=cracks)
-    load = line_load * narrow_load(mesh, 0, arc, width)
-    body = Body(mesh.mesh, material, state=state)
+    at = load_at(gear, radius), NARROW * gear.m_n, NARROW * gear.m_n / 4
+    _, body, unit = narrow_section(gear, material, state, edge_lengths(gear, EDGES, refine), at, cracks=cracks)
+    load = line_load * unit
     with written(path) as name:
         Path(name).write_text("\n".join(_lines(body, load)), encoding="ascii")
     return body, load

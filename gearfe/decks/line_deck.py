@@ -3,7 +3,6 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,9 @@ from geometry.tooth.profile import arc_at
 from ..checks import check_length
 from ..elements.fe3d import Patches, mesh_patches, patch_loads
 from ..elements.one_tooth import check_cracks, check_line_load, check_one, load_at
-from ..files import check_output, written
+from ..files import check_output
 from ..material import Material
-from .contact_deck import read_rows
+from .pressed import read_rows, write_lines
 from .solid_deck import Part, element_lines, node_lines, part_of
 
 
@@ -101,8 +100,7 @@ def write_line_inp(
     mesh = mesh_patches(gear, patches, cracks=tuple(cracks), refine=refine, layer=layer)
     load = line_load * gear.b * patch_loads(mesh, patches, 0).reshape(-1, 3)
     part = part_of(mesh)
-    with written(path) as name:
-        Path(name).write_text("\n".join(_text(part, material, load)), encoding="ascii")
+    write_lines(path, _text(part, material, load))
     return LineDeck(part, load, line_load * gear.b)
 
 

@@ -63,7 +63,8 @@ def export_mesh(
     check_output(path, "mesh")
     check_gear(gear)
     refine, suffix = checked_refine(refine), suffix_of(path, "mesh")
-    _check_damage(damage)
+    if not are(damage):
+        raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
     cracks, pits = split(damage)
     cells = cells or ("tetrahedra" if pits or teeth is not None else "hexahedra")
     if cells not in KINDS:
@@ -73,14 +74,9 @@ def export_mesh(
     return made
 
 
-def _check_damage(damage):
-    if not are(damage):
-        raise ValueError(f"damage = {damage!r}, but give a list of {' and '.join(NAMES)} of this gear, [] for none")
-
-
 def _tets(gear, pits, cracks, teeth, refine):
     if len(cracks) > 1 or not all(crack.through for crack in cracks):
-        raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without pits")
+        raise ValueError("tetrahedra have at most one crack, through the whole width: use cells = 'hexahedra', without holes")
     return holed_part(holed_sector(gear, pits, *cracks, teeth=teeth, refine=refine))
 
 

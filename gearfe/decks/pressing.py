@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from ..checks import one_of
+
 PINION = {"mean": 0.5, "pinion": 1.0, "wheel": 0.0}  # part of the approach that the pinion turns
 PITS = ("cut", "lost", "filled")
 
@@ -20,8 +22,7 @@ class Pressing:
     def __post_init__(self) -> None:
         """Refuse what is unknown."""
         for name, known in (("pose", PINION), ("pits", PITS)):
-            if getattr(self, name) not in known:
-                raise ValueError(f"{name} = {getattr(self, name)!r}, but it must be one of {', '.join(known)}")
+            one_of(name, getattr(self, name), known)
 
     def turned(self, pair, approach):
         """Angles by which the bores of pinion and wheel are turned for an approach [mm]."""

@@ -12,7 +12,7 @@ from geometry.tooth.profile import cartesian, flank
 
 from ..elements.folds import check_folds, unfolded
 from ..elements.hexahedron import ORDER, TWENTY
-from ..elements.tetrahedron import second_order
+from ..elements.tetrahedron import nodes_of, second_order
 
 MIRROR = np.array([ORDER.index((node, 2 - level)) for node, level in ORDER])  # bottom and top change places
 MIRRORED = {20: MIRROR, 10: np.array([0, 2, 1, 3, 6, 5, 4, 7, 9, 8])}
@@ -53,15 +53,13 @@ def holed_part(mesh: Holed, strips=()) -> Part:
     gear = mesh.gear
     for name in sorted(mesh.faces, reverse=True):  # flanks last, the most exact
         if name.startswith(("outline", "held", "flank ")) and mesh.faces[name].size:
-            a, b, c = mesh.faces[name]
-            own = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
-            x, y, z = nodes[:, own]
+            there = nodes_of(mesh.faces[name], number)
+            x, y, z = nodes[:, there]
             radius, angle = _on_surface(gear, name, np.hypot(x, y), np.arctan2(x, y) - gear.twist_rate * z)
-            nodes[:2, own] = cartesian(radius, angle + gear.twist_rate * z)
+            nodes[:2, there] = cartesian(radius, angle + gear.twist_rate * z)
     bent, nodes = nodes, unfolded(nodes, cells)
     _check_strips(gear, nodes[:, (nodes != bent).any(axis=0)], strips)
-    a, b, c = mesh.faces["held"]
-    held = np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
+    held = nodes_of(mesh.faces["held"], number)
     used, kept = np.unique(cells, return_inverse=True)
     place = np.full(nodes.shape[1], -1)
     place[used] = np.arange(used.size)

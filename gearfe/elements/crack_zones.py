@@ -15,14 +15,7 @@ NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length can
 def zone_forces(mesh):
     """Nodal forces ``(3 nodes, k)`` of unit resultant [N] that push apart the faces of each zone of all cracks.
 
-    Parameters
-    ----------
-    mesh : geometry.mesh.solid.Solid
-
-    Returns
-    -------
-    ndarray
-        Node by node x, y, z; zones without a face are left out.
+    Of a `geometry.mesh.solid.Solid`, node by node x, y, z; zones without a face are left out.
     """
     out, count = [], mesh.points.shape[1]
     for body in (name for name in mesh.faces if name.startswith("crack ") and name.endswith(" body")):

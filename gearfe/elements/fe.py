@@ -75,14 +75,10 @@ def flank_load(section_, tooth, pressure, first, count, tilt=0.0):
 
     Parameters
     ----------
-    section_ : Section
-    tooth : int
     pressure : callable
         Maps arcs ``(n, count, points)`` from the base circle [mm] to pressures [MPa], row by row.
-    first : ndarray, shape (n,)
-        First flank edge each pressure acts on.
-    count : int
-        Number of edges each pressure acts on.
+    first, count
+        First flank edge each pressure acts on ``(n,)``, and the number of edges it does.
     tilt : float
         Of the pressures from the normal towards the outside of the gear [rad].
     """
@@ -113,7 +109,8 @@ def turned(vectors, angle):
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
-    `refine` divides every edge length of `EDGES`; `teeth` and `cracks` as in `geometry.mesh.mesher.section`.
+    `refine` divides every edge length of `EDGES`; of the whole gear or of so many `teeth` on a plain rim, with `cracks`, as in
+    `geometry.mesh.mesher.section`.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")
@@ -127,26 +124,18 @@ def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
 
 
 def flexibility(gear, material, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
-    """Flexibility of a healthy gear by finite elements: one factorisation, one tooth loaded.
+    """`Flexibility` of a healthy gear by finite elements: one factorisation, one tooth loaded.
 
     The teeth of a healthy gear are alike, so a load on tooth 0 read on tooth k is also a load on any tooth read k teeth
     further.
 
     Parameters
     ----------
-    gear : Gear
-    material : Material
     neighbours : int
         How many following teeth may carry load at the same time.
     state : {"plane strain", "plane stress"}
-    refine : float
-        Divides every edge length; 1 is the default resolution.
-    teeth : int, optional
-        Number of teeth that are modelled, on a plain rim (see `geometry.mesh.mesher.section`).
-
-    Returns
-    -------
-    Flexibility
+    refine, teeth
+        As of `mesh_gear`.
     """
     mesh = mesh_gear(gear, read=range(1, neighbours + 1), refine=refine, teeth=teeth)
     body = Body(mesh.mesh, material, state=state)
@@ -190,20 +179,10 @@ def _between(body, loads):
 
 
 def cracked_flexibility(gear, material, cracks, healthy, *, neighbours=1, state="plane strain", refine=1.0, teeth=None):
-    """Flexibility of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
+    """`Flexibility` of a gear with root cracks: every tooth that can share load with a cracked one is loaded and read.
 
-    Parameters
-    ----------
-    gear, material, neighbours, state, refine, teeth
-        As in `flexibility`.
-    cracks : tuple of Crack
-        Their `tooth` counts to the loaded side of this gear.
-    healthy : Flexibility
-        Of the same gear without cracks, for the teeth further away.
-
-    Returns
-    -------
-    Flexibility
+    Their `tooth` counts to the loaded side of this gear; `healthy` is that of the same gear without cracks, for the teeth further
+    away. The other arguments are as of `flexibility`.
     """
     reach = max(1, neighbours - 1)
     solved = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
@@ -244,8 +223,8 @@ def _face_columns(mesh):
         normal = np.array([-ahead[1], ahead[0]]) / np.hypot(*ahead)
         columns += list(zip(*seam.faces[:, :-2].tolist(), normal.T, strict=True))
     at = np.arange(len(columns))
-    left, right = (np.array([one[side] for one in columns]) for side in (0, 1))
-    normal = np.array([one[2] for one in columns]).T
+    left, right = (np.array([column[side] for column in columns]) for side in (0, 1))
+    normal = np.array([column[2] for column in columns]).T
     rows = [2 * nodes + d for nodes in (left, right) for d in (0, 1)]
     forces = np.concatenate([*normal, *-normal])
     return coo_matrix((forces, (np.concatenate(rows), np.tile(at, 4))), shape=(2 * mesh.mesh.doflocs.shape[1], at.size)).tocsc()

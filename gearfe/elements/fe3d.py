@@ -34,20 +34,19 @@ class Patches:
     teeth : tuple of int
     knots : ndarray, shape (3, arcs)
         Start, top and end of each hat along the flank, as of `geometry.tooth.profile.arc_at` [mm].
-    axial : int or ndarray
-        Functions along the width: so many Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform line
-        load of unit resultant; or the knots [mm] of hats of unit integral, each from its left to its right neighbour, the
-        first and the last one-sided.
+    modes : int
+        So many functions along the width, the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform line
+        load of unit resultant.
     """
 
     teeth: tuple
     knots: np.ndarray
-    axial: int | np.ndarray
+    modes: int
 
     @property
-    def modes(self):
-        """Number of functions along the width."""
-        return self.axial if np.ndim(self.axial) == 0 else np.size(self.axial)
+    def shape(self):
+        """Numbers of teeth, hats and modes."""
+        return len(self.teeth), self.knots.shape[1], self.modes
 
     def along_profile(self, arc):
         """Hats ``(arcs, n)`` [1/mm] at places `arc` [mm]."""
@@ -57,15 +56,10 @@ class Patches:
 
     def along_width(self, z, b):
         """Axial functions ``(modes, n)`` [1/mm] at heights `z` [mm]."""
-        if np.ndim(self.axial) == 0:
-            return legendre.legvander(2 * np.asarray(z) / b - 1, self.axial - 1).T / b
-        knots = np.asarray(self.axial, dtype=float)
-        tops = np.array([np.interp(z, knots, row) for row in np.eye(knots.size)])
-        reach = np.diff(np.concatenate([knots[:1], knots, knots[-1:]]))
-        return tops * 2 / (reach[1:] + reach[:-1])[:, None]
+        return legendre.legvander(2 * np.asarray(z) / b - 1, self.modes - 1).T / b
 
     def check(self, gear):
-        """Raise ValueError if a hat leaves the flank or the axial knots leave the face."""
+        """Raise ValueError if a hat leaves the flank."""
         low, high = arc_at(gear, gear.roll_f), arc_at(gear, gear.roll_a)
         slack = 1e-9 * gear.m_n
         knots = np.asarray(self.knots)
@@ -75,32 +69,30 @@ class Patches:
             raise ValueError(
                 f"hats from {knots.min():.4g} to {knots.max():.4g} mm leave the flank, which runs from {low:.4g} to {high:.4g} mm"
             )
-        if np.ndim(self.axial) == 0:
-            if self.axial < 1:
-                raise ValueError(f"axial = {self.axial}, but there is at least one function along the width")
-        elif not (
-            np.size(self.axial) > 1 and (np.diff(self.axial) > 0).all() and min(self.axial) >= 0 and max(self.axial) <= gear.b
-        ):
-            raise ValueError(f"axial = {self.axial}, but knots rise within 0 and b = {gear.b} mm")
+        if self.modes < 1:
+            raise ValueError(f"modes = {self.modes}, but there is at least one function along the width")
 
 
 @dataclass(frozen=True, slots=True)
 class Influence:
     """Influence matrix between patches.
 
-    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], as loaded and read; `moved` the displacements (3, nodes,
-    teeth * arcs * modes) [mm/N] if they were kept; `dofs` the unknowns, `plan` how they were solved for. `opening` (k, teeth,
+    `matrix` is (teeth, arcs, modes, teeth, arcs, modes) [mm/N], as loaded and read; `dofs` the unknowns. `opening` (k, teeth,
     arcs, modes) is that of zones of crack faces under the patches, `mutual` (k, k) that under unit forces that push the zones'
-    faces apart [mm/N], if asked for.
+    faces apart [mm/N].
     """
 
     matrix: np.ndarray
-    patches: Patches
     dofs: int
-    plan: object
-    moved: np.ndarray | None = None
-    opening: np.ndarray | None = None
-    mutual: np.ndarray | None = None
+    opening: np.ndarray
+    mutual: np.ndarray
+
+    @classmethod
+    def between(cls, patches, matrix, dofs):
+        """From the whole matrix between the patches, then the zones."""
+        shape, own = patches.shape, math.prod(patches.shape)
+        within = matrix[:own, :own].reshape(*shape, *shape)
+        return cls(within, dofs, matrix[own:, :own].reshape(-1, *shape), matrix[own:, own:])
 
 
 def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None, sizes=None, fine=()):
@@ -113,44 +105,28 @@ def mesh_patches(gear, patches, *, cracks=(), refine=1.0, per_hat=4, layer=None,
     patches.check(gear)
     places = [(start, stop, (stop - start) / (per_hat * refine)) for start, _, stop in patches.knots.T]
     layer = layer or min(gear.b / 12, gear.m_n)
-    return solid(
-        gear,
-        layer=layer,
-        loaded=patches.teeth,
-        cracks=cracks,
-        patches=places,
-        refine=refine,
-        sizes=sizes,
-        fine=fine,
-    )
+    options = {"refine": refine, "sizes": sizes, "fine": fine}
+    return solid(gear, layer=layer, loaded=patches.teeth, cracks=cracks, patches=places, **options)
 
 
 def patch_loads(mesh, patches, tooth):
     """Consistent nodal forces of the patches on one tooth ``(3 nodes, arcs * modes)`` [N], node by node x, y, z.
 
-    Both integrals are cut at the borders of the elements and at the knots of the hats.
+    Both integrals are cut at the borders of the elements, that along the profile also at the knots of the hats.
     """
     gear = mesh.gear
     rising = gear.outward * mesh.section.roll[tooth % gear.z]  # a ring's roll length falls from root to tip
     cuts = gear.outward * roll_at_arc(gear, np.unique(patches.knots))
-    edge, x, at, across = _points(rising, cuts, ROLL_POINTS)
+    edge, x, at, across = points_between(rising, cuts, ROLL_POINTS)
     at = gear.outward * at
-    layer, y, z, along = _points(mesh.levels, () if np.ndim(patches.axial) == 0 else patches.axial, HEIGHT_POINTS)
+    layer, y, z, along = points_between(mesh.levels, (), HEIGHT_POINTS)
     across = across * at / gear.r_b  # ds = roll d(roll) / r_b
     hats, modes = patches.along_profile(arc_at(gear, at)) * across, patches.along_width(z, gear.b) * along
     used = np.flatnonzero(hats.any(axis=0))
     edge, x, at, hats = edge[used], x[used], at[used], hats[:, used]
     value = face_shapes(x[:, None], y[None, :])  # node, roll point, height point
     nodes = mesh.flank(tooth)[:, edge[:, None], layer[None, :]]
-    plane = flank_normal(gear, at)
-    turn = 2 * math.pi * tooth / gear.z + gear.twist_rate * z
-    cos, sin = np.cos(turn), np.sin(turn)
-    tilt = math.cos(gear.beta_b)
-    normal = np.array([
-        tilt * (np.outer(plane[0], cos) + np.outer(plane[1], sin)),
-        tilt * (np.outer(plane[1], cos) - np.outer(plane[0], sin)),
-        np.full((at.size, z.size), -math.sin(gear.beta_b)),
-    ])  # fmt: skip
+    normal = helicoid_normal(gear, at, z, 2 * math.pi * tooth / gear.z)
     weight = np.einsum("ir,az->iarz", hats, modes)
     rows = (3 * nodes[:, None] + np.arange(3)[:, None, None]).reshape(24, -1)
     spread = -(value[:, None] * normal).reshape(24, -1)
@@ -159,7 +135,19 @@ def patch_loads(mesh, patches, tooth):
     return coo_matrix((spread.ravel(), (rows.ravel(), points.ravel())), shape=shape).tocsr() @ weight.reshape(-1, rows.shape[1]).T
 
 
-def _points(ends, cuts, count):
+def helicoid_normal(gear, roll, z, turn=0.0):
+    """Outward normals ``(3, n, m)`` of the loaded flank at roll lengths ``(n,)`` and heights ``(m,)`` [mm].
+
+    Of the tooth `turn` [rad] from tooth 0.
+    """
+    plane, turn, tilt = flank_normal(gear, roll), turn + gear.twist_rate * z, math.cos(gear.beta_b)
+    cos, sin = np.cos(turn), np.sin(turn)
+    x = tilt * (np.outer(plane[0], cos) + np.outer(plane[1], sin))
+    y = tilt * (np.outer(plane[1], cos) - np.outer(plane[0], sin))
+    return np.array([x, y, np.full(x.shape, -math.sin(gear.beta_b))])
+
+
+def points_between(ends, cuts, count):
     """Gauss points between all of `ends` and `cuts`: interval of `ends`, place in it (-1..1), place and weight."""
     inner = [c for c in cuts if ends[0] < c < ends[-1]]
     every = np.unique(np.concatenate([ends, inner]))
@@ -175,10 +163,17 @@ def _points(ends, cuts, count):
 def planned(mesh, patches, more=0):
     """`gearfe.elements.solver.Plan` of the influence between patches, with so many `more` right-hand sides."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
-    return plan(3 * free, columns=len(patches.teeth) * patches.knots.shape[1] * patches.modes + more)
+    return plan(3 * free, columns=math.prod(patches.shape) + more)
 
 
-def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
+def loads_and_rows(mesh, patches, zones):
+    """Nodal forces of all patches, then of zones ``(3 nodes, n)``, the nodes that can move, and their unknowns."""
+    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), *([] if zones is None else [zones])])
+    free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
+    return load, free, (3 * free[:, None] + np.arange(3)).ravel()
+
+
+def influence(mesh, material, patches, *, tell=None, zones=None):
     """Influence matrix between all patches.
 
     Parameters
@@ -187,8 +182,6 @@ def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
         With the loaded flanks of all of `patches.teeth`, see `mesh_patches`.
     material : Material
     patches : Patches
-    keep : bool
-        Whether to return the displacements too.
     tell : callable, optional
         Gets the `gearfe.elements.solver.Plan`, with the expected seconds and memory, before anything costly starts.
     zones : ndarray, shape (3 nodes, k), optional
@@ -199,25 +192,11 @@ def influence(mesh, material, patches, *, keep=False, tell=None, zones=None):
     Influence
     """
     patches.check(mesh.gear)
-    free = np.setdiff1d(np.arange(mesh.points.shape[1]), mesh.held)
-    own = len(patches.teeth) * patches.knots.shape[1] * patches.modes
-    zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
-    made = planned(mesh, patches, zones.shape[1])
+    made = planned(mesh, patches, 0 if zones is None else zones.shape[1])
     if tell:
         tell(made)
-    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])
-    rows = (3 * free[:, None] + np.arange(3)).ravel()
-    solve = factor(assemble(mesh.points, mesh.cells, material, free), made)
-    whole = None
-    if keep:
-        whole = np.zeros(load.shape)
-        whole[rows] = solve(load[rows])
-        matrix = load.T @ whole
-        whole = whole[:, :own].reshape(-1, 3, own).transpose(1, 0, 2)
-    else:
-        matrix = solve.gram(load[rows])
+    load, free, rows = loads_and_rows(mesh, patches, zones)
+    matrix = factor(assemble(mesh.points, mesh.cells, material, free), made).gram(load[rows])
     if not np.isfinite(matrix).all():
         raise RuntimeError("the FE solve gave no finite displacement: the body is not held, or nu is too close to 0.5")
-    shape = len(patches.teeth), patches.knots.shape[1], patches.modes
-    opening, mutual = matrix[own:, :own].reshape(-1, *shape), matrix[own:, own:]
-    return Influence(matrix[:own, :own].reshape(*shape, *shape), patches, rows.size, made, whole, opening, mutual)
+    return Influence.between(patches, matrix, rows.size)

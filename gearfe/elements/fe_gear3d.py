@@ -1,14 +1,17 @@
 """`Flexibility3D` of a whole gear by brute force: hexahedra (`fe3d`) under the patches of `gearfe.flexibility.solid`."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 from scipy.linalg import eigh
 
+from geometry.tooth.gear import Gear
+
 from ..flexibility.halfspace import half_space
 from ..flexibility.solid import Faces, hats, own_distance, parted, solved_teeth
+from ..supports.shaft import Shaft
 from .crack_zones import zone_forces
 from .fe3d import Patches, influence, mesh_patches, planned
 from .integral import integral_influence, on_stubs
@@ -27,28 +30,14 @@ def axial_modes(width, m_n):
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
-def solid_flexibility(
-    gear,
-    material,
-    cracks=(),
-    *,
-    neighbours=1,
-    degree=None,
-    less=0,
-    refine=1.0,
-    section=None,
-    tell=None,
-    healthy=None,
-    cache=True,
-    shaft=None,
-):
-    """Flexibility of a gear of finite width by finite elements of all of it.
+@dataclass(frozen=True, slots=True)
+class WholeGear:
+    """A gear of finite width as it is meshed, and which of its teeth are loaded.
 
-    Parameters
+    Attributes
     ----------
     gear : Gear
         Bore or rim are held over the whole width, the end faces free.
-    material : Material
     cracks : tuple of Crack
         Their faces are kept from passing through each other, zone by zone (`gearfe.elements.crack_zones`).
     neighbours : int
@@ -60,18 +49,59 @@ def solid_flexibility(
         Divides all edge lengths and the layers.
     section : float, optional
         Divides the edges of the section instead.
-    tell
-        As in `gearfe.elements.fe3d.influence`.
-    healthy : Flexibility3D, optional
-        Of the gear without cracks; needed if there are `cracks`.
-    cache : bool or SolvedGears
-        Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
     shaft : Shaft, optional
         Of a gear that is one piece with it: held by it at its end faces, the bore free.
+    """
 
-    Returns
-    -------
-    Flexibility3D
+    gear: Gear
+    cracks: tuple = ()
+    neighbours: int = 1
+    degree: int | None = None
+    less: int = 0
+    refine: float = 1.0
+    section: float | None = None
+    shaft: Shaft | None = None
+
+    def meshed(self):
+        """Mesh and `Patches`.
+
+        Raises
+        ------
+        ValueError
+            If `refine` is not positive.
+        """
+        gear, refine = self.gear, self.refine
+        if not (math.isfinite(refine) and refine > 0):
+            raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
+        degree = (axial_modes(gear.b, gear.m_n) if self.degree is None else self.degree) - self.less
+        patches = Patches(tuple(solved_teeth(gear, self.cracks, self.neighbours)), hats(gear), degree + 1)
+        section = refine if self.section is None else self.section
+        layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
+        fine = [(z, z, END * layer) for z in (0.0, gear.b)]
+        options = {"refine": section, "per_hat": PER_HAT, "layer": layer, "sizes": SIZES, "fine": fine}
+        return mesh_patches(gear, patches, cracks=self.cracks, **options), patches
+
+    def plan(self):
+        """`gearfe.elements.solver.Plan` of its `solid_flexibility`, refused if it does not fit; costs its mesh alone."""
+        mesh, patches = self.meshed()
+        more = zone_forces(mesh).shape[1]
+        if self.shaft is not None:
+            mesh, discs = on_stubs(mesh, self.shaft)
+            more += discs.shape[1]
+        return planned(mesh, patches, more)
+
+
+def solid_flexibility(whole, material, *, healthy=None, tell=None, cache=True):
+    """`Flexibility3D` of a `WholeGear` by finite elements.
+
+    Parameters
+    ----------
+    healthy : Flexibility3D, optional
+        Of the gear without cracks; needed if it has cracks.
+    tell
+        As in `gearfe.elements.fe3d.influence`.
+    cache : bool or SolvedGears
+        Where to look for the half-space's part, see `gearfe.flexibility.solved.solved_gears`.
 
     Raises
     ------
@@ -80,56 +110,33 @@ def solid_flexibility(
     RuntimeError
         If the system does not fit into memory, with the numbers, or if the mesh cannot carry the patches.
     """
-    if not (math.isfinite(refine) and refine > 0):
-        raise ValueError(f"refine = {refine}, but it divides the edge lengths: give a positive number")
-    mesh, patches = _meshed(gear, cracks, neighbours, degree, less, refine, section)
+    gear, (mesh, patches) = whole.gear, whole.meshed()
     teeth, degree = patches.teeth, patches.modes - 1
-    options = {"tell": tell, "zones": zone_forces(mesh)}
-    whole_gear = influence if shaft is None else partial(integral_influence, shaft=shaft)
-    found = whole_gear(mesh, material, patches, **options)
+    solve = influence if whole.shaft is None else partial(integral_influence, shaft=whole.shaft)
+    found = solve(mesh, material, patches, tell=tell, zones=zone_forces(mesh))
     unit = np.tile(np.sqrt((2 * np.arange(degree + 1) + 1) * gear.b), patches.knots.shape[1])  # from P_a / b to orthonormal
     size = unit.size
-    whole = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
-    kept = _resolved(gear, material, whole[0, :, 0], degree, refine, cache) if healthy is None else healthy.degree
+    matrix = found.matrix.reshape(len(teeth), size, len(teeth), size) * unit[:, None, None] * unit
+    kept = _resolved(whole, material, matrix[0, :, 0], degree, cache) if healthy is None else healthy.degree
     own = np.flatnonzero(np.arange(size) % (degree + 1) <= kept)
-    between = {(i, j): whole[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
-    made = parted(gear, material, gear.b, kept, between, found.dofs, healthy, cache=cache)
+    between = {(i, j): matrix[a][np.ix_(own, [b], own)][:, 0] for a, i in enumerate(teeth) for b, j in enumerate(teeth)}
+    made = parted(gear, material, kept, between, found.dofs, healthy, cache=cache)
     if not found.mutual.size:
         return made
     opening = {tooth: (found.opening[:, k].reshape(-1, size) * unit)[:, own] for k, tooth in enumerate(teeth)}
     return replace(made, seam=Faces(opening, found.mutual))
 
 
-def solid_plan(gear, cracks=(), *, neighbours=1, degree=None, less=0, refine=1.0, section=None, shaft=None):
-    """`gearfe.elements.solver.Plan` of `solid_flexibility` of the same, refused if it does not fit; costs its mesh alone."""
-    mesh, patches = _meshed(gear, cracks, neighbours, degree, less, refine, section)
-    more = zone_forces(mesh).shape[1]
-    if shaft is not None:
-        mesh, discs = on_stubs(mesh, shaft)
-        more += discs.shape[1]
-    return planned(mesh, patches, more)
-
-
-def _meshed(gear, cracks, neighbours, degree, less, refine, section):
-    """Mesh and patches of `solid_flexibility`."""
-    degree = (axial_modes(gear.b, gear.m_n) if degree is None else degree) - less
-    patches = Patches(tuple(solved_teeth(gear, cracks, neighbours)), hats(gear), degree + 1)
-    section = refine if section is None else section
-    layer = min(LAYER * gear.m_n, gear.b / 6) * section / refine
-    fine = [(z, z, END * layer) for z in (0.0, gear.b)]
-    options = {"refine": section, "per_hat": PER_HAT, "layer": layer, "sizes": SIZES, "fine": fine}
-    return mesh_patches(gear, patches, cracks=cracks, **options), patches
-
-
-def _resolved(gear, material, own, degree, refine, cache):
+def _resolved(whole, material, own, degree, cache):
     """Highest degree that the layers carry: `degree`, or up to `LOST` less; `own` is the influence on one flank."""
+    gear = whole.gear
     for kept in range(degree, degree - LOST - 1, -1):
         at = np.flatnonzero(np.arange(len(own)) % (degree + 1) <= kept)
-        flat = half_space(material) * own_distance(gear, gear.b, kept, cache=cache)
+        flat = half_space(material) * own_distance(gear, kept, cache=cache)
         least = eigh(own[np.ix_(at, at)], flat, eigvals_only=True)[0]
         if least >= RESOLVED:
             return kept
     raise RuntimeError(
-        f"z = {gear.z}, b = {gear.b:g} mm, refine = {refine:g}: the mesh is too coarse for patches of degree {kept} along the "
-        f"width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
+        f"z = {gear.z}, b = {gear.b:g} mm, refine = {whole.refine:g}: the mesh is too coarse for patches of degree {kept} along "
+        f"the width, one of them moves only {100 * least:.2g} % of what a half-space does: raise refine, or lower the degree"
     )

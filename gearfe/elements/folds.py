@@ -31,14 +31,8 @@ def _slopes(count):
 def jacobians(points, cells):
     """Least Jacobian determinant ``(m,)`` of second-order elements at CalculiX's integration points and at their corners.
 
-    Of hexahedra near their corners, at `NEAR` of the way, since the quads of a section may have a straight angle.
-
-    Parameters
-    ----------
-    points : ndarray, shape (3, n)
-        [mm]
-    cells : ndarray, shape (10 or 20, m)
-        Nodes in CalculiX's order.
+    Of hexahedra near their corners, at `NEAR` of the way, since the quads of a section may have a straight angle. `points` are
+    ``(3, n)`` [mm], `cells` ``(10 or 20, m)`` nodes in CalculiX's order.
     """
     slopes = _slopes(len(cells))
     out = np.empty(cells.shape[1])
@@ -53,16 +47,7 @@ def unfolded(nodes, cells):
 
     The nodes in the middle of the edges of every tet that keeps less than `LEFT` of the straight one's Jacobian go half of the
     way to the chord, again and again, at last the whole way. A tet with two faces on one smooth surface, or across the end of a
-    flank, needs it: no bend suits both.
-
-    Parameters
-    ----------
-    nodes : ndarray, shape (3, n)
-        [mm]; straight tets between the corners do not fold.
-
-    Returns
-    -------
-    ndarray, shape (3, n)
+    flank, needs it: no bend suits both. Straight tets between the corners must not fold.
     """
     nodes = nodes.copy()
     ends = np.array(EDGES).T

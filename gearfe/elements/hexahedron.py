@@ -45,12 +45,7 @@ def face_shapes(x, y):
 def slopes_at(nodes, reference):
     """Slopes of the shape functions in space ``(m, 20, 3, q)`` and Jacobian determinants ``(m, q)``.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (3, 20, m)
-        [mm]
-    reference : ndarray, shape (20, 3, q)
-        Slopes on the unit cube, from `shapes`.
+    Of `nodes` ``(3, 20, m)`` [mm] and the slopes `reference` ``(20, 3, q)`` on the unit cube, from `shapes`.
     """
     jacobian = np.einsum("dkm,kcq->mqdc", nodes, reference, optimize=True)
     size = np.linalg.det(jacobian)
@@ -62,12 +57,7 @@ def slopes_at(nodes, reference):
 def element_stiffness(nodes, lam, mu):
     """Stiffness matrices ``(m, 20, 3, 20, 3)`` [N/mm]: ``lam div u div v + 2 mu eps(u) : eps(v)``, 3 x 3 x 3 Gauss points.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (3, 20, m)
-        [mm]
-    lam, mu : float
-        Lame constants [MPa].
+    Of `nodes` ``(3, 20, m)`` [mm], with Lame's constants [MPa].
     """
     points, weight = gauss(3)
     slopes, size = slopes_at(nodes, shapes(points)[1])
@@ -77,14 +67,8 @@ def element_stiffness(nodes, lam, mu):
 def stiffness_of(slopes, volume, lam, mu):
     """Stiffness matrices ``(m, k, 3, k, 3)`` [N/mm] of elements with k nodes.
 
-    Parameters
-    ----------
-    slopes : ndarray, shape (m, k, 3, q)
-        Of the shape functions at Gauss points [1/mm].
-    volume : ndarray, shape (m, q)
-        That each point stands for [mm**3].
-    lam, mu : float
-        Lame constants [MPa].
+    `slopes` ``(m, k, 3, q)`` are those of the shape functions at Gauss points [1/mm], `volume` ``(m, q)`` is what each point
+    stands for [mm**3].
     """
     count, nodes = slopes.shape[:2]
     rows = slopes.reshape(count, 3 * nodes, -1)

@@ -10,12 +10,13 @@ free nodes,
 r being the discs' rigid motions: exact, by one factorisation and twelve more columns.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from ..supports.stubs import MOTIONS, face_radii, stub_stiffness
-from .fe3d import Influence, patch_loads, planned
+from .fe3d import Influence, loads_and_rows, planned
 from .hexahedron import assemble
 from .solver import factor
 
@@ -23,45 +24,25 @@ from .solver import factor
 def integral_influence(mesh, material, patches, shaft, *, tell=None, zones=None):
     """`gearfe.elements.fe3d.influence` of a gear on the stubs of its shaft.
 
-    Parameters
-    ----------
-    mesh : geometry.mesh.solid.Solid
-    material : Material
-    patches : Patches
-    shaft : Shaft
-    tell, zones
-        As of `gearfe.elements.fe3d.influence`.
-
     Raises
     ------
     ValueError
         If the gear reaches beyond its shaft, or nothing of an end face is left inside of a stub.
     """
     mesh, discs = on_stubs(mesh, shaft)
-    every = np.arange(mesh.points.shape[1])
-    free = np.setdiff1d(every, mesh.held)
-    size = len(patches.teeth) * patches.knots.shape[1] * patches.modes
-    zones = np.zeros((3 * mesh.points.shape[1], 0)) if zones is None else zones
-    columns = size + zones.shape[1]
-    made = planned(mesh, patches, zones.shape[1] + discs.shape[1])
+    load, _, rows = loads_and_rows(mesh, patches, zones)
+    columns = load.shape[1]
+    made = planned(mesh, patches, columns - math.prod(patches.shape) + discs.shape[1])
     if tell:
         tell(made)
-    load = np.hstack([*(patch_loads(mesh, patches, tooth) for tooth in patches.teeth), zones])
-    rows = (3 * free[:, None] + np.arange(3)).ravel()
-    whole = assemble(mesh.points, mesh.cells, material, every)
+    whole = assemble(mesh.points, mesh.cells, material, np.arange(mesh.points.shape[1]))
     moved = whole @ discs + whole.T @ discs - whole.diagonal()[:, None] * discs  # of which the lower triangle is kept
-    lower = whole[rows][:, rows]
-    solve = factor(lower.tocsc(), made)
-    found = solve.gram(np.hstack([load[rows], -moved[rows]]))
+    found = factor(whole[rows][:, rows].tocsc(), made).gram(np.hstack([load[rows], -moved[rows]]))
     own, cross, back = found[:columns, :columns], found[:columns, columns:], found[columns:, columns:]
     used = np.flatnonzero(np.abs(discs).max(axis=0))
     stiff = discs.T @ moved - back + stub_stiffness(shaft, mesh.gear.b)
     total = own + cross[:, used] @ np.linalg.solve(stiff[np.ix_(used, used)], cross[:, used].T)
-    shape = len(patches.teeth), patches.knots.shape[1], patches.modes
-    total = (total + total.T) / 2
-    opening, mutual = total[size:, :size].reshape(-1, *shape), total[size:, size:]
-    own = total[:size, :size].reshape(*shape, *shape)
-    return Influence(own, patches, rows.size, made, opening=opening, mutual=mutual)
+    return Influence.between(patches, (total + total.T) / 2, rows.size)
 
 
 def on_stubs(mesh, shaft):

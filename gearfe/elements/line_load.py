@@ -5,10 +5,10 @@ import math
 import numpy as np
 
 from geometry.mesh.solid import Solid
-from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
+from geometry.tooth.profile import arc_at, roll_at_arc
 
 from ..checks import check_length
-from .fe3d import _points
+from .fe3d import helicoid_normal, points_between
 from .hexahedron import assemble, face_shapes
 from .one_tooth import load_at
 from .solver import factor, plan
@@ -55,21 +55,15 @@ def line_forces(mesh: Solid, roll, line_load, spread):
     `line_load` is a number or a function of z [N/mm].
     """
     gear = mesh.gear
-    edge, x, at, across = _points(gear.outward * mesh.section.roll[0], (), ACROSS)
-    layer, y, z, along = _points(mesh.levels, (), ALONG)
+    edge, x, at, across = points_between(gear.outward * mesh.section.roll[0], (), ACROSS)
+    layer, y, z, along = points_between(mesh.levels, (), ALONG)
     at, centre = gear.outward * at, roll(z)
     low, high = sorted((gear.roll_f, gear.roll_a))
     on = (centre >= low) & (centre <= high)
     away = np.abs(arc_at(gear, at)[:, None] - arc_at(gear, np.clip(centre, low, high)))
     hat = np.maximum(1 - away / spread, 0.0) * (across * at / gear.r_b)[:, None]
     press = (line_load(z) if callable(line_load) else line_load) * along * on * hat / hat.sum(axis=0)
-    plane, turn, tilt = flank_normal(gear, at), gear.twist_rate * z, math.cos(gear.beta_b)
-    cos, sin = np.cos(turn), np.sin(turn)
-    normal = np.array([
-        tilt * (np.outer(plane[0], cos) + np.outer(plane[1], sin)), tilt * (np.outer(plane[1], cos) - np.outer(plane[0], sin)),
-        np.full(press.shape, -math.sin(gear.beta_b)),
-    ])  # fmt: skip
     value, nodes = face_shapes(x[:, None], y[None, :]), mesh.flank(0)[:, edge[:, None], layer[None, :]]
     force = np.zeros((mesh.points.shape[1], 3))
-    np.add.at(force, nodes, -np.einsum("nsz,dsz->nszd", value * press, normal))
+    np.add.at(force, nodes, -np.einsum("nsz,dsz->nszd", value * press, helicoid_normal(gear, at, z)))
     return force.ravel()

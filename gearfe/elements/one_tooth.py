@@ -6,14 +6,18 @@ import numpy as np
 
 from geometry.damage.crack import Crack
 from geometry.damage.kinds import are
+from geometry.mesh.outline import stations
+from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at
 
 from ..checks import checked_refine, is_number
 from ..material import Material
+from .elasticity import Body
 from .fe import flank_load
 
 MOST_LOAD = 0.05  # N/mm over E m_n: no mesh of teeth is stiffer than b E / 5, so that it would approach by m_n / 4
+NARROW = 0.05  # half width of a narrow load [m_n]
 SAMPLES = 65  # heights at which a load along the width is looked at
 
 
@@ -80,6 +84,17 @@ def load_at(gear, radius):
 def edge_lengths(gear, edges, refine):
     """Edge lengths [mm] of a table in modules at a resolution."""
     return {name: size * gear.m_n / refine for name, size in edges.items()}
+
+
+def narrow_section(gear, material, state, edge, load, tooth=0, cracks=()):
+    """Section of a gear meshed for a narrow load on a tooth, its `Body`, and the nodal forces of a unit load.
+
+    `edge` are its edge lengths [mm], `load` the arc [mm] of the load, its half width [mm] and the edge length there [mm].
+    """
+    arc, half_width, fine = load
+    roll = stations(gear, edge["flank"], patches=[(arc - half_width, arc + half_width, fine)])
+    mesh = section(gear, {tooth: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"], cracks=cracks)
+    return mesh, Body(mesh.mesh, material, state=state), narrow_load(mesh, tooth, arc, half_width)
 
 
 def narrow_load(mesh, tooth, arc, half_width):

@@ -18,56 +18,38 @@ from geometry.mesh.solid import HEX
 from ..flexibility.solid import hats
 from ..flexibility.solved import solved_gears
 from .fe3d import Patches, mesh_patches, patch_loads
+from .fe_gear3d import PER_HAT, SIZES
 from .hexahedron import assemble
 
 FINER = 4.0  # resolution of the section that is taken for exact, against that of the gear
 THIN = 1e-2  # height of the layer [m_n]: so thin that a helix does not turn it
 
 
-def finer_section(found, material, cracks=(), *, refine, per_hat, sizes, cache=True):
+def finer_section(found, material, cracks=(), *, refine, cache=True):
     """A gear's `Flexibility3D` with what a section of `FINER` resolution adds to every tooth.
 
-    Parameters
-    ----------
-    found : Flexibility3D
-        By hexahedra whose section has resolution `refine`.
-    material : Material
-    cracks : tuple of Crack
-        Of the gear; those of part of the width or of a depth that changes count with their whole section.
-    refine, per_hat, sizes
-        Of the section, as of `gearfe.elements.fe3d.mesh_patches`.
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
+    `found` is of hexahedra whose section has resolution `refine`. Cracks of part of the width or of a depth that changes count
+    with their whole section.
     """
-    gear, options = found.gear, {"refine": refine, "per_hat": per_hat, "sizes": sizes, "cache": cache}
-    own = {tooth: tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth) for tooth in found.near}
+    gear, kept = found.gear, solved_gears(cache)
     even = np.eye(found.degree + 1)
-    near = {tooth: near + np.kron(_lacking(gear, material, own[tooth], **options), even) for tooth, near in found.near.items()}
-    healthy = found.healthy and finer_section(found.healthy, material, **options)
+
+    def lacking(tooth):
+        """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
+        own = tuple(replace(whole(c), tooth=0) for c in cracks if c.tooth % gear.z == tooth)
+        case = gear, material, own
+        return kept.get(("section error", *case, refine), lambda: plane_hats(*case, FINER * refine) - plane_hats(*case, refine))
+
+    near = {tooth: near + np.kron(lacking(tooth), even) for tooth, near in found.near.items()}
+    healthy = found.healthy and finer_section(found.healthy, material, refine=refine, cache=kept)
     return replace(found, near=near, healthy=healthy)
 
 
-def _lacking(gear, material, cracks, *, refine, per_hat, sizes, cache):
-    """Displacement ``(PLACES, PLACES)`` of the hats under a unit force per width that the section lacks [mm**2/N]."""
-
-    def solve():
-        return plane_hats(gear, material, cracks, FINER * refine, per_hat, sizes) - plane_hats(
-            gear, material, cracks, refine, per_hat, sizes
-        )
-
-    key = ("section error", gear, material, cracks, refine, per_hat, tuple(sorted(sizes.items())))
-    return solved_gears(cache).get(key, solve)
-
-
-def plane_hats(gear, material, cracks, refine, per_hat, sizes):
+def plane_hats(gear, material, cracks, refine):
     """Displacement ``(PLACES, PLACES)`` of the hats of tooth 0 under a unit force per width in plane strain [mm**2/N]."""
     thin = replace(gear, b=THIN * gear.m_n)
     patches = Patches((0,), hats(gear), 1)
-    mesh = mesh_patches(thin, patches, cracks=cracks, refine=refine, per_hat=per_hat, layer=refine * thin.b, sizes=sizes)
+    mesh = mesh_patches(thin, patches, cracks=cracks, refine=refine, per_hat=PER_HAT, layer=refine * thin.b, sizes=SIZES)
     count = mesh.points.shape[1]
     lower = assemble(mesh.points, mesh.cells, material, np.arange(count))
     planar = _planar(mesh.cells, count)

@@ -33,6 +33,12 @@ def second_order(points, cells):
     return nodes, np.vstack([cells, count + place.reshape(every.shape)]), lambda a, b: count + np.searchsorted(edges, key(a, b))
 
 
+def nodes_of(faces, number):
+    """Nodes on faces ``(3, k)``, those in the middle of their edges by `number` of `second_order`."""
+    a, b, c = faces
+    return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
+
+
 def tet_slopes(nodes, corner):
     """Slopes of the shape functions ``(m, 10, 3, q)`` at barycentric places ``(4, q)``, and volumes ``(m,)``."""
     sides = (nodes[:, 1:4] - nodes[:, :1]).transpose(2, 1, 0)  # (m, vertex, xyz)

@@ -59,16 +59,7 @@ class _Block(NamedTuple):
 
 
 class Set:
-    """A case with its flexibilities; solves any of its positions.
-
-    Parameters
-    ----------
-    case : PlanetaryCase
-    bodies : Bodies
-    stand : Standing
-    coupled : bool
-        As of `gearfe.epicyclic.solve.planetary_stiffness`.
-    """
+    """A case with its flexibilities; solves any of its positions. `coupled` as of `planetary_stiffness`."""
 
     def __init__(self, case: PlanetaryCase, bodies: Bodies, stand: Standing, coupled: bool) -> None:
         self.case, self.bodies, self.stand, self.coupled = case, bodies, stand, coupled
@@ -87,7 +78,7 @@ class Set:
         blocks = self._blocks(met)
         problem = self._problem(blocks)
         force, motion = balance(problem)
-        shut = [one for one in blocks if one.met.contacts.closed(force[one.at])]
+        shut = [block for block in blocks if block.met.contacts.closed(force[block.at])]
         if shut:
             force, motion = balance(_with_faces(problem, shut))
             force = force[: problem.gap.size]
@@ -160,11 +151,11 @@ class Set:
                     total[b.at, a.at] = total[a.at, b.at].T
             closing[a.at] = self._closing(a)
         values = {
-            name: np.concatenate([getattr(one.met.contacts, name) for one in blocks])
+            name: np.concatenate([getattr(block.met.contacts, name) for block in blocks])
             for name in ("coefficient", "radius", "tilt")
         }
-        gap = np.concatenate([one.met.contacts.gap + self.behind[one.inner, one.planet] for one in blocks])
-        modulus = np.concatenate([np.full(one.met.contacts.gap.size, self._modulus[one.inner]) for one in blocks])
+        gap = np.concatenate([block.met.contacts.gap + self.behind[block.inner, block.planet] for block in blocks])
+        modulus = np.concatenate([np.full(block.met.contacts.gap.size, self._modulus[block.inner]) for block in blocks])
         load = np.zeros(self._motions)
         load[0] = case.planets * case.force / case.width
         problem = Problem(total, gap, values["coefficient"], values["radius"], modulus, values["tilt"], closing, load)
@@ -195,11 +186,11 @@ class Set:
         rim, lugs = self.bodies.rim, self._lugs
         n = problem.gap.size
         across, moves = np.zeros((lugs, n)), np.zeros((3, n))
-        for one in blocks:
-            if one.inner:
-                teeth = one.teeth[1] % self.case.gears.ring.z
-                across[:, one.at] = rim.across[:, teeth].reshape(lugs, -1) @ one.spread[1].T
-                moves[:, one.at] = rim.gives[:, teeth].reshape(3, -1) @ one.spread[1].T
+        for block in blocks:
+            if block.inner:
+                teeth = block.teeth[1] % self.case.gears.ring.z
+                across[:, block.at] = rim.across[:, teeth].reshape(lugs, -1) @ block.spread[1].T
+                moves[:, block.at] = rim.gives[:, teeth].reshape(3, -1) @ block.spread[1].T
         closing = np.vstack([problem.closing, np.zeros((lugs, problem.closing.shape[1]))])
         closing[:, -3:] = -np.concatenate([moves, rim.turns], axis=1).T
         return problem.with_more(np.block([[problem.flexibility, across.T], [across, rim.lug]]), closing)

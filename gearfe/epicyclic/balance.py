@@ -45,29 +45,16 @@ class Problem(NamedTuple):
         `closing` ``(n + m, motions)``.
         """
         more = flexibility.shape[0] - self.gap.size
-        zero, one = np.zeros(more), np.ones(more)
-        return Problem(
-            flexibility,
-            np.append(self.gap, zero),
-            np.append(self.coefficient, zero),
-            np.append(self.radius, one),
-            np.append(self.modulus, one),
-            np.append(self.tilt, zero),
-            closing,
-            self.load,
-        )
+        free = {"gap": 0.0, "coefficient": 0.0, "radius": 1.0, "modulus": 1.0, "tilt": 0.0}
+        values = {name: np.append(getattr(self, name), np.full(more, value)) for name, value in free.items()}
+        return self._replace(flexibility=flexibility, closing=closing, **values)
 
 
 def balance(problem: Problem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Forces ``(n,)`` [N/mm] and motions of a `Problem`.
 
     Contacts that would pull are left out and those that would overlap are taken in, all at once; where that does not settle, one
-    at a time.
-
-    Raises
-    ------
-    RuntimeError
-        If no forces that only push are in balance, or none were found.
+    at a time. RuntimeError if no forces that only push are in balance, or none were found.
     """
     unit = np.abs(problem.load).max()
     active = _likely(problem, unit)

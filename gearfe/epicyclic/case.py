@@ -94,7 +94,7 @@ class PlanetaryCase:
                 raise ValueError(f"{name} = {value!r}, but give a number > 0{' [N]' if name == 'force' else ' [N/mm]'}")
             put(self, name, float(value))
         materials = tuple(self.material) if isinstance(self.material, (tuple, list)) else (self.material,) * 3
-        if len(materials) != 3 or not all(isinstance(one, Material) for one in materials):
+        if len(materials) != 3 or not all(isinstance(material, Material) for material in materials):
             raise ValueError(f"material = {self.material!r}, but give one Material or three: of sun, planets and ring")
         put(self, "material", materials)
         for k, pair in enumerate(self.pairs):

@@ -10,23 +10,10 @@ from geometry.tooth.modified import Flank
 
 
 def faults(case: Any, inner: bool, planet: int, first: int) -> tuple[Any, Any, bool]:
-    """Flank forms and cracks of pinion and wheel of a mesh, and whether its teeth differ.
+    """Flank forms (None: involutes) and cracks of pinion and wheel of a mesh, and whether its teeth differ.
 
-    Parameters
-    ----------
-    case : PlanetaryCase
-    inner : bool
-        Whether it is the mesh with the ring.
-    planet : int
-    first : int
-        The wheel's tooth that meets the pinion's tooth 0: C or D of `Standing`.
-
-    Returns
-    -------
-    forms : (FlankForm, FlankForm) or None
-    cracks : (tuple of Crack, tuple of Crack)
-        Teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` counts them.
-    differs : bool
+    `inner`: it is the mesh with the ring. `first` is the wheel's tooth that meets the pinion's tooth 0: C or D of `Standing`.
+    Cracks count teeth in each gear's own frame, as `gearfe.flexibility.plane.Flexibility` does.
     """
     pair, names = case.pairs[inner], (("planet", planet), "ring") if inner else ("sun", ("planet", planet))
     flanks = [case.flanks.get(name, Flank()) for name in names]

@@ -24,11 +24,8 @@ NEAR = 1.5  # times the approach of a mesh: gaps up to there are pressed togethe
 def drawable(curves: Any, at: Any) -> tuple[PlanetaryCase, Standing]:
     """Case and `Standing` of one position whose gears can be meshed one by one as the set has them.
 
-    Raises
-    ------
-    ValueError
-        If there is no such position; if the ring is neither held nor on rigid pads; with modified flanks or cracks, which are not
-        meshed; if a mesh carries nothing, so that how far its planet is turned is not known.
+    ValueError if there is no such position; if the ring is neither held nor on rigid pads; with modified flanks or cracks, which
+    are not meshed; if a mesh carries nothing, so that how far its planet is turned is not known.
     """
     if not isinstance(curves, SetCurves):
         raise ValueError(f"curves = {curves!r}, but give what planetary_stiffness gives")

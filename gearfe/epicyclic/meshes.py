@@ -1,7 +1,7 @@
 """What the contact of a pair says of one mesh of a set at one phase: contacts, their gaps, how they yield among themselves.
 
-All of it is the pair's (`gearfe.contact.plane.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at corners and
-kinks, exact gaps, cracks.
+All of it is the pair's (`gearfe.contact.pair_contact.PairContact`): smooth contacts with Hertz's logarithm, rows of hats at
+corners and kinks, exact gaps, cracks.
 """
 
 import math
@@ -14,7 +14,7 @@ from scipy.linalg import block_diag
 from geometry.pair.contacts import near_pitches
 
 from ..contact.kinks import kink_rows, near_kink
-from ..contact.plane import KINK, PairContact, _closing
+from ..contact.pair_contact import KINK, PairContact, _closing
 from ..contact.rows import Wanted
 from ..contact.sliding import bounded
 from ..energy.ritz.plane import flexibility
@@ -54,13 +54,7 @@ class Contacts(NamedTuple):
 
 
 class Mesh:
-    """One mesh of a set at many phases, under any load.
-
-    Parameters
-    ----------
-    contact : PairContact
-        At the phases.
-    """
+    """One mesh of a set at the phases of its `PairContact`, under any load."""
 
     def __init__(self, contact: PairContact) -> None:
         self.contact = contact
@@ -91,16 +85,7 @@ class Met(NamedTuple):
 
 
 class Meshes:
-    """All meshes of a case at some positions; equal planets share what they have in common.
-
-    Parameters
-    ----------
-    case : PlanetaryCase
-    stand : Standing
-    refine : float
-        Divides the edge lengths.
-    cache : SolvedGears
-    """
+    """All meshes of a case at the positions of a `Standing`; equal planets share what they have in common."""
 
     def __init__(self, case: Any, stand: Standing, refine: float, cache: Any) -> None:
         self.case, self._options = case, {"refine": refine, "cache": cache}
@@ -189,7 +174,7 @@ def _one(contact, i, built, rows, possible, least, reach):
             places.append([found.roll_1[i, k], found.roll_2[i, k], *contact.turns[:, i, k]])
         else:
             places.append([row.roll_1, row.roll_2, row.turn_1, row.turn_2])
-    values = np.hstack([np.reshape(one, (4, -1)) for one in places])
+    values = np.hstack([np.reshape(place, (4, -1)) for place in places])
     near = built["gap"] - least <= reach
     seams = [flexible.seam for flexible in contact.flexibility if flexible.seam]
     return Contacts(

@@ -51,10 +51,7 @@ class Rim:
 def ring_on(whole: WholeGear, support: "str | RimBed | RimSupports", width: float) -> Rim:
     """`Rim` of a ring by what holds it; pads' stiffnesses are shared by the face `width` [mm].
 
-    Raises
-    ------
-    ValueError
-        As of `check_support`, or if the ring could move without force.
+    ValueError as of `check_support`, or if the ring could move without force.
     """
     gear = whole.gear
     check_support(support, gear)
@@ -96,16 +93,8 @@ def _moves(gear):
 def rim_moved(rim: Rim, loads: NDArray[np.float64], tractions: NDArray, whole: NDArray) -> NDArray[np.float64]:
     """Displacement ``(nodes, 2)`` of the rim's nodes, outwards and clockwise [mm]; their angles are those of `rim_angles`.
 
-    Parameters
-    ----------
-    rim : Rim
-        On pads.
-    loads : ndarray, shape (z, PLACES)
-        On the teeth [N/mm].
-    tractions : ndarray, shape (p,)
-        Of the pads [N/mm].
-    whole : ndarray, shape (3,)
-        Motion of the whole ring: along x, y [mm], clockwise turn [rad].
+    Of a ring on pads under `loads` ``(z, PLACES)`` on the teeth and `tractions` ``(p,)`` of the pads [N/mm], moved as a `whole`
+    ``(3,)``: along x, y [mm], clockwise turn [rad].
     """
     assert rim.pads is not None
     gear, pads, r = rim.whole.gear, rim.pads, rim.whole.edge

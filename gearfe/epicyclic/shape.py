@@ -74,7 +74,7 @@ def plot_planetary_set(
     case, stand = drawable(curves, at)
     sides = [one for pair in touching(case, stand, curves, at) for one in pair]
     bodies = placed(case, stand, curves, at)
-    shapes = [_shape(case, body, [one for one in sides if one["body"] == k]) for k, body in enumerate(bodies)]
+    shapes = [_shape(case, body, [side for side in sides if side["body"] == k]) for k, body in enumerate(bodies)]
     supports = None
     if case.ring != "held":
         supports = cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + bodies[-1][3])
@@ -85,7 +85,7 @@ def _shape(case, body, sides):
     """`Shape` of one gear under the loads of its flanks, held where it is."""
     gear, material, centre, angle, _ = body
     size = {name: edge * gear.m_n for name, edge in EDGE.items()}
-    rolls = {(one["tooth"], one["side"]): stations(gear, size["flank"]) for one in sides}
+    rolls = {(side["tooth"], side["side"]): stations(gear, size["flank"]) for side in sides}
     made, held = meshed(case, gear, rolls, size["fillet"], size["near"], size["far"], 0.3 * gear.m_n)
     mesh = made.mesh
     facets = mesh.boundaries["held"]

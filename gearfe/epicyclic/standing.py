@@ -42,10 +42,7 @@ class Standing:
 def assembled(set_: "PlanetarySet", angles: ArrayLike) -> NDArray[np.float64]:
     """Planets' angles, checked [rad].
 
-    Raises
-    ------
-    ValueError
-        If teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
+    ValueError if teeth do not fit there, or neighbours touch; the message gives the nearest angles that fit.
     """
     given = numbers("angles", angles, " [rad], one for each planet")
     if given.ndim != 1 or not given.size or not np.isfinite(given).all():

@@ -43,18 +43,9 @@ class WholeGear:
     tip), then into the left one. The held edge has r unknowns a sector, radial and tangential (clockwise) by node: those of its
     left corner first, clockwise, the right corner left out.
 
-    Attributes
-    ----------
-    gear, material
-        As of `whole_gear`.
-    stiffness : ndarray, shape (h, n, n)
-        Complex; the unknowns of the held edge come first.
-    push : ndarray, shape (h, n, 2 PLACES)
-        Loads on the tooth of sector 0.
-    bed : ndarray, shape (h, r, r)
-        Mass matrix of the held edge [mm]: forces of unit tractions spread as displacements are.
-    angle : ndarray, shape (r / 2,)
-        Of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
+    `stiffness` ``(h, n, n)`` is complex, the unknowns of the held edge come first; `push` ``(h, n, 2 PLACES)`` are the loads on
+    the tooth of sector 0; `bed` ``(h, r, r)`` is the mass matrix of the held edge [mm]: forces of unit tractions spread as
+    displacements are; `angle` ``(r / 2,)`` that of the held nodes of sector 0, clockwise from its tooth's centre-line [rad].
     """
 
     gear: Gear
@@ -86,13 +77,8 @@ class WholeGear:
     def loose(self) -> tuple[NDArray[np.float64], NDArray[np.complex128]]:
         """What is added to `held` if nothing holds the edge, and how forces on the edge move the loads and the edge.
 
-        Forces are to be in balance with those on the teeth; the motion of the whole gear is left out.
-
-        Returns
-        -------
-        more : ndarray, shape (z, 2 PLACES, 2 PLACES)
-        moved : ndarray, shape (h, r, 2 PLACES + r)
-            Displacements of the edge by harmonic, under the loads and under forces on itself.
+        Forces are to be in balance with those on the teeth; the motion of the whole gear is left out. Given are ``(z, 2 PLACES, 2
+        PLACES)``, and displacements of the edge by harmonic ``(h, r, 2 PLACES + r)``, under the loads and under forces on itself.
         """
         h, n, r = *self.stiffness.shape[:2], self.edge
         own = np.zeros((h, n, r))
@@ -120,17 +106,7 @@ def _pseudo(stiffness):
 
 
 def whole_gear(gear, material, *, refine=1.0, cache=True):
-    """`WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector.
-
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    refine : float
-        Divides the edge lengths.
-    cache : bool or SolvedGears
-        See `gearfe.flexibility.solved.solved_gears`.
-    """
+    """`WholeGear` of a healthy gear in plane strain, by second-order triangles on one sector."""
     case = gear, material, float(refine)
     return solved_gears(cache).get(("whole gear", *case), partial(_solved, *case))
 
@@ -207,17 +183,9 @@ def _rolls(gear):
 
 
 def line_loads(gear, mesh, vertices, rolls, roll, side):
-    """Nodal forces ``(2 nodes, n)`` of unit line loads into the right (0) or the left flank (1) of tooth 0.
+    """Nodal forces ``(2 nodes, n)`` of unit line loads into the right (`side` 0) or the left flank (1) of tooth 0.
 
-    Parameters
-    ----------
-    gear : Gear
-    mesh : MeshTri2
-    vertices, rolls : ndarray
-        Vertices of the flank from root to tip and their roll lengths [mm].
-    roll : ndarray, shape (n,)
-        Roll lengths of the loads [mm].
-    side : int
+    `vertices` of the flank from root to tip at the roll lengths `rolls` [mm]; `roll` ``(n,)`` are those of the loads [mm].
     """
     rising = rolls * gear.outward
     edge = np.clip(np.searchsorted(rising, roll * gear.outward) - 1, 0, rising.size - 2)

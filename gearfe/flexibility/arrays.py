@@ -67,7 +67,7 @@ def plane_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility:
 
 def solid_arrays(found: Flexibility3D) -> dict[str, NDArray]:
     """Arrays of a `Flexibility3D` by name, those of the healthy gear in it under ``healthy/``."""
-    out = {name: np.array(getattr(found, name), dtype=float) for name in ("width", "kernel", "edge")}
+    out = {name: np.array(getattr(found, name), dtype=float) for name in ("kernel", "edge")}
     out |= {name: np.array(getattr(found, name), dtype=np.int64) for name in ("degree", "unknowns")}
     out |= {f"near/{tooth}/b": value for tooth, value in found.near.items()}
     out |= {f"far/{first}/{second}/b": value for (first, second), value in found.far.items()}
@@ -92,9 +92,9 @@ def solid_from(gear: Gear, arrays: dict[str, NDArray]) -> Flexibility3D:
     size = next(iter(near.values())).shape if near else (0, 0)
     _check(size == (PLACES * (degree + 1),) * 2, "the degree along the width")
     _check(all(value.shape == size for value in (*near.values(), *far.values())), "teeth")
-    width, kernel, edge = (float(tree.take(name, 0)) for name in ("width", "kernel", "edge"))
+    kernel, edge = (float(tree.take(name, 0)) for name in ("kernel", "edge"))
     healthy = tree.healthy(gear, solid_from)
-    found = Flexibility3D(gear, width, degree, kernel, near, far, tree.whole("unknowns"), healthy, seam, edge)
+    found = Flexibility3D(gear, degree, kernel, near, far, tree.whole("unknowns"), healthy, seam, edge)
     return _all_used(found, arrays, solid_arrays)
 
 

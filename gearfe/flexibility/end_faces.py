@@ -10,10 +10,9 @@ shear is Hetenyi's way into the quarter-space, J. Appl. Mech. 37, 1970; a factor
 import numpy as np
 from numpy.polynomial import legendre
 
-from .halfspace import hat_distance, modes
+from .halfspace import between, graded, hat_distance, modes
 
-PIECES = 20  # of the distance to the mirror, each longer than the one before
-POINTS = 12  # Gauss points at least in each
+POINTS = 12  # Gauss points at least in each part of the distance to the mirror
 
 
 def edge_factor(material):
@@ -32,26 +31,9 @@ def mirrored_patches(knots, width, degree, stretch=1.0):
     The image of a load on a contact line is on that line's continuation, ``stretch (z + z')`` away; across the lines the patches
     are so wide against the slope of helical lines that it is left out.
 
-    Parameters
-    ----------
-    knots : ndarray, shape (3, n)
-        Start, top and end of the hats along the profile arc [mm].
-    width : float
-        [mm].
-    degree : int
-        Of the polynomials, see `halfspace.modes`.
-    stretch : float
-        ``1 / cos(beta_b)``.
-
-    Returns
-    -------
-    ndarray, shape (n, degree + 1, n, degree + 1)
+    The arguments are as of `halfspace.patch_kernel`, and so is what is returned.
     """
-    fine = min((knots[2] - knots[0]).min(), width) * 1e-9  # the kernel rises like the logarithm of the distance
-    ends = np.concatenate([[0.0], fine * (width / fine) ** np.linspace(0, 1, PIECES + 1), [1.5 * width, 2 * width]])
-    gauss, weight = legendre.leggauss(max(POINTS, degree + 4))
-    half = np.diff(ends)[:, None] / 2
-    q, weight = ((ends[:-1, None] + ends[1:, None]) / 2 + half * gauss).ravel(), (half * weight).ravel()  # q = z + z'
+    q, weight = between(np.append(graded(knots, width), [1.5 * width, 2 * width]), max(POINTS, degree + 4))  # q = z + z'
     gauss, inner = legendre.leggauss(degree + 1)
     low, high = np.maximum(q - width, 0.0), np.minimum(q, width)
     z = low[:, None] + (high - low)[:, None] * (1 + gauss) / 2

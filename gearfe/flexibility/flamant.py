@@ -11,14 +11,8 @@ def displacement(points, place, inward, tip_side, modulus, ratio):
     Normalised so that the surface moves by ``-c ln r`` along the load, ``c = 2 / (pi E')``. The rotation about the load has
     its jump half-way between the outward normal and the surface on `tip_side`, where there is no material.
 
-    Parameters
-    ----------
-    points : ndarray, shape (2, n)
-        [mm].
-    place, inward, tip_side : ndarray, shape (2, loads)
-        Load points [mm], unit load directions, unit tangents towards the tip.
-    modulus, ratio : float
-        E' [MPa] and nu' of plane stress; in plane strain E / (1 - nu**2), nu / (1 - nu).
+    `place`, `inward` and `tip_side` ``(2, loads)`` are load points [mm], unit load directions and unit tangents towards the tip,
+    `modulus` and `ratio` E' [MPa] and nu' of plane stress; in plane strain E / (1 - nu**2), nu / (1 - nu).
 
     References
     ----------

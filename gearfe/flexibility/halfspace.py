@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
-PIECES = 20  # of the width, each longer than the one before, in `patch_kernel`
+PIECES = 20  # of `graded`
 
 
 def half_space(material):
@@ -51,19 +51,7 @@ def hat_distance(knots, shift, c):
     A hat has three point masses as second derivative: the double integral is nine values of `fourth_integral`; where c is
     large against the hats these would cancel, and Gauss points do.
 
-    Parameters
-    ----------
-    knots : ndarray, shape (3, n)
-        Start, top and end of the hats [mm].
-    shift : ndarray, shape (n, n, t)
-        [mm].
-    c : ndarray, shape (t,)
-        Positive [mm].
-
-    Returns
-    -------
-    ndarray, shape (n, n, t)
-        [1/mm].
+    Of hats on `knots` ``(3, n)``, for `shift` ``(n, n, t)`` and c > 0 ``(t,)`` [mm]: ``(n, n, t)`` [1/mm].
     """
     out = np.zeros(shift.shape)
     far = c > FAR * (knots[2] - knots[0]).max()
@@ -80,34 +68,29 @@ def hat_distance(knots, shift, c):
     return out
 
 
+def between(ends, count):
+    """Gauss points between rising `ends`, `count` in each interval, and their weights."""
+    gauss, weight = legendre.leggauss(count)
+    half = np.diff(ends)[:, None] / 2
+    return ((ends[:-1, None] + ends[1:, None]) / 2 + half * gauss).ravel(), (half * weight).ravel()
+
+
+def graded(knots, width):
+    """Ends of intervals from 0 to `width` [mm], each longer than the one before: kernels rise like a logarithm towards 0."""
+    fine = min((knots[2] - knots[0]).min(), width) * 1e-9
+    return np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, PIECES + 1))
+
+
 def patch_kernel(knots, width, degree, slope=0.0, stretch=1.0):
     """Mean of ``1 / R`` over patches: hats across the flank times orthonormal polynomials along the width.
 
     With t = z - z' the flat distance is ``R**2 = (s - s' - slope t)**2 + (stretch t)**2``: the lines of contact of an involute
-    helicoid, which is developable, are the lines ``ds = slope dz``, and `stretch` is their length per width.
+    helicoid, which is developable, are the lines ``ds = slope dz``, and `stretch` is their length per width, 1 / cos(beta_b).
 
-    Parameters
-    ----------
-    knots : ndarray, shape (3, n)
-        Start, top and end of the hats along the profile arc [mm].
-    width : float
-        [mm].
-    degree : int
-        Of the polynomials, see `modes`.
-    slope : ndarray, shape (n, n), or float
-        Symmetric [-].
-    stretch : float
-        ``1 / cos(beta_b)``.
-
-    Returns
-    -------
-    ndarray, shape (n, degree + 1, n, degree + 1)
+    `knots` ``(3, n)`` are start, top and end of the hats along the profile arc [mm], `degree` is that of the polynomials
+    (`modes`), `slope` ``(n, n)`` or a number, symmetric; the result is ``(n, degree + 1, n, degree + 1)``.
     """
-    fine = min((knots[2] - knots[0]).min(), width) * 1e-9  # the kernel rises like the logarithm of t
-    ends = np.append(0.0, fine * (width / fine) ** np.linspace(0, 1, PIECES + 1))
-    gauss, weight = legendre.leggauss(max(16, degree + 4))
-    t = ((ends[:-1, None] + ends[1:, None]) / 2 + np.diff(ends)[:, None] / 2 * gauss).ravel()
-    weight = (np.diff(ends)[:, None] / 2 * weight).ravel()
+    t, weight = between(graded(knots, width), max(16, degree + 4))
     gauss, inner = legendre.leggauss(degree + 1)
     left = width - t
     z = left[:, None] * (1 + gauss) / 2

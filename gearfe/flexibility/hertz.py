@@ -81,12 +81,12 @@ def _masses(knots):
     return np.array([start, top, stop]), np.array([height / left, -height / left - height / right, height / right])
 
 
-def linear_hertz(materials, state="plane strain"):
+def linear_hertz(materials):
     """Linear contact flexibility [mm per N/mm] of the textbook: stiffness ``pi E L / 4 (1 - nu**2)`` for equal materials.
 
     Yang and Sun, J. Mech. Transm. Autom. Des. 107 (1985) 529-535; for two materials the compliances are averaged.
     """
-    return 2 / (math.pi * contact_modulus(materials, state))
+    return 2 / (math.pi * contact_modulus(materials))
 
 
 def weber_line(line_load, materials, radius, depth):
@@ -95,15 +95,8 @@ def weber_line(line_load, materials, radius, depth):
     Approach of the two tooth centre-lines, per body ``2 (1 - nu**2) P / (pi E) (ln(2 h / a) - nu / (2 (1 - nu)))``, with a
     the half width of the contact (`half_width`). Plane strain; needs h well above a.
 
-    Parameters
-    ----------
-    line_load : ndarray
-        [N/mm] of touching length.
-    materials : (Material, Material)
-    radius : ndarray
-        Relative radius of curvature [mm].
-    depth : (ndarray, ndarray)
-        Distance h from flank to tooth centre-line along the load line, of both bodies [mm].
+    `line_load` is in N/mm of touching length, `radius` the relative radius of curvature [mm], `depth` the distance h from flank
+    to tooth centre-line along the load line, of both bodies [mm].
 
     References
     ----------
@@ -123,15 +116,7 @@ def palmgren_line(line_load, materials, length):
     """Contact flexibilities of two bodies in line contact, secant and tangent [mm per N/mm], after Palmgren and Lundberg.
 
     ``delta = 3.81 (sum (1 - nu**2) / (pi E))**0.9 F**0.9 / L**0.8``, for steel ``3.84e-5 F**0.9 / L**0.8`` (mm, N): fitted to
-    rollers, and independent of their radius.
-
-    Parameters
-    ----------
-    line_load : ndarray
-        [N/mm] of touching length.
-    materials : (Material, Material)
-    length : ndarray
-        Touching length [mm].
+    rollers, and independent of their radius. `line_load` is in N/mm of the touching `length` [mm].
 
     References
     ----------

@@ -21,17 +21,8 @@ def leaning(arc: ArrayLike, normal: ArrayLike, ahead: ArrayLike, back: ArrayLike
 
     With f = cos(d) n + sin(d) t a load yields ``S_nn cos(d)**2 + S_nt sin(2 d) + S_tt sin(d)**2`` along itself.
 
-    Parameters
-    ----------
-    arc : ndarray, shape (4,)
-        Places of the loads: at the foot of the flank, half-way, `BELOW` the tip and at the tip [mm].
-    normal, ahead, back : ndarray, shape (4,)
-        Under loads along the involute's normal n, and tilted towards t and away from it [mm per N/mm].
-
-    Returns
-    -------
-    ndarray, shape (3, 4)
-        Arcs, S_nt and S_tt [mm per N/mm].
+    At `arc` ``(4,)``, at the foot of the flank, half-way, `BELOW` the tip and at the tip [mm], under loads along the involute's
+    `normal` n, and tilted towards t (`ahead`) and away from it (`back`) [mm per N/mm]: arcs, S_nt and S_tt ``(3, 4)``.
     """
     plain, plus, minus = (np.asarray(values, dtype=float) for values in (normal, ahead, back))
     across = (plus - minus) / (2 * math.sin(2 * TILT))
@@ -123,16 +114,6 @@ class Flexibility:
     basis: Any = None
     leans: dict[int, NDArray[np.float64]] = field(default_factory=dict)
 
-    def near_of(self, tooth: int) -> Any:
-        """Spline S(s, s) of a tooth; tooth numbers count round the gear."""
-        tooth %= self.gear.z
-        return self.near[tooth] if tooth in self.near else self._whole().near[0]
-
-    def far_of(self, first: int, second: int) -> Any:
-        """Spline between two teeth, first < second; None if they are too far apart to have been solved."""
-        key = first % self.gear.z, second % self.gear.z
-        return self.far[key] if key in self.far else self._whole().far.get((0, second - first))
-
     def within(self, rolls: Sequence[NDArray[np.float64]], teeth: Sequence[int]) -> list[NDArray[np.float64]]:
         """Smooth flexibility ``(n, n)`` [mm per N/mm] between contacts at `roll` ``(n,)`` on one tooth, for each of both."""
         if self.basis is None and self.healthy is None:
@@ -169,6 +150,7 @@ class Flexibility:
         Contacts on one tooth get no influence on each other here: see `within`. Cracks are glued shut: see `SeamFaces`.
         """
         low, high = self.limits
+        z, whole = self.gear.z, self._whole()
         arc = np.minimum(np.maximum(arc_at(self.gear, roll), low), high)
         teeth = np.asarray(teeth)
         out = np.zeros((*np.shape(roll), teeth.size))
@@ -176,10 +158,11 @@ class Flexibility:
         near: dict[Any, NDArray[np.bool_]] = {}  # contacts by the spline that holds for them: teeth that are alike have one
         far: dict[Any, NDArray[np.bool_]] = {}
         for tooth, on in members.items():
-            spline = self.near_of(tooth)
+            spline = self.near.get(tooth % z, whole.near.get(0))
             near[spline] = near.get(spline, False) | on
             for other, theirs in members.items():
-                if tooth < other and (spline := self.far_of(tooth, other)) is not None:
+                spline = self.far.get((tooth % z, other % z), whole.far.get((0, other - tooth)))
+                if tooth < other and spline is not None:  # else they are too far apart to have been solved
                     far[spline] = far.get(spline, False) | on[:, None] & theirs
         for spline, on in near.items():
             (own,) = on.nonzero()
@@ -212,11 +195,8 @@ def towards(
 
     Parameters
     ----------
-    flexible : Flexibility
     smooth : ndarray, shape (n, n)
-        What its `Flexibility.within` gives.
-    roll : ndarray, shape (n,)
-    tooth : int
+        What `Flexibility.within` gives.
     force : ndarray, shape (2, n)
         Each unit load's parts along the involute's normal and along the tangent away from the gear's centre.
     torque : ndarray, shape (n,)

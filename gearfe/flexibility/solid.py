@@ -1,7 +1,7 @@
 """`Flexibility3D`: what a gear of finite width is to its contact lines, whoever solved for it.
 
 Loads are patches: hats of unit area across the flank times orthonormal polynomials along the width. What a patch does to itself
-like a half-space is taken out (`energy.halfspace`), the rest is smooth and carried between the patches by polynomials.
+like a half-space is taken out (`halfspace`), the rest is smooth and carried between the patches by polynomials.
 """
 
 import math
@@ -42,8 +42,6 @@ class Flexibility3D:
     ----------
     gear : Gear
         Its `beta` says how the section turns.
-    width : float
-        [mm].
     degree : int
         Highest axial mode kept.
     kernel : float
@@ -63,7 +61,6 @@ class Flexibility3D:
     """
 
     gear: Gear
-    width: float
     degree: int
     kernel: float
     near: dict
@@ -75,7 +72,7 @@ class Flexibility3D:
 
     def basis(self, roll, z):
         """Rows ``(n, PLACES * (degree + 1))`` that read B at roll lengths `roll` and heights `z` [mm]."""
-        across, along = carry(self.gear, roll), modes(z, self.width, self.degree)
+        across, along = carry(self.gear, roll), modes(z, self.gear.b, self.degree)
         return (across[:, :, None] * along[:, None, :]).reshape(across.shape[0], -1)
 
     def between(self, first, second):
@@ -89,18 +86,6 @@ class Flexibility3D:
             if found is not None:
                 return found.T if turned else found
         return None
-
-    def matrix(self, tooth, roll, z):
-        """Displacements ``(n, n)`` [mm/N] of loads at `roll`, `z` [mm] of teeth `tooth` on each other, half-space left out."""
-        tooth, rows = np.asarray(tooth), self.basis(roll, z)
-        out = np.zeros((tooth.size,) * 2)
-        members = {number: np.flatnonzero(tooth == number) for number in np.unique(tooth).tolist()}
-        for first, own in members.items():
-            for second, theirs in members.items():
-                kernel = self.between(first, second)
-                if kernel is not None:
-                    out[np.ix_(own, theirs)] = rows[own] @ kernel @ rows[theirs].T
-        return out
 
     def opening(self, tooth, roll, z):
         """Opening ``(k, n)`` [mm/N] of the points of `seam` under loads at `roll`, `z` [mm] of teeth `tooth`."""
@@ -137,41 +122,22 @@ def solved_teeth(gear, cracks, neighbours):
     return sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
 
 
-def parted(gear, material, width, degree, influence, unknowns, healthy=None, *, cache=True):
+def parted(gear, material, degree, influence, unknowns, healthy=None, *, cache=True):
     """`Flexibility3D` from the influence between patches.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    width : float
-        [mm].
-    degree : int
-        Highest axial mode.
-    influence : dict of (int, int) to ndarray, shape (n, n)
-        Between the patches of `solved_teeth`: `hats` of unit area times `halfspace.modes`, modes innermost [mm/N mm].
-    unknowns : int
-    healthy : Flexibility3D, optional
-        If the gear is cracked: of the gear without cracks.
-    cache : bool or SolvedGears
-        Where to look for `own_distance`, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility3D
+    `degree` is the highest axial mode; `influence` ``{(i, j): (n, n)}`` that between the patches of `solved_teeth`, `hats` of
+    unit area times `halfspace.modes`, modes innermost [mm/N mm]; `healthy` the `Flexibility3D` without cracks if there are any.
     """
     edge = edge_factor(material) * half_space(material)
-    local = half_space(material) * own_distance(gear, width, degree, cache=cache)
-    local = local + edge * own_mirrors(gear, width, degree, cache=cache)
-    cracked = healthy is not None
-    near = {i: value - local for (i, j), value in influence.items() if i == j and (cracked or i == 0)}
-    far = {
-        (i, j): value for (i, j), value in influence.items() if i != j and (j - i) % gear.z <= gear.z // 2 and (cracked or i == 0)
-    }
-    return Flexibility3D(gear, width, degree, half_space(material), near, far, unknowns, healthy, edge=edge)
+    local = half_space(material) * own_distance(gear, degree, cache=cache)
+    local = local + edge * own_mirrors(gear, degree, cache=cache)
+    wanted = {(i, j): value for (i, j), value in influence.items() if i == 0 or healthy}  # healthy teeth are alike
+    near = {i: value - local for (i, j), value in wanted.items() if i == j}
+    far = {(i, j): value for (i, j), value in wanted.items() if i != j and (j - i) % gear.z <= gear.z // 2}
+    return Flexibility3D(gear, degree, half_space(material), near, far, unknowns, healthy, edge=edge)
 
 
-def own_distance(gear, width, degree, *, cache=True):
+def own_distance(gear, degree, *, cache=True):
     """Mean of 1 / R between each patch and the others of its flank, see `patch_kernel`: ``(n, n)``."""
 
     def solve():
@@ -179,19 +145,19 @@ def own_distance(gear, width, degree, *, cache=True):
         roll = roll_at_arc(gear, knots.mean(axis=0))
         slope = gear.twist_rate * (roll[:, None] + roll) / 2
         n = PLACES * (degree + 1)
-        return patch_kernel(knots, width, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
+        return patch_kernel(knots, gear.b, degree, slope, 1 / math.cos(gear.beta_b)).reshape(n, n)
 
-    return solved_gears(cache).get(("own distance", gear, width, degree), solve)
+    return solved_gears(cache).get(("own distance", gear, degree), solve)
 
 
-def own_mirrors(gear, width, degree, *, cache=True):
+def own_mirrors(gear, degree, *, cache=True):
     """Mean of 1 / R between each patch and the images of its flank's in the end faces, see `mirrored_patches`: ``(n, n)``."""
 
     def solve():
         n = PLACES * (degree + 1)
-        return mirrored_patches(hats(gear), width, degree, 1 / math.cos(gear.beta_b)).reshape(n, n)
+        return mirrored_patches(hats(gear), gear.b, degree, 1 / math.cos(gear.beta_b)).reshape(n, n)
 
-    return solved_gears(cache).get(("own mirrors", gear, width, degree), solve)
+    return solved_gears(cache).get(("own mirrors", gear, degree), solve)
 
 
 def _scale(gear):

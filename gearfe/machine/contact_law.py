@@ -1,17 +1,101 @@
-"""Forces of a gear mesh: elastic with backlash, the impact function, Coulomb friction; and Hertz's coefficient.
+"""Forces of a gear mesh: the table of contact laws, backlash, Coulomb friction; and Hertz's coefficient.
 
 Everything takes arrays. The compression `x` of a mesh is positive when the driving flanks press on each other; its backlash is
-the play behind them, so that the back flanks touch at ``x = -backlash``.
+the play behind them, so that the back flanks touch at ``x = -backlash``. A law says how flanks in touch push; the back flanks
+push as the front ones do.
+
+To add a law, write one file in ``gearfe/machine/laws/`` and one row in `LAWS`; a mesh takes it as ``GearMesh(..., law=...)``.
+A law is a frozen dataclass; its fields are the parameters, numbers by name. Two of them every law has: `power`, the exponent of
+the depth in the unit of k, ``N/m**power``, and `straight`, whether the force is a straight line over depth and rate. Two static
+methods say the rest::
+
+    force(depth, rate, k, c, law)    the force [N]: of depth >= 0 [m] and its rate [m/s], in proportion to k and c together
+    slopes(depth, rate, k, c, law)   its derivatives by depth and by rate
+
+`k` and ``c = damping + beta k`` [N s/m] are those of the mesh at the moment, and ``law.name`` is the parameter of that name. The
+reference integrator calls them with arrays, and the fast path has numba compile them for numbers: write them with operators and
+functions of numpy, without ``if`` and without functions of your own.
 """
 
 import math
+from collections.abc import Sequence
+from dataclasses import fields
+from functools import partial
+from types import SimpleNamespace
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..flexibility.hertz import contact_modulus
+from .laws.impact import Hertz, Impact
+from .laws.spring import Spring
 
-LAW = ("power", "damping", "beta", "per_depth", "backlash", "film", "push")  # in the order `contact_force` takes them
-STRAIGHT, HERTZ, BENT = range(3)  # exponents of all meshes: 1, 3/2, others
+LAWS: tuple[Any, ...] = (Spring, Hertz, Impact)
+
+
+class Law(Protocol):
+    """A contact law: a row of `LAWS` with its parameters."""
+
+    @property
+    def power(self) -> float:
+        """Exponent of the depth in the unit of k."""
+
+    @property
+    def straight(self) -> bool:
+        """Whether the force is a straight line over depth and rate."""
+
+    @staticmethod
+    def force(depth: Any, rate: Any, k: Any, c: Any, law: Any) -> Any:
+        """Force of depth and rate."""
+
+    @staticmethod
+    def slopes(depth: Any, rate: Any, k: Any, c: Any, law: Any) -> tuple[Any, Any]:
+        """Its derivatives by depth and rate."""
+
+
+def law_of(power: float, full: float) -> Law:
+    """Law of an exponent and of the depth from which the damping is full [m]."""
+    if power == 1 and full == 0:
+        return Spring()
+    return Hertz(full) if power == 1.5 else Impact(power, full)
+
+
+def parameters(meshes: Sequence[Any]) -> dict[str, NDArray[Any]]:
+    """Parameters of the contact of meshes by name, ``(m,)`` each; of laws that have none of that name 0.
+
+    Besides those of the laws: `kind`, the row of `LAWS`; ``damping, beta, backlash, film``; and `least`, 0 where flanks push and
+    never pull, otherwise ``-inf``.
+    """
+    names = dict.fromkeys(field.name for law in LAWS for field in fields(law))
+    out = {name: np.array([float(getattr(mesh.contact, name, 0.0)) for mesh in meshes]) for name in names}
+    out |= {name: np.array([float(getattr(mesh, name)) for mesh in meshes]) for name in ("damping", "beta", "backlash")}
+    return out | {
+        "kind": np.array([LAWS.index(type(mesh.contact)) for mesh in meshes], dtype=np.int64),
+        "film": np.array([0.0 if mesh.push else float(mesh.film) for mesh in meshes]),
+        "least": np.array([0.0 if mesh.push else -math.inf for mesh in meshes]),
+    }
+
+
+def touch(x, v, backlash):
+    """Depth of the flanks in touch, its rate, and the side: 1 the front ones, -1 the back ones, 0 none (all numbers floats)."""
+    front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
+    side = (front > 0) * 1.0 - (rear > 0)
+    return front + rear, side * v, side
+
+
+def mesh_force(touch, pushed):
+    """Function of compression, its rate, k and parameters that gives the force of a mesh, from `touch` and the law's force.
+
+    Of both as they are, for arrays, or compiled, for numbers.
+    """
+
+    def force(x, v, k, law):
+        depth, rate, side = touch(x, v, law.backlash)
+        c = law.damping + law.beta * k
+        return side * np.maximum(pushed(depth, rate, k, c, law), law.least) + (side == 0) * law.film * c * v
+
+    return force
 
 
 def step(x, x0, h0, x1, h1):
@@ -70,46 +154,28 @@ def friction_coefficient(slip, *, static, dynamic, v_static, v_dynamic):
     return np.sign(slip) * np.where(size < v_static, stick, step(size, v_static, static, v_dynamic, dynamic))
 
 
-def contact_force(x, v, k, power, damping, beta, per_depth, backlash, film, push, bent, stepped, pushing):
-    """Force of a mesh, of numbers or of arrays; see `force`.
-
-    Written so that numpy takes arrays through it and numba compiles it for numbers. `bent`: `STRAIGHT` where all powers are 1,
-    `HERTZ` where all are 3/2, for which a square root is ten times faster, `BENT` otherwise; `stepped`, `pushing`: whether any
-    damping grows with depth, any flank only pushes. Where the flanks are apart both depths are zero, and with them the spring.
-    """
-    front, rear = np.maximum(x, 0.0), np.maximum(-backlash - x, 0.0)
-    ahead, behind = front > 0, rear > 0
-    inside = ahead | behind
-    full = 1.0
-    if stepped:
-        u = np.minimum((front + rear) * per_depth, 1.0)
-        full = u * u * (3 - 2 * u) + (per_depth == 0)
-    share = film + inside * (full - film)
-    if bent == STRAIGHT:
-        spring = front - rear
-    elif bent == HERTZ:
-        spring = front * np.sqrt(front) - rear * np.sqrt(rear)
-    else:
-        spring = front**power - rear**power
-    out = k * spring + (damping + beta * k) * share * v
-    if pushing:
-        return push * (ahead * np.maximum(out, 0.0) + behind * np.minimum(out, 0.0)) + (1 - push) * out
+def _each(what, depth, rate, k, c, law):
+    """Force or slopes of each mesh by its own law."""
+    kinds = set(law.kind.tolist()) or {0}
+    if len(kinds) == 1:
+        return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)
+    given = np.broadcast_arrays(depth, rate, k, c)
+    out = np.empty(given[0].shape if what == "force" else (2, *given[0].shape))
+    for kind in kinds:
+        mine = law.kind == kind
+        some = SimpleNamespace(**{name: values[mine] for name, values in vars(law).items()})
+        out[..., mine] = getattr(LAWS[kind], what)(*(one[..., mine] for one in given), some)
     return out
 
 
-def branches(law):
-    """Which parts of `contact_force` a law needs: ``bent, stepped, pushing``."""
-    power = law["power"]
-    bent = STRAIGHT if (power == 1).all() else HERTZ if (power == 1.5).all() else BENT
-    return bent, bool((law["per_depth"] != 0).any()), bool(law["push"].any())
+_force = mesh_force(touch, partial(_each, "force"))
 
 
 def force(x, v, k, law):
     """Force of each mesh along its line of action [N], positive when it pushes.
 
-    ``k delta**power + c step(delta / depth) delta'`` on either flank, delta the depth of penetration. The damping is
-    ``c = damping + beta k``; where no flank touches a part `film` of it stays. With `push` a flank never pulls, as the
-    impact function of multibody programs has it.
+    That of its law on the flanks in touch, with the damping ``c = damping + beta k``; where none touch a part `film` of it
+    stays. With `push` a flank never pulls, as the impact function of multibody programs has it.
 
     Parameters
     ----------
@@ -118,9 +184,9 @@ def force(x, v, k, law):
     k : ndarray, shape (..., m)
         Stiffness [N/m^power].
     law : dict of ndarray, shape (m,)
-        `LAW` (see `gearfe.machine.gear_mesh.GearMesh`; ``per_depth`` is one over its depth, or 0).
+        Of `parameters`.
     """
-    return contact_force(x, v, k, *(law[key] for key in LAW), *branches(law))
+    return _force(x, v, k, SimpleNamespace(**law))
 
 
 def sides(x, law):
@@ -135,13 +201,13 @@ def sided_force(x, v, k, law, side):
     `push`, keep the kink at which their force reaches zero.)
     """
     depth = np.where(side == 0, 0.0, np.where(side < 0, x + law["backlash"], x))
-    depth = np.where(law["push"], np.where(side < 0, np.minimum(depth, 0.0), np.maximum(depth, 0.0)), depth)
+    depth = np.where(law["least"] == 0, np.where(side < 0, np.minimum(depth, 0.0), np.maximum(depth, 0.0)), depth)
     return force(depth, v, k, law | {"backlash": np.zeros_like(law["backlash"])})
 
 
 def depth(x, law):
     """How far the flanks of each mesh are pressed, front or back ones, at compressions `x` ``(..., m)``; 0 where none touch."""
-    return np.maximum(x, 0.0) + np.maximum(-law["backlash"] - x, 0.0)
+    return touch(x, 0.0, law["backlash"])[0]
 
 
 def slopes(x, v, k, law, bend=0.0):
@@ -149,16 +215,15 @@ def slopes(x, v, k, law, bend=0.0):
 
     `bend` is that of k by the depth, of a `gearfe.machine.force_law.ForceLaw` [N/m2].
     """
-    back = x < -law["backlash"]
-    delta = np.where(back, -law["backlash"] - x, np.maximum(x, 0.0))
-    inside = back | (x > 0)
-    full = law["damping"] + law["beta"] * k
-    u = np.minimum(delta * law["per_depth"], 1.0)
-    stepped = law["per_depth"] > 0
-    share = np.where(inside, np.where(stepped, u * u * (3 - 2 * u), 1.0), law["film"])
-    rise = np.where(stepped & inside, 6 * u * (1 - u) * law["per_depth"], 0.0) * np.where(back, -1.0, 1.0)
-    spring = np.where(inside, k * law["power"] * np.where(law["power"] == 1.0, 1.0, delta ** (law["power"] - 1)), 0.0)
-    side = np.where(back, -1.0, 1.0)
-    spring = spring + np.where(inside, bend * (delta + side * law["beta"] * share * v), 0.0)
-    pulls = law["push"] & (force(x, v, k, law) == 0.0)
-    return np.where(pulls, 0.0, spring + full * rise * v), np.where(pulls, 0.0, full * share)
+    law = SimpleNamespace(**law)
+    depth, rate, side = touch(x, v, law.backlash)
+    c = law.damping + law.beta * k
+    by_depth, by_rate = _each("slopes", depth, rate, k, c, law)
+    by_depth = by_depth + bend * _each("force", depth, rate, 1.0, law.beta, law)
+    on = (side != 0) & (_each("force", depth, rate, k, c, law) > law.least)
+    return np.where(on, by_depth, 0.0), np.where(side == 0, law.film * c, np.where(on, by_rate, 0.0))
+
+
+def closed(law):
+    """Whether all meshes push with ``k x + c x'`` wherever they are: straight laws that never open."""
+    return bool((law["straight"].astype(bool) & (law["backlash"] == 0) & (law["least"] < 0)).all())

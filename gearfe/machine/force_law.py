@@ -161,18 +161,18 @@ class ForceLaw:
         ValueError
             If they do not belong together: other phases, a load twice, a deflection that falls as the load rises.
         """
-        if not all(isinstance(one, StiffnessCurve) and "force_N" in one.meta for one in curves):
+        if not all(isinstance(curve, StiffnessCurve) and "force_N" in curve.meta for curve in curves):
             raise ValueError(
                 "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
             )
         curves = sorted(curves, key=lambda one: float(one.meta["force_N"]))
-        if any(one.phase.shape != curves[0].phase.shape or not np.allclose(one.phase, curves[0].phase) for one in curves):
+        if any(curve.phase.shape != curves[0].phase.shape or not np.allclose(curve.phase, curves[0].phase) for curve in curves):
             raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
         order = np.argsort(curves[0].phase, kind="stable")
-        load = np.array([one.meta["force_N"] for one in curves], dtype=float)
+        load = np.array([curve.meta["force_N"] for curve in curves], dtype=float)
         depth, tangent, pairs = (
             np.array(rows).T[order]
-            for rows in zip(*((one.lte, one.k_tangent, (one.force > 0).sum(axis=1)) for one in curves), strict=True)
+            for rows in zip(*((curve.lte, curve.k_tangent, (curve.force > 0).sum(axis=1)) for curve in curves), strict=True)
         )
         unloaded = curves[0].unloaded
         return cls(
@@ -285,7 +285,7 @@ def force_law(
         raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
     case, how = asked("force_law", pair, list(forces), material, options | {"phases": phases, "span": span})
     curves = solve(case, how)
-    own = ForceLaw.of([one.without_supports() for one in curves], force)
+    own = ForceLaw.of([curve.without_supports() for curve in curves], force)
     counts = np.concatenate([own.pairs, own.pairs[:1]]) if span == "cycle" else own.pairs
     ends = np.append(own.phase, own.phase[0] + 1) if span == "cycle" else own.phase
     changing = (np.maximum(counts[:-1], counts[1:]).max(axis=1) != np.minimum(counts[:-1], counts[1:]).min(axis=1)).nonzero()[0]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..stiffness.curve import StiffnessCurve
+from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw, Secant
 
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
@@ -167,6 +168,8 @@ class GearMesh:
         Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
         Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
+    law : Law, optional
+        Another contact law than `power` and `depth` state, with its parameters (`gearfe.machine.contact_law`).
     """
 
     name: str
@@ -187,47 +190,60 @@ class GearMesh:
     backlash: float = 0.0
     film: float = 1.0
     friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    law: Law | None = None
+    contact: Law = field(init=False)
     cycle: Table = field(init=False)
     changes: tuple[tuple[float, float, Table], ...] = field(init=False)
-    laws: tuple[Secant, ...] = field(init=False)
+    secants: tuple[Secant, ...] = field(init=False)
     average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
         """Make the tables; refuse what cannot be."""
+        self._check()
+        object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
+        object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
+        self._check_contact()
+        object.__setattr__(self, "cycle", cycle_table(self.stiffness))
+        secants = self._secants()
+        object.__setattr__(self, "secants", secants)
+        object.__setattr__(self, "average", secants[0].mean if secants else None)
+        object.__setattr__(self, "changes", tuple(self._change(hurt) for hurt in self.damage))
+
+    def _check(self) -> None:
         for name in ("frequency", "phase", "damping", "beta", "zeta", "depth"):
             value = getattr(self, name)
             if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
                 raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
         if not self.backlash >= 0 or not 0 <= self.film <= 1 or not self.power >= 1:
             raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
-        if self.power != 1 and self.backlash == 0:
-            raise ValueError(f"mesh {self.name}: power = {self.power} needs a backlash > 0 (inf: no back flank)")
         for one in self.error:
             if len(one) != 3 or not all(map(math.isfinite, one)):
                 raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
-        object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
-        object.__setattr__(self, "cycle", cycle_table(self.stiffness))
-        laws = self._laws()
-        object.__setattr__(self, "laws", laws)
-        object.__setattr__(self, "average", laws[0].mean if laws else None)
-        changes = []
-        for hurt in self.damage:
-            z = self.teeth[hurt.body]
-            made = hurt.change(self.cycle)
-            if made.end - made.start > z:
-                raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
-            changes.append((float(z), float((hurt.tooth - self.first[hurt.body]) % z), made))
-        object.__setattr__(self, "changes", tuple(changes))
 
-    def _laws(self) -> tuple[Secant, ...]:
+    def _check_contact(self) -> None:
+        given, power = self.contact, self.contact.power
+        if type(given) not in LAWS:
+            raise ValueError(f"mesh {self.name}: law = {given!r} is not in LAWS of gearfe.machine.contact_law: add its row there")
+        if self.law and (self.power != 1 or self.depth):
+            raise ValueError(f"mesh {self.name}: power and depth besides law = {given!r}, which has parameters of its own")
+        if power != 1 and self.backlash == 0:
+            raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
+        if power != 1 and isinstance(self.stiffness, ForceLaw):
+            raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
+
+    def _change(self, hurt: ToothDamage) -> tuple[float, float, Table]:
+        z, made = self.teeth[hurt.body], hurt.change(self.cycle)
+        if made.end - made.start > z:
+            raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
+        return float(z), float((hurt.tooth - self.first[hurt.body]) % z), made
+
+    def _secants(self) -> tuple[Secant, ...]:
         """`Secant` of the healthy cycle, then what each damage is beyond it; none without a `ForceLaw`."""
         given = [isinstance(one, ForceLaw) for one in (self.stiffness, *(hurt.curve for hurt in self.damage))]
         if any(given) != all(given):
             raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
         if not isinstance(self.stiffness, ForceLaw):
             return ()
-        if self.power != 1:
-            raise ValueError(f"mesh {self.name}: power = {self.power} besides a law of force, which says itself how force rises")
         if not self.stiffness.periodic:
             raise ValueError(f"mesh {self.name}: its law of force is not of one mesh cycle: make it with span='cycle'")
         healthy = self.stiffness.secant

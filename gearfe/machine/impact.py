@@ -38,7 +38,7 @@ def impact_planetary(scene, case):
     """Planetary stage of a scene under the impact law, healthy or with pits on a tooth of the sun."""
     chosen = {name: scene.pairs[name] for name in ("sun_planet", "planet_ring")}
     if pits_of(chosen["planet_ring"].damage.get(case, {})):
-        raise ValueError("the impact law knows pits of the sun only: use contact = 'linear'")
+        raise ValueError("the impact law knows damage of the sun's flanks only: use contact = 'linear'")
     found = pits_of(chosen["sun_planet"].damage.get(case, {}))
     materials = {name: one.materials for name, one in chosen.items()}
     stage, machine = stage_of(scene), scene.machine
@@ -91,7 +91,7 @@ def pits_of(damage):
     """
     found = list(damage.get("pinion", ()))
     if damage.get("wheel") or not all(one.removes_contact for one in found) or len({one.tooth for one in found}) > 1:
-        raise ValueError("the impact law knows pits on one tooth of the pinion (sun) only: use contact = 'linear'")
+        raise ValueError("the impact law knows damage of the flank of one tooth of the pinion (sun) only: use contact = 'linear'")
     return found
 
 

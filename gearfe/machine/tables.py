@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contact_law import LAW, depth, force, slopes
+from .contact_law import depth, force, parameters, slopes
 from .gear_mesh import GearMesh
 from .speed import Speed
 from .turning_frame import frame_terms
@@ -165,7 +165,7 @@ class Machine:
     G : ndarray, shape (m, n)
         Rows of the meshes.
     law : dict of ndarray, shape (m,)
-        Their contact laws.
+        Parameters of their contact laws by name (`gearfe.machine.contact_law.parameters`).
     """
 
     dofs: tuple[str, ...]
@@ -207,22 +207,21 @@ class Machine:
         object.__setattr__(self, "C", C)
         object.__setattr__(self, "frame", frame)
         object.__setattr__(self, "G", np.array([m.row for m in self.meshes]).reshape(-1, n))
-        law = {key: np.array([getattr(m, key) for m in self.meshes]) for key in LAW if key != "per_depth"}
-        law["per_depth"] = np.array([1 / m.depth if m.depth > 0 else 0.0 for m in self.meshes])
+        law = parameters(self.meshes)
         extra = [2 * m.zeta * math.sqrt(m.cycle.mean / (m.row**2 / mass).sum()) if m.zeta else 0.0 for m in self.meshes]
-        object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra), "push": law["push"].astype(bool)})
+        object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra)})
 
     def __repr__(self):
         """One line: how many of everything."""
         meshes = ", ".join(one.name for one in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
-        speeds = ", ".join(f"{one.mesh:.4g} Hz" for one in self.stages)
+        speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (
             f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
             f"{len(self.loads)} loads{f', mesh frequency {speeds}' if speeds else ''}>"
         )
 
     def _repr_html_(self):
-        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(one.name for one in self.meshes)}
+        rows = {"degrees of freedom": ", ".join(self.dofs), "meshes": ", ".join(mesh.name for mesh in self.meshes)}
         notes = "".join(f"<tr><td>{escape(str(k))}</td><td>{escape(str(v))}</td></tr>" for k, v in (rows | self.notes).items())
         return f"<table><caption>{escape(repr(self))}</caption>{notes}</table>"
 
@@ -281,14 +280,14 @@ class Machine:
     @property
     def curved(self) -> bool:
         """Whether the force of a mesh is no straight line over its compression: a power, or a `ForceLaw`."""
-        return bool((self.law["power"] != 1).any()) or any(mesh.laws for mesh in self.meshes)
+        return bool((self.law["power"] != 1).any()) or any(mesh.secants for mesh in self.meshes)
 
     def working(self) -> NDArray[np.float64] | None:
         """Compressions of the meshes at rest ``(m,)`` [m], about which their forces are taken as straight; None if they are."""
         if not self.curved:
             return None
         x = self.G @ self.rest()
-        return np.where([bool(mesh.laws) for mesh in self.meshes] & (depth(x, self.law) == 0), TOUCH, x)
+        return np.where([bool(mesh.secants) for mesh in self.meshes] & (depth(x, self.law) == 0), TOUCH, x)
 
     def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""

@@ -1,1 +1,5 @@
-"""Many cases at once: sweeps, labelled data sets, surrogates of them, and the store that their results are kept in."""
+"""Many cases at once: batches, sweeps, labelled data sets, surrogates, error maps, all by one `runner`.
+
+What can be gone on with stands in folders of a `store`: each file is whole or not there, so that a process that is killed
+costs only what was under way.
+"""

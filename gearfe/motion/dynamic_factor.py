@@ -60,4 +60,4 @@ def dynamic_factors(response: Response) -> dict[str, float]:
 
 
 def _change(machine):
-    return any(callable(one.value) or one.breaks.size > 1 for one in machine.loads)
+    return any(callable(load.value) or load.breaks.size > 1 for load in machine.loads)

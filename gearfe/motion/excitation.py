@@ -58,9 +58,9 @@ def flatten(machine, times):
     changes = [(i, z, first, made, *add(made)) for i, m in enumerate(meshes) for z, first, made in m.changes]
     errors = [(i, a, 2 * math.pi * f, p) for i, m in enumerate(meshes) for a, f, p in m.error]
     rubs = [(i, *add(weight)) for i, m in enumerate(meshes) for _, weight in m.friction]
-    knots = [_knots(one, times) for one in machine.loads]
-    laws = [m.laws[0] if m.laws else None for m in meshes]
-    laws += [m.laws[1 + j] if m.laws else None for m in meshes for j in range(len(m.changes))]
+    knots = [_knots(load, times) for load in machine.loads]
+    laws = [m.secants[0] if m.secants else None for m in meshes]
+    laws += [m.secants[1 + j] if m.secants else None for m in meshes for j in range(len(m.changes))]
     whole = np.int64
     return Flat(
         np.concatenate(cells) if cells else np.zeros((1, 4)),
@@ -88,15 +88,15 @@ def flatten(machine, times):
 def _laid_out(laws):
     """`Flat.secant` and `Flat.shape` of laws; one that several meshes share is laid out once."""
     places, parts, shape, end = {}, [np.zeros(0)], [], 0
-    for one in laws:
-        if one is None:
+    for law in laws:
+        if law is None:
             shape.append((0, 0, 0, 0))
             continue
-        if id(one.k) not in places:
-            places[id(one.k)] = end
-            parts.append(one.k.T.ravel())
-            end += one.k.size
-        shape.append((places[id(one.k)], *one.k.shape, 1 / one.deepest))
+        if id(law.k) not in places:
+            places[id(law.k)] = end
+            parts.append(law.k.T.ravel())
+            end += law.k.size
+        shape.append((places[id(law.k)], *law.k.shape, 1 / law.deepest))
     return np.concatenate(parts), np.array(shape, dtype=float).reshape(-1, 4)
 
 
@@ -109,8 +109,8 @@ def _twins(one, two):
     pairs = list(zip(one.changes, two.changes, strict=True))
     tables = [(one.cycle, two.cycle), *((a[2], b[2]) for a, b in pairs)]
     alike = all((a.start, a.width) == (b.start, b.width) and np.array_equal(a.cells, b.cells) for a, b in tables)
-    same = len(one.laws) == len(two.laws) and all(
-        a is b or (a.deepest == b.deepest and np.array_equal(a.k, b.k)) for a, b in zip(one.laws, two.laws, strict=True)
+    same = len(one.secants) == len(two.secants) and all(
+        a is b or (a.deepest == b.deepest and np.array_equal(a.k, b.k)) for a, b in zip(one.secants, two.secants, strict=True)
     )
     return same and alike and all(a[:2] == b[:2] for a, b in pairs)
 
@@ -148,9 +148,9 @@ def stiffness_at(machine, flat, t, x):
         return k, np.zeros_like(k), phase
     deep, bend = depth(x, machine.law), np.zeros_like(k)
     for i, mesh in enumerate(machine.meshes):
-        if not mesh.laws:
+        if not mesh.secants:
             continue
-        healthy, *hurt = mesh.laws
+        healthy, *hurt = mesh.secants
         k[..., i], bend[..., i] = healthy(phase[..., i] % 1.0, deep[..., i])
         for (z, first, _), one in zip(mesh.changes, hurt, strict=True):
             start, end = one.start + one.width, one.end - one.width

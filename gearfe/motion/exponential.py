@@ -49,7 +49,7 @@ class Step:
         n, wide = plan.P.shape[1], plan.levels[0][2].shape[1]
         self.width, self.rows = wide, wide if plan.affine else len(plan.P)
         self.P = self._padded(plan.P)
-        self.levels = [self._joined(len(plan.P), *one) for one in plan.levels]
+        self.levels = [self._joined(len(plan.P), *level) for level in plan.levels]
         # f2, z, f1, f3 and f4 below each other: each stage is one product with a part of them
         whole = np.zeros((n + 4 * wide, *columns))
         self.all, self.upper, self.lower = whole[wide:], whole[: wide + n], whole[wide : n + 2 * wide]
@@ -63,7 +63,7 @@ class Step:
 
     def _joined(self, p, E, Y, S, T, F):
         parts = [Y[:p], S], [S, Y[:p]], [Y[p:], T]
-        return *(self._padded(np.hstack(one)) for one in parts), np.hstack([dense(E), F])
+        return *(self._padded(np.hstack(part)) for part in parts), np.hstack([dense(E), F])
 
     def __call__(self, z, level, force, j):
         """State one step of `level` after `z`.

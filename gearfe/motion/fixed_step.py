@@ -48,9 +48,9 @@ def fixed_steps(machine, duration, steps, state, *, every=1, start=0.0, adapt=Fa
     started, h = time.perf_counter(), duration / steps
     x = machine.working()
     plan = propagator.plan(machine, h, x, adapt)
-    looks = 4 * steps + 1 if any(callable(one.value) for one in machine.loads) else 1
+    looks = 4 * steps + 1 if any(callable(load.value) for load in machine.loads) else 1
     flat = excitation.flatten(machine, start + np.linspace(0.0, duration, looks))
-    breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
+    breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
     run = partial(run, plan, machine, flat, breaks=breaks)
     z = plan.inverse @ state
     with np.errstate(over="ignore", invalid="ignore"):

@@ -11,14 +11,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..machine.contact_law import LAW, branches, contact_force
 from .excitation import changing
 from .exponential import UNSTABLE
-from .loop_parts import compiled, lookup, secant, stage
+from .loop_forces import changed, forces, loads, losses, note, records
+from .loop_parts import compiled, kept, lookup, stage
 
 GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
+TINY = 1e-300  # N: a mesh that never carries anything
 CHUNK = 64  # steps whose stiffnesses are looked up at once
-_force = compiled(contact_force)
 
 
 class Matrices(NamedTuple):
@@ -57,14 +57,17 @@ def run(plan, machine, flat, z, steps, every, breaks, start=0.0, acting=None):
     matrices = _matrices(plan, *changing(machine, flat))
     bends = [flat.knots[low:high] for low, high in zip(flat.knot_place[:-1], flat.knot_place[1:], strict=True) if high > low + 1]
     flat = flat._replace(knots=np.concatenate(bends) if bends else np.zeros((1, 2)), knot_place=np.cumsum([0, *map(len, bends)]))
-    laws = np.array([machine.law[key].astype(float) for key in LAW]).T.copy()
-    kind = plan.affine, len(plan.P) > len(machine.meshes), *branches(machine.law)
-    linear = np.stack([plan.k, plan.c])
+    m, rubs = len(machine.meshes), len(flat.rub_mesh)
+    more = {"k_linear": plan.k, "c_linear": plan.c, "total": plan.k, "stiff": plan.k, "lawful": flat.shape[:m, 1] > 0}
+    laws = records(**machine.law, **more, affine=np.full(m, plan.affine), rubs=np.full(m, rubs))
+    _, rows, columns, per_depth = np.insert(flat.shape, [m] * rubs, 0.0, axis=0).T
+    mesh = np.concatenate([np.arange(m), flat.rub_mesh, flat.change_mesh])
+    parts = records(mesh=mesh, rows=rows, columns=columns, per_depth=per_depth)
     edges = np.append(np.asarray(breaks, dtype=float), np.inf)
     states, counts = np.empty((1 + steps // every, z.size)), np.zeros(3, dtype=np.int64)
-    local = plan.allowed, plan.scale
+    clock = float(start), plan.h, every, plan.allowed, plan.scale
     acting = np.zeros((0, 0)) if acting is None else acting
-    done = _run(matrices, laws, kind, linear, flat, edges, z.copy(), plan.h, start, every, states, counts, local, acting)
+    done = _run((matrices, laws, parts, flat, edges), z.copy(), clock, states, counts, acting)
     if done < steps:
         raise RuntimeError(f"the response grows beyond all bounds before t = {start + plan.h * done:.4g} s: {UNSTABLE}")
     return states, {"steps": int(counts[0]), "rejected": int(counts[1]), "losses": int(counts[2])}
@@ -89,84 +92,24 @@ def _matrices(plan, kept, still):
 
 
 @compiled
-def _forces(g, first, x, now, row, laws, kind, linear, rub_mesh, total, stiff, table, shape, change_mesh):
-    """Forces of the meshes and friction rows beyond the linear part, and loads that change, into ``g[first:]``.
-
-    Whole forces and stiffnesses of the meshes go into `total` (where it is needed) and `stiff`.
-    """
-    affine, rates, bent, stepped, pushing = kind
-    m, rub, lawful = total.size, rub_mesh.size, table.size > 0
-    at = now.shape[1] - (2 * shape.shape[0] if lawful else 0)
-    for j in range(at - 3 * m - rub):
-        g[first + m + rub + j] = now[row, 3 * m + rub + j]
-    if affine:  # every mesh stays closed: the same, without asking where it is
-        for i in range(m):
-            k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
-            g[first + i] = (k - linear[0, i]) * x[i] - k * e - (laws[i, 1] + laws[i, 2] * k) * rate
-            stiff[i] = k
-        return
-    for i in range(m):
-        v = x[m + i] if rates else 0.0
-        k, e, rate = now[row, i], now[row, m + i], now[row, 2 * m + i]
-        if lawful and now[row, at + 2 * i] >= 0:
-            deep = max(x[i] - e, 0.0) + max(-laws[i, 4] - (x[i] - e), 0.0)
-            k = secant(table, shape, i, now[row, at + 2 * i], now[row, at + 2 * i + 1], deep)
-            for j in range(change_mesh.size):
-                own = at + 2 * (m + j)
-                if change_mesh[j] == i and now[row, own] >= 0:
-                    k += secant(table, shape, m + j, now[row, own], now[row, own + 1], deep)
-            k = max(k, 0.0)
-        law = laws[i, 0], laws[i, 1], laws[i, 2], laws[i, 3], laws[i, 4], laws[i, 5], laws[i, 6]
-        whole = _force(x[i] - e, v - rate, k, *law, bent, stepped, pushing)
-        g[first + i] = whole - linear[0, i] * x[i] - linear[1, i] * v
-        total[i], stiff[i] = whole, k
-    for j in range(rub):
-        g[first + m + j] = now[row, 3 * m + j] * total[rub_mesh[j]]
+def _largest(out, none, W, level, apart, size):
+    """Largest of the mesh forces that forces `apart` at the end of a step make; `size` if that is larger."""
+    stage(out, none, np.int64(0), W, level, apart, np.int64(0))
+    for i in range(out.size):
+        size = max(size, abs(out[i]))
+    return size
 
 
 @compiled
-def _note(acting, step, g, stiff, now, row, f):
-    """Write the forces that change, the stiffnesses, and the errors if there is room, into a row of `acting`."""
-    m = stiff.size
-    for i in range(f):
-        acting[step, i] = g[i]
-    for i in range(m):
-        acting[step, f + i] = stiff[i]
-    for i in range(acting.shape[1] - f - m):
-        acting[step, f + m + i] = now[row, m + i]
-
-
-@compiled
-def _side(own, backlash):
-    """1 where the front flanks touch, -1 the back ones, 0 none."""
-    return 1.0 if own > 0 else (-1.0 if own < -backlash else 0.0)
-
-
-@compiled
-def _changed(side, x, now, row, laws):
-    """Whether a mesh that can open is not on the side given."""
-    m = side.size
-    for i in range(m):  # noqa: SIM110 (numba has no generators here)
-        if laws[i, 4] > 0 and side[i] != _side(x[i] - now[row, m + i], laws[i, 4]):
-            return True
-    return False
-
-
-@compiled
-def _losses(side, x, now, row, laws):
-    """Bring the sides up to date; how many meshes that can open have opened."""
-    m, lost = side.size, 0
-    for i in range(m):
-        seen = _side(x[i] - now[row, m + i], laws[i, 4])
-        lost += laws[i, 4] > 0 and side[i] != 0.0 and seen == 0.0
-        side[i] = seen
-    return lost
-
-
-@compiled
-def _turned(first, middle, last):
-    """How far a stiffness turns off its straight line within a step, part of it."""
-    return (first - 2 * middle + last) / middle if middle > 0 else 0.0
+def _turned(apart, now, row, laws, scale):
+    """How far stiffnesses turn off their straight lines within a step, part of them, times the forces; the largest force."""
+    for i in range(apart.size):
+        apart[i] = 0.0
+    for i in range(laws.size):
+        first, middle, last = now[row, i], now[row + 1, i], now[row + 2, i]
+        apart[i] = (first - 2 * middle + last) / middle * laws[i].total if middle > 0 else 0.0
+        scale = max(scale, abs(laws[i].total))
+    return scale
 
 
 @compiled
@@ -184,119 +127,154 @@ def _propagate(new, E, level, z):
 
 
 @compiled
-def _run(matrices, laws, kind, linear, flat, edges, z, h, start, every, states, counts, local, acting):
+def _copy(out, values, first):
+    """``out = values[first:]``, as many as there is room for and values."""
+    for i in range(min(out.size, values.size - first)):
+        out[i] = values[first + i]
+
+
+@compiled
+def _write(states, row, z):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
+    for i in range(z.size):
+        states[row, i] = z[i]
+
+
+@compiled
+def _add(g, first, second):
+    """Forces of one stage to those of another, a fifth of `g` each."""
+    for i in range(g.size // 5):
+        g[first + i] += g[second + i]
+
+
+@compiled
+def _aligned(at, whole, level):
+    """The level of a part that begins at `at` of `whole`: such parts begin at multiples of their length."""
+    while at & ((whole >> level) - 1):
+        level += 1
+    return level
+
+
+@compiled
+def _ended(end, new, y, add, at):
+    """What the forces depend on at the end of a step: the loads in y are those of the stage before, in `new` those of the end."""
+    for i in range(end.size):
+        end[i] = new[new.size - end.size + i] + y[end.size + i] - add[at + end.size + i]
+
+
+@compiled
+def _less(apart, g):
+    """Forces at the end of a step less those of its last stage."""
+    f = apart.size
+    for i in range(f):
+        apart[i] = g[4 * f + i] - g[2 * f + i]
+
+
+@compiled
+def _edge(edges, edge, t):
+    """The first edge after time `t`, from `edge` on."""
+    while edges[edge] <= t:
+        edge += 1
+    return edge
+
+
+@compiled
+def _of_part(flat, now, follows, start, h, low, high):
+    """Look up what acts in a part of a step, in the last three rows; `follows`: it starts where the part before ended."""
+    own = now.shape[0] - 3
+    if follows:
+        for i in range(now.shape[1]):
+            now[own, i] = now[own + 2, i]
+    else:
+        lookup(flat, now, own, own + 1, start, h, low, 0.0)
+    lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
+
+
+@kept
+def _run(given, z, clock, states, counts, acting):
     """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
+    matrices, laws, parts, flat, edges = given
     E, Y, S, T, PF, add, push, W, P = matrices
-    m, p, f, n, last, rub = len(laws), P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh
-    table, shape, change_mesh = flat.secant, flat.shape, flat.change_mesh
-    whole, opens, own = 1 << last, last > 0, 2 * CHUNK + 1  # the row of `now` where parts of a step begin
-    now = np.zeros((own + 3, 3 * m + f - m + (2 * len(shape) if table.size > 0 else 0)))
-    g, last_g, apart = np.zeros(4 * f), np.zeros(f), np.zeros(f)  # forces of the stages 1, 3, 4, 2; at the end; it less stage 4
+    start, h, every, allowed, scale = clock
+    m, p, f, n, last, rubs, table = laws.size, P.shape[0], S.shape[1], z.size, len(E) - 1, flat.rub_mesh.size, flat.secant
+    whole, opens, own, held = 1 << last, last > 0, 2 * CHUNK + 1, allowed < np.inf  # row `own` of `now`: parts of a step begin
+    now = np.zeros((own + 3, 2 * m + f + (2 * len(flat.shape) if table.size > 0 else 0)))
+    g, apart = np.zeros(5 * f), np.zeros(f)  # forces of the stages 1, 3, 4, 2, and at the end; these less those of stage 4
     none, doubt, fresh = np.zeros(m), np.zeros(m), False  # `fresh`: the first forces are those of the end before
     y, x, x0, new, end = np.zeros(2 * p), np.zeros(p), np.dot(P, z), np.zeros(n + p), np.zeros(p)
-    total, stiff, side, edge, level, silent = np.zeros(m), np.zeros(m), np.zeros(m), 0, 0, len(acting) == 0
+    side, edge, level = np.zeros(m), 0, 0
     nil, one = np.int64(0), np.int64(1)  # numba compiles a function anew for every number written out
-    allowed, scale = local
-    held = allowed < np.inf
     lookup(flat, now, nil, one, start, h, 0.0, 0.0)
-    _losses(side, x0, now, nil, laws)
-    for i in range(n):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
-        states[0, i] = z[i]
+    losses(side, x0, now, nil, laws)
+    _write(states, nil, z)
     steps = (len(states) - 1) * every
     for step in range(steps):
         if step % CHUNK == 0:
             if not np.isfinite(np.sum(z)):
                 return step
             lookup(flat, now, nil, 2 * min(CHUNK, steps - step) + 1, start, h, float(step), 0.5)
-        at, known = 0, -1  # `known`: the part whose end stands in the last row
-        if not held:
-            level = 0
-        noted = silent
+        at, known, noted = 0, -1, len(acting) == 0  # `known`: the part whose end stands in the last row
+        level = level if held else 0
         while at < whole:
-            while at & ((whole >> level) - 1):
-                level += 1
+            level = _aligned(at, whole, level)
             part = whole >> level
             low, high = step + at / whole, step + (at + part) / whole
-            while edges[edge] <= start + h * (low + 1e-6 * (high - low)):
-                edge += 1
+            edge = _edge(edges, edge, start + h * (low + 1e-6 * (high - low)))
             if level < last and edges[edge] < start + h * (high - 1e-6 * (high - low)):
                 level += 1
                 counts[1] += 1
                 continue
-            row = 2 * (step % CHUNK)
+            row = own if level > 0 else 2 * (step % CHUNK)
             if level > 0:
-                row = own
-                if known == at:
-                    for i in range(now.shape[1]):
-                        now[own, i] = now[own + 2, i]
-                else:
-                    lookup(flat, now, own, own + 1, start, h, low, 0.0)
-                lookup(flat, now, own + 1, own + 3, start, h, (low + high) / 2, (high - low) / 2)
+                _of_part(flat, now, known == at, start, h, low, high)
                 known = at + part
             stage(y, add, 2 * p * level, Y, level, z, nil)
             if fresh:
-                for j in range(m + rub.size, f):  # a load may jump here
-                    g[j] = now[row, 2 * m + j]
+                loads(g, now, row, m, rubs)
             else:
-                _forces(g, nil, x0, now, row, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
+                forces(g, nil, x0, now, row, laws, parts, table)
             fresh = True
             if not noted:
-                _note(acting, step, g, stiff, now, row, f)
+                note(acting, step, g, now, row, laws)
                 noted = True
             stage(x, y, nil, S, level, g, nil)
-            change = opens and _changed(side, x, now, row + 1, laws)
-            _forces(g, 3 * f, x, now, row + 1, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
+            change = opens and changed(side, x, now, row + 1, laws)
+            forces(g, 3 * f, x, now, row + 1, laws, parts, table)
             stage(x, y, nil, S, level, g, 3 * f)
-            change = change or (opens and _changed(side, x, now, row + 1, laws))
-            _forces(g, f, x, now, row + 1, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
+            change = change or (opens and changed(side, x, now, row + 1, laws))
+            forces(g, f, x, now, row + 1, laws, parts, table)
             stage(x, y, p, T, level, g, nil)
-            change = change or (opens and _changed(side, x, now, row + 2, laws))
-            _forces(g, 2 * f, x, now, row + 2, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
-            for i in range(f):
-                g[f + i] += g[3 * f + i]
+            change = change or (opens and changed(side, x, now, row + 2, laws))
+            forces(g, 2 * f, x, now, row + 2, laws, parts, table)
+            _add(g, f, 3 * f)
             stage(new, push, (n + p) * level, PF, level, g, nil)
-            for i in range(p):  # the loads in y are those of x4, in new those of the end
-                end[i] = new[n + i] + y[p + i] - add[2 * p * level + p + i]
+            _ended(end, new, y, add, 2 * p * level)
+            change = change or (opens and changed(side, end, now, row + 2, laws))
             away = 0.0
             if held:
-                _forces(last_g, nil, end, now, row + 2, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
-                for i in range(f):
-                    apart[i] = last_g[i] - g[2 * f + i]
-                stage(doubt, none, nil, W, level, apart, nil)
-                for i in range(m):
-                    scale = max(scale, abs(total[i]))
-                    away = max(away, abs(doubt[i]))
-                    apart[i] = _turned(now[row, i], now[row + 1, i], now[row + 2, i]) * total[i]
-                for i in range(m, f):
-                    apart[i] = 0.0
-                stage(doubt, none, nil, W, level, apart, nil)
-                for i in range(m):
-                    away = max(away, abs(doubt[i]))
-                away = away / scale if scale > 0 else 0.0
-            if level < last and (change or away > allowed or _changed(side, end, now, row + 2, laws)):
+                forces(g, 4 * f, end, now, row + 2, laws, parts, table)
+                _less(apart, g)
+                away = _largest(doubt, none, W, level, apart, away)
+                scale = _turned(apart, now, row, laws, scale)
+                away = _largest(doubt, none, W, level, apart, away) / max(scale, TINY)
+            if level < last and (change or away > allowed):
                 level += 1
                 counts[1] += 1
                 continue
             _propagate(new, E, level, z)
             if opens:
-                counts[2] += _losses(side, end, now, row + 2, laws)
-            for i in range(n):
-                z[i] = new[i]
-            for i in range(p):
-                x0[i] = end[i]
-            fresh = held
+                counts[2] += losses(side, end, now, row + 2, laws)
+            _copy(z, new, nil)
+            _copy(x0, end, nil)
             if held:
-                for i in range(f):
-                    g[i] = last_g[i]
+                _copy(g, g, 4 * f)
+            fresh = held
             at += part
             counts[0] += 1
-            if not held or away <= GROW * allowed:
-                level = max(0, level - 1)
+            level = max(0, level - 1) if away <= GROW * allowed else level
         if (step + 1) % every == 0:
-            for i in range(n):
-                states[(step + 1) // every, i] = z[i]
-    if not silent:
+            _write(states, (step + 1) // every, z)
+    if len(acting):
         lookup(flat, now, nil, one, start, h, float(steps), 0.0)
-        _forces(g, nil, x0, now, nil, laws, kind, linear, rub, total, stiff, table, shape, change_mesh)
-        _note(acting, steps, g, stiff, now, nil, f)
+        forces(g, nil, x0, now, nil, laws, parts, table)
+        note(acting, steps, g, now, nil, laws)
     return steps if np.isfinite(np.sum(z)) else steps - 1

@@ -2,18 +2,36 @@
 
 import contextlib
 import warnings
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
 
 import numpy as np
 from numba import njit
 from numba.core import event
 
+compiled = njit(error_model="numpy")  # at the first call
 
-def compiled(function):
-    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write."""
+
+def kept(function):
+    """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write.
+
+    It holds what the function calls, in other files and laws of contact too: any edit of these makes it anew.
+    """
     try:
-        return njit(cache=True, error_model="numpy")(function)
+        made = njit(cache=True, error_model="numpy")(function)
     except RuntimeError:  # no such folder: it is compiled by each process
-        return njit(error_model="numpy")(function)
+        return compiled(function)
+    made._cache._cache_file._source_stamp = _stamp()  # numba itself looks at the function's own file alone
+    return made
+
+
+@cache
+def _stamp():
+    """Digest of all files whose functions are compiled together."""
+    home = Path(__file__).parent
+    files = *home.glob("loop*.py"), home / "../machine/contact_law.py", *home.glob("../machine/laws/*.py")
+    return sha256(b"".join(file.read_bytes() for file in sorted(files))).hexdigest()
 
 
 class _Announcer(event.Listener):
@@ -82,23 +100,26 @@ def _paced(pace, t):
 
 
 @compiled
-def _row(now, row, at, shape, which, place):
-    """Write into two places from `at` on where the row `place` of the table `which` is, and how far beyond its middle."""
+def _row(now, row, at, shape, which, place, inside):
+    """Write into two places from `at` on where the row `place` of the table `which` is, how far beyond its middle; or -1."""
+    if not inside:
+        now[row, at] = -1.0
+        return
     i = min(max(int(place + 0.5), 1), int(shape[which, 1]) - 2)
     now[row, at], now[row, at + 1] = shape[which, 0] + i, place + 0.5 - i
 
 
 @compiled
-def secant(table, shape, which, place, u, depth):
-    """Stiffness from the table `which` at a place that `_row` gives, and a depth [m]; as `gearfe.machine.force_law.Secant`.
+def secant(table, one, place, u, depth):
+    """Stiffness from a part of the tables at a place that `_row` gives, and a depth [m]; as `gearfe.machine.force_law.Secant`.
 
     The rows of a column lie one after the other, so that what the next step asks for is near at hand.
     """
-    last, over = shape[which, 2] - 1, depth * shape[which, 3]  # of the deepest
+    last, over = one.columns - 1, depth * one.per_depth  # of the deepest
     at = last * np.sqrt(over)
     j = int(min(at, last - 1))
-    here = int(place + j * shape[which, 1])
-    there = here + int(shape[which, 1])
+    here = int(place + j * one.rows)
+    there = here + int(one.rows)
     a, b, c = (1 - u) * (1 - u) / 2, 0.5 + u * (1 - u), u * u / 2
     left = a * table[here - 1] + b * table[here] + c * table[here + 1]
     right = a * table[there - 1] + b * table[there] + c * table[there + 1]
@@ -134,22 +155,15 @@ def lookup(flat, now, first, last, origin, h, low, share):
                 phase = phases[i] + frequency[i] * turned
                 now[row, i] = _cubic(cells, place[i], count[i], (phase - np.floor(phase)) * count[i])
                 if lawful:
-                    now[row, at + 2 * i] = -1.0
-                    if shape[i, 1] > 0:
-                        _row(now, row, at + 2 * i, shape, i, 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3))
+                    _row(now, row, at + 2 * i, shape, i, 1 + (phase - np.floor(phase)) * (shape[i, 1] - 3), shape[i, 1] > 0)
         for j in range(changes):
             i = change_mesh[j]
-            if twin[i] == i:
-                z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
-                own = (own - z * np.floor(own / z)) / change[j, 3]
-                if own < change_count[j]:
-                    now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
+            z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
+            own = (own - z * np.floor(own / z)) / change[j, 3]
+            if twin[i] == i and own < change_count[j]:
+                now[row, i] += _cubic(cells, change_place[j], change_count[j], own)
             if lawful:
-                z, own = change[j, 0], phases[i] + frequency[i] * turned - change[j, 1] - change[j, 2]
-                own = (own - z * np.floor(own / z)) / change[j, 3]
-                now[row, at + 2 * (m + j)] = -1.0
-                if own < shape[m + j, 1] - 3:
-                    _row(now, row, at + 2 * (m + j), shape, m + j, own + 1)
+                _row(now, row, at + 2 * (m + j), shape, m + j, own + 1, own < shape[m + j, 1] - 3)
         for i in range(m):
             now[row, i] = now[row, twin[i]]
             if lawful:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eig
 
+from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
 LEVELS, DEEPER = 6, 8  # a step is halved at most so often: about changes of contact; and where it is adapted
@@ -64,10 +65,8 @@ class Plan:
 
 def is_affine(machine):
     """Whether all mesh forces are ``k(t) (x - e) + (damping + beta k(t)) (x - e)'`` at any time, and the loads never bend."""
-    law = machine.law
-    plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
-    smooth = all(one.breaks.size < 2 for one in machine.loads) and not any(m.friction for m in machine.meshes)
-    return bool(plain.all()) and smooth and not machine.curved
+    smooth = all(load.breaks.size < 2 for load in machine.loads) and not any(m.friction for m in machine.meshes)
+    return closed(machine.law) and smooth and not machine.curved
 
 
 def plan(machine, h, x=None, adapt=False):
@@ -92,11 +91,11 @@ def plan(machine, h, x=None, adapt=False):
     pressed, law = x, machine.law
     x, v = machine.G @ basis[:n], machine.G @ basis[n:]
     affine, film = is_affine(machine), (law["film"] != 1) & (law["damping"] > 0)
-    rates = (law["beta"] > 0) | (law["per_depth"] > 0) | law["push"] | film | (len(rub) > 0)
+    rates = (law["beta"] > 0) | (law["straight"] == 0) | (law["least"] == 0) | film | (len(rub) > 0)
     P = x + law["beta"][:, None] * v if affine else np.concatenate([x, *([v] if rates.any() else [])])
     opens = bool((law["backlash"] > 0).any())
     local = adapt and opens and is_bent(machine)
-    count = 1 + (DEEPER if local else LEVELS if opens or any(one.breaks.size > 1 for one in machine.loads) else 0)
+    count = 1 + (DEEPER if local else LEVELS if opens or any(load.breaks.size > 1 for load in machine.loads) else 0)
     levels = [_matrices(A, B, P, h / 2**level) for level in range(count)]
     told = [_told(P, F[:, 2 * B.shape[1] :], k, c) for *_, F in levels]
     allowed = LOCAL * (h / default_step(machine)) ** 4 if local else math.inf
@@ -112,7 +111,7 @@ def _told(P, end, k, c):
 
 def is_bent(machine):
     """Whether a mesh force is no straight line of compression and rate: an exponent, or damping that grows with the depth."""
-    return bool((machine.law["power"] != 1).any() or (machine.law["per_depth"] > 0).any())
+    return bool((machine.law["straight"] == 0).any())
 
 
 def default_step(machine):

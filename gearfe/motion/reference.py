@@ -47,7 +47,7 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
     """
     started = time.perf_counter()
     run = _Run(machine, duration, count, state, method, rtol, start)
-    edges = np.unique(np.concatenate([[start, start + duration], *(one.breaks for one in machine.loads)]))
+    edges = np.unique(np.concatenate([[start, start + duration], *(load.breaks for load in machine.loads)]))
     edges = edges[(edges >= start) & (edges <= start + duration)]
     at = start + np.linspace(0.0, duration, count + 1)
     y, states = run.scale * state, [state[None]]

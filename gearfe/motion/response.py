@@ -94,7 +94,7 @@ class Response:
         """Unit of a channel."""
         head, _, tail = name.partition(" ")
         if head in MESH and tail in self._meshes:
-            power = self.machine.meshes[self._meshes.index(tail)].power
+            power = self.machine.meshes[self._meshes.index(tail)].contact.power
             return MESH[head] if head != "stiffness" or power == 1 else f"N/m^{power:g}"
         self._dof(head, name)
         return ("rad" if head.endswith((".theta", ".tilt_x", ".tilt_y")) else "m") + KINDS.get(tail, "")
@@ -205,7 +205,7 @@ def acceleration(machine, flat, t, q, v, side=None, meshes=None):
     if rub:
         out = out - (excitation.rubbing(flat, phase) * total[..., flat.rub_mesh]) @ np.array(rub)
     if machine.loads:
-        out = out + excitation.loads(flat, t) @ np.array([one.row for one in machine.loads])
+        out = out + excitation.loads(flat, t) @ np.array([load.row for load in machine.loads])
     return out / machine.mass
 
 

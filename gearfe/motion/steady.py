@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..machine.contact_law import slopes
+from ..machine.contact_law import closed, slopes
 from ..machine.tables import Machine
 from ..threads import single
 from . import excitation, propagator
@@ -57,7 +57,7 @@ def common_period(machine: Machine) -> float:
     ValueError
         If there is none (frequencies without a common multiple, loads that change).
     """
-    if any(one.breaks.size > 1 or callable(one.value) for one in machine.loads):
+    if any(load.breaks.size > 1 or callable(load.value) for load in machine.loads):
         raise ValueError("the loads change with time: give the period")
     if machine.speed is not None:
         raise ValueError("the speed changes with time: there is no periodic motion; use simulate")
@@ -150,14 +150,13 @@ class _Flow:
 
     def __init__(self, machine, period, dt):
         steps = math.ceil(period / (dt or chosen_step(machine, period)[0]) * (1 - 1e-12))
-        h, law = period / steps, machine.law
+        h = period / steps
         x = machine.working()
         self.machine, self.steps, self.times = machine, steps, np.linspace(0.0, period, 2 * steps + 1)
         self.plan, self.coarse = propagator.plan(machine, h / 2, x), propagator.plan(machine, h, x)
         self.flat = excitation.flatten(machine, np.linspace(0.0, period, 16 * steps + 1))
-        self.breaks = np.unique(np.concatenate([np.empty(0), *(one.breaks for one in machine.loads)]))
-        plain = (law["power"] == 1) & (law["backlash"] == 0) & ~law["push"] & (law["per_depth"] == 0)
-        self.linear = bool(plain.all()) and not machine.curved  # even with friction
+        self.breaks = np.unique(np.concatenate([np.empty(0), *(load.breaks for load in machine.loads)]))
+        self.linear = closed(machine.law) and not machine.curved  # even with friction
         # both plans must speak of the same coordinates
         self.turn = self.coarse.inverse @ self.plan.basis
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..files import save_figure
-from .look import COLOURS
+from .look import COLOURS, blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,22 +27,15 @@ def plot_campbell(
         Largest frequency [Hz]; default: that of the highest order at the highest speed.
     dpi : int
         Dots per inch of the picture.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 5), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((9, 5))
     end = top or max(found.orders.values()) * found.speed[-1]
     axes.plot(found.speed, np.where(found.natural > 0, found.natural, np.nan), color=COLOURS[0], linewidth=1.0)
     for name, value in found.orders.items():
         axes.plot(found.speed, value * found.speed, color="gray", linewidth=0.8, linestyle="--")
         axes.annotate(name, (found.speed[-1], min(value * found.speed[-1], end)), fontsize=8, xytext=(3, 0),
                       textcoords="offset points", va="center", annotation_clip=False)  # fmt: skip
-    met = [one for one in found.crossings if one.frequency <= end]
+    met = [crossing for crossing in found.crossings if crossing.frequency <= end]
     axes.plot([one.speed for one in met], [one.frequency for one in met], "o", color=COLOURS[1], markersize=4)
     axes.set(xlabel="speed over that of the machine", ylabel="frequency [Hz]")
     axes.set(ylim=(0, end), xlim=(found.speed[0], found.speed[-1]))

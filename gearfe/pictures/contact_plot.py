@@ -11,11 +11,12 @@ from geometry.damage.pit import Pit
 from geometry.pair.gear_pair import GearPair
 
 from ..files import save_figure
+from .look import blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..contact.solid import Contact3D
+    from ..contact.wide_contact import Contact3D
 
 PLACES = 400  # along the width, of the load of a whole cycle
 
@@ -35,7 +36,7 @@ def plot_contact(
     Parameters
     ----------
     pair : GearPair
-    contact : gearfe.contact.solid.Contact3D
+    contact : gearfe.contact.wide_contact.Contact3D
         As `gearfe.contact_pattern` gives it.
     phase : int, optional
         Which of its phases; None: all of them together, the contact pattern.
@@ -45,15 +46,8 @@ def plot_contact(
         Of the pinion, to be drawn; only the line of their own tooth pair is cut by them.
     title : str
         What is shown: scene, pair, case.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 5.5), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
+    figure, (top, bottom) = blank((9, 5.5), 2, 1, sharex=True, height_ratios=[3, 2])
     shown = range(len(contact.cells)) if phase is None else [phase]
     drawn = _draw_lines(top, pair, [contact.cells[i] for i in shown])
     offset = (pair.gear_1.b - min(pair.gear_1.b, pair.gear_2.b)) / 2

@@ -3,32 +3,19 @@
 import numpy as np
 
 from ..files import save_figure
-from .look import COLOURS
+from .look import COLOURS, blank
 from .stiffness_plots import told
 
 
 def plot_transmission_error(found, path=None, title=None, plain=None):
-    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` if given.
+    """Draw a `gearfe.stiffness.transmission_error.TransmissionError`; save to `path` (png, svg, pdf) if given.
 
-    Parameters
-    ----------
-    found : TransmissionError
-    path : path, optional
-        Picture file; its suffix decides (png, svg, pdf).
-    title : str, optional
-        Default: teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`.
-    plain : TransmissionError, optional
-        That of the same pair with plain involutes: its peak-to-peak is drawn too.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
+    The `title` is by default teeth, damage and width, see `gearfe.pictures.stiffness_plots.told`. With `plain`, that of the same
+    pair with plain involutes, its peak-to-peak is drawn too.
     """
     from matplotlib import colormaps
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 6.5), layout="constrained")
-    top, bottom = figure.subplots(2, 1, height_ratios=[2, 1])
+    figure, (top, bottom) = blank((8, 6.5), 2, 1, height_ratios=[2, 1])
     order = np.argsort(found.force)[::-1]
     colours = colormaps["plasma"](np.linspace(0.0, 0.62, order.size))  # no paler: light loads are lines on white, too
     for i, colour in zip(order.tolist(), colours, strict=True):
@@ -47,10 +34,8 @@ def plot_transmission_error(found, path=None, title=None, plain=None):
     if plain is not None:
         bottom.plot(plain.force[rising], 1e6 * plain.peak_to_peak[rising], "s--", color=COLOURS[1], label="plain involutes")
     bottom.axhline(1e6 * np.ptp(found.unloaded), color="black", linestyle=":", label="unloaded")
-    bottom.set_xlim(left=0)
-    bottom.set_ylim(bottom=0)
-    bottom.set_xlabel("force along the line of action [N]")
-    bottom.set_ylabel("peak-to-peak [µm]")
+    bottom.set(xlim=(0, None), ylim=(0, None))
+    bottom.set(xlabel="force along the line of action [N]", ylabel="peak-to-peak [µm]")
     bottom.legend(loc="center left", bbox_to_anchor=(1, 0.5))
     return save_figure(figure, path, dpi=120)
 

@@ -10,20 +10,7 @@ FRAME = (44, 8, 8, 30)  # left, right, top, bottom [px]
 
 
 def line_svg(x, y, x_name, y_name, *, largest=800):
-    """SVG of one line with the ends of both axes named.
-
-    Parameters
-    ----------
-    x, y : ndarray, shape (n,)
-    x_name, y_name : str
-    largest : int
-        Points drawn at most; of more, every so many.
-
-    Returns
-    -------
-    str
-        An ``<svg>`` element.
-    """
+    """An ``<svg>`` element of one line, y over x ``(n,)``, with the ends of both axes named; of at most `largest` points."""
     x, y = (np.asarray(values, dtype=float)[:: max(1, math.ceil(len(values) / largest))] for values in (x, y))
     (wide, tall), (left, right, top, bottom) = SIZE, FRAME
     across, up = (_scale(v, length) for v, length in ((x, wide - left - right), (y, tall - top - bottom)))

@@ -1,4 +1,6 @@
-"""How lines differ in every picture: by colours that the colour-blind tell apart, and by dashes."""
+"""How lines differ in every picture: by colours that the colour-blind tell apart, and by dashes; an empty picture."""
+
+from typing import Any
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555")
 GEARS = ("#b9c7d6", "#d6cbb9")  # bodies of pinion and wheel
@@ -10,3 +12,11 @@ SQUASHED = 0.3  # lowest over largest value from which on an axis from zero woul
 def look(number):
     """Colour and dashes of the line of this number, as matplotlib takes them."""
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)]}
+
+
+def blank(size: tuple[float, float], *rows: int, **options: Any) -> tuple[Any, Any]:
+    """An empty figure of a size [inch], and its axes as matplotlib's ``Figure.subplots`` gives them."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, figure.subplots(*rows, **options)

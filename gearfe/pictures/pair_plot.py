@@ -14,7 +14,7 @@ from geometry.tooth.profile import cartesian
 
 from ..case import Case
 from ..files import save_figure
-from .look import COLOURS, GEARS
+from .look import COLOURS, GEARS, blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,10 +44,6 @@ def plot_pair(
     title : str
         What is shown: scene, pair, case.
 
-    Returns
-    -------
-    matplotlib.figure.Figure
-
     Raises
     ------
     ValueError
@@ -62,16 +58,13 @@ def plot_pair(
     >>> [axes.get_aspect() for axes in figure.axes]
     [1.0, 1.0]
     """
-    from matplotlib.figure import Figure
-
     if isinstance(pair, Case):
         damage, pair = pair.damage if damage is None else damage, pair.pair
     hurt = by_side(damage)
     tooth = next((one.tooth for own in hurt for one in own), 0)
     pitch = pair.gear_1.r_b * math.tan(pair.alpha_w)  # roll length at the pitch point
     turns = [float(turn) for turn in pair.turn(pitch - tooth * pair.p_bt)]
-    figure = Figure(figsize=(10, 5.2), layout="constrained")
-    both = figure.subplots(1, 2)
+    figure, both = blank((10, 5.2), 1, 2)
     for i, gear in enumerate((pair.gear_1, pair.gear_2)):
         frame = _turned(turns[i]) * [(1, pair.outward)[i], 1]  # a ring's own frame is mirrored in place
         centre = [[0.0], [(0.0, pair.centre_2)[i]]]

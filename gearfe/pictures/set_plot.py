@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
-from .look import COLOURS, DASHES
+from .look import COLOURS, DASHES, blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,15 +27,13 @@ def draw_set(
     dpi: int,
 ) -> "Figure":
     """Picture of `gearfe.epicyclic.shape.plot_planetary_set`: `shapes` as of there, places `supports` ``(2, n)`` [mm]."""
-    from matplotlib.figure import Figure
     from matplotlib.tri import Triangulation
 
-    radius = max(float(np.abs(one.place).max()) for one in shapes)
-    largest = max(float(np.hypot(*one.moved).max()) for one in shapes)
+    radius = max(float(np.abs(shape.place).max()) for shape in shapes)
+    largest = max(float(np.hypot(*shape.moved).max()) for shape in shapes)
     times = magnified or 10 ** math.floor(math.log10(LARGEST * radius / largest)) * 2
-    figure = Figure(figsize=(8, 8), layout="constrained")
-    axes = figure.subplots()
-    top = max(float(np.percentile(one.stress, BRIGHT)) for one in shapes)
+    figure, axes = blank((8, 8))
+    top = max(float(np.percentile(shape.stress, BRIGHT)) for shape in shapes)
     for one in shapes:
         x, y = one.place + times * one.moved
         corners = np.concatenate([one.triangles[[0, 3, 5]], one.triangles[[3, 1, 4]], one.triangles[[5, 4, 2]],
@@ -53,10 +51,7 @@ def draw_set(
 
 def draw_curves(curves: Any, path: str | os.PathLike[str] | None, *, dpi: int) -> "Figure":
     """Picture of `gearfe.epicyclic.curves.SetCurves.plot`."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 8), layout="constrained")
-    above, middle, below = figure.subplots(3, sharex=True)
+    figure, (above, middle, below) = blank((9, 8), 3, sharex=True)
     for planet in range(curves.force.shape[2]):
         for inner, name in enumerate(("sun", "ring")):
             label = f"planet {planet}, {name}"

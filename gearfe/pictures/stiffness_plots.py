@@ -6,7 +6,7 @@ import numpy as np
 
 from ..files import save_figure
 from ..units import NEWTON_PER_UM
-from .look import SQUASHED, look
+from .look import SQUASHED, blank, look
 
 COLUMNS = {  # of an error map
     "load": "load F / (b m_n) [MPa]",
@@ -19,28 +19,13 @@ COLUMNS = {  # of an error map
 
 
 def plot_curves(curves, path=None, title=None):
-    """Draw stiffness curves over the phase [N/um], the load shares of the first below; save to `path` if given.
+    """Draw stiffness curves by name over the phase [N/um], the load shares of the first below; save to `path` if given.
 
     Curves differ by colour and by dashes. A jump, where a curve without contact off the path of contact gains or loses a pair,
-    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves.
-
-    Parameters
-    ----------
-    curves : dict of str to StiffnessCurve
-    path : path, optional
-        Picture file; its suffix decides (png, svg, pdf).
-    title : str, optional
-        Default: teeth, damage and load of the first curve, see `told`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-        Its ``axes`` are two.
+    is drawn at its phase. The axis of stiffness starts at zero unless that would squash the curves. The `title` is by default
+    teeth, damage and load of the first curve, see `told`.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.5, 5.4), layout="constrained")
-    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    figure, (top, bottom) = blank((7.5, 5.4), 2, 1, sharex=True, height_ratios=[2, 1])
     for number, (name, curve) in enumerate(curves.items()):
         top.plot(*closed(curve), label=name, linewidth=1.8 if number == 0 else 1.4, **look(number))
     first = next(iter(curves.values()))
@@ -111,14 +96,12 @@ def _extended(phase, k, rows, place):
 
 
 def plot_map(found, formulations, x, y, zone, path=None, bins=8):
-    """Heat maps of the median error over two columns of an `gearfe.studies.errormap.ErrorMap`, one for each formulation.
+    """Heat maps of the median error over two columns of an `gearfe.many.errormap.ErrorMap`, one for each formulation.
 
     Columns with few different values (loads) get one bin each, others `bins` of equal width.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(3.4 * len(formulations) + 1, 3.4), layout="constrained")
-    row = figure.subplots(1, len(formulations), sharex=True, sharey=True, squeeze=False)[0]
+    size = (3.4 * len(formulations) + 1, 3.4)
+    figure, (row,) = blank(size, 1, len(formulations), sharex=True, sharey=True, squeeze=False)
     (place_x, names_x), (place_y, names_y) = (_binned(found.columns[name], bins) for name in (x, y))
     for axes, name in zip(row, formulations, strict=True):
         error = 100 * found.columns[f"{name} {zone}"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..files import save_figure
-from .look import COLOURS
+from .look import COLOURS, blank
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,10 +44,8 @@ def plot_spectra(
     title : str
         What is shown: scene, case, channel.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 1 + 2 * len(spectra)), layout="constrained")
-    rows = figure.subplots(len(spectra), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    figure, rows = blank((9, 1 + 2 * len(spectra)), len(spectra), 1, sharex=True, sharey=True, squeeze=False)
+    rows = rows[:, 0]
     largest = max(one.values.max() for one in spectra.values())
     for axes, (name, found) in zip(rows, spectra.items(), strict=True):
         axes.semilogy(found.frequency, found.values, linewidth=0.8, color=COLOURS[0])
@@ -83,10 +81,8 @@ def _apart(places, least):
 def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
     """Draw a `gearfe.signal.kurtogram.Kurtogram` under a `title`, the best band framed; save to `path` if given."""
     from matplotlib import cm, colormaps, colors
-    from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7, 4), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((7, 4))
     levels = np.unique(kurtogram.level)
     top = kurtogram.kurtosis.max()
     low = kurtogram.centre - kurtogram.bandwidth / 2
@@ -101,8 +97,7 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
     axes.barh(row, kurtogram.bandwidth[best], 1.0, left=low[best], fill=False, edgecolor="#d55e00", linewidth=2)
     axes.set_yticks(range(levels.size), [f"{level:.3g}" for level in levels])
     axes.invert_yaxis()
-    axes.set_xlabel("frequency [Hz]")
-    axes.set_ylabel("level")
+    axes.set(xlabel="frequency [Hz]", ylabel="level")
     found = f"kurtosis up to {top:.3g}, in {kurtogram.band[0]:.0f} to {kurtogram.band[1]:.0f} Hz"
     axes.set_title(f"{title}: {found}" if title else found, fontsize=9)
     return save_figure(figure, path, dpi=120)
@@ -110,30 +105,22 @@ def plot_kurtogram(kurtogram: "Kurtogram", path: str | os.PathLike[str] | None =
 
 def plot_spectrogram(spectrogram: "Spectrogram", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
     """Draw a `gearfe.signal.time_frequency.Spectrogram`, 80 dB deep, under a `title`; save to `path` if given."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((9, 4))
     largest = max(float(spectrogram.values.max()), 1e-300)
     shown = 20 * np.log10(np.maximum(spectrogram.values / largest, 1e-4))
     drawn = axes.pcolormesh(spectrogram.time, spectrogram.frequency, shown, cmap="viridis", shading="nearest", rasterized=True)
     figure.colorbar(drawn, ax=axes, label=f"amplitude [dB re {largest:.3g} {spectrogram.unit}]")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("frequency [Hz]")
+    axes.set(xlabel="time [s]", ylabel="frequency [Hz]")
     axes.set_title(title or spectrogram.name, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
 
 def plot_cepstrum(found: "Spectrum", path: str | os.PathLike[str] | None = None, title: str = "") -> "Figure":
     """Draw a cepstrum, `gearfe.cepstrum`, from a thousandth of its length on; save to `path` if given."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(9, 3), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((9, 3))
     first = max(1, found.values.size // 1000)  # the shape of the whole spectrum stands before
     axes.plot(found.frequency[first:], found.values[first:], linewidth=0.7)
-    axes.set_xlabel("quefrency [s]")
-    axes.set_ylabel("cepstrum [-]")
+    axes.set(xlabel="quefrency [s]", ylabel="cepstrum [-]")
     axes.set_title(title or found.name, fontsize=9)
     return save_figure(figure, path, dpi=120)
 
@@ -146,16 +133,12 @@ def plot_phase(
     title: str = "",
 ) -> "Figure":
     """Draw a phase portrait, `gearfe.phase_portrait`, with the points of a Poincare section; save to `path` if given."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5, 4), layout="constrained")
-    axes = figure.subplots()
+    figure, axes = blank((5, 4))
     axes.plot(*portrait, linewidth=0.4, color=COLOURS[0])
     if section is not None:
         axes.plot(*np.transpose(section), ".", color=COLOURS[1], markersize=5, label="Poincaré section")
         axes.legend(fontsize=8)
     axes.ticklabel_format(scilimits=(-2, 3))
     axes.set_title(title, fontsize=10)
-    axes.set_xlabel(f"displacement [{unit}]")
-    axes.set_ylabel(f"velocity [{unit}/s]")
+    axes.set(xlabel=f"displacement [{unit}]", ylabel=f"velocity [{unit}/s]")
     return save_figure(figure, path, dpi=120)

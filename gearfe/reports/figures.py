@@ -17,73 +17,74 @@ LOOK = {
 }
 CLEAR = "rgba(0,0,0,0)"  # the page's own ground, dark or light
 POINTS = 4000  # of a spectrum that is drawn
+K = "mesh stiffness k [N/µm]"
 
 
-def _figure(**layout):
+CONFIG = {"responsive": True, "displaylogo": False}
+BAND = {"fill": "toself", "fillcolor": "rgba(0,114,178,0.25)", "line": {"width": 0}, "hoverinfo": "skip"}  # between two curves
+
+
+def blank(x=None, y=None, **layout):
+    """An empty figure whose axes have these titles."""
     from plotly.graph_objects import Figure
 
-    figure = Figure()
-    figure.update_layout(**(LOOK | layout))
-    return figure
+    titles = {name: {"title": title} for name, title in (("xaxis", x), ("yaxis", y)) if title}
+    return Figure(layout=LOOK | titles | layout)
 
 
-def _style(number):
+def part_of_page(figure, name):
+    """A figure as an element of a page, of this name; the page has plotly itself."""
+    return figure.to_html(include_plotlyjs=False, full_html=False, config=CONFIG, div_id=name)
+
+
+def style(number):
+    """Colour, dashes and width of the line of this number."""
     return {"color": COLOURS[number % len(COLOURS)], "dash": DASH[number % len(DASH)], "width": 2.4 if number == 0 else 1.8}
 
 
 def curves_figure(curves):
     """Stiffness by method over the phase [N/um]; the estimate of the first as a band."""
-    figure = _figure(height=400)
-    figure.update_xaxes(title="mesh phase")
-    figure.update_yaxes(title="mesh stiffness k [N/µm]")
-    first = next(iter(curves.values()))
+    figure, first = blank("mesh phase", K, height=400), next(iter(curves.values()))
     if first.error is not None:
         low, high = ((first.k + sign * first.error) / NEWTON_PER_UM for sign in (-1, 1))
         band = {"x": np.concatenate([first.phase, first.phase[::-1]]), "y": np.concatenate([high, low[::-1]])}
-        name = f"estimate of {next(iter(curves))}"
-        figure.add_scatter(
-            **band, fill="toself", fillcolor="rgba(0,114,178,0.25)", line={"width": 0}, name=name, hoverinfo="skip"
-        )
-    for number, (name, curve) in enumerate(curves.items()):
-        phase, k = closed(curve)
-        figure.add_scatter(x=phase, y=k, name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm")
-    return figure
+        figure.add_scatter(**band, **BAND, name=f"estimate of {next(iter(curves))}")
+    return _with_curves(figure, curves)
 
 
 def cases_figure(curves):
     """Stiffness of one method by case."""
-    figure = _figure(height=360)
-    figure.update_xaxes(title="mesh phase")
-    figure.update_yaxes(title="mesh stiffness k [N/µm]")
+    return _with_curves(blank("mesh phase", K, height=360), curves)
+
+
+def _with_curves(figure, curves):
     for number, (name, curve) in enumerate(curves.items()):
-        figure.add_scatter(x=closed(curve)[0], y=closed(curve)[1], name=name, line=_style(number), hovertemplate="%{y:.4g} N/µm")
+        phase, k = closed(curve)
+        figure.add_scatter(x=phase, y=k, name=name, line=style(number), hovertemplate="%{y:.4g} N/µm")
     return figure
 
 
 def share_figure(curve):
     """Load share of each tooth pair over the phase."""
-    figure = _figure(height=320)
-    figure.update_xaxes(title="mesh phase")
-    figure.update_yaxes(title="load share", range=[0, 1.05])
+    figure = blank("mesh phase", "load share", height=320)
+    figure.update_yaxes(range=[0, 1.05])
     share = np.where(curve.force > 0, curve.share, np.nan)
     for number, order in enumerate(curve.order):
         if np.isfinite(share[:, number]).any():
-            name = f"pair {order:+d}"
-            figure.add_scatter(
-                x=curve.phase, y=share[:, number], name=name, line=_style(number), hovertemplate="%{y:.3f}", connectgaps=False
-            )
+            line = {"name": f"pair {order:+d}", "line": style(number), "hovertemplate": "%{y:.3f}"}
+            figure.add_scatter(x=curve.phase, y=share[:, number], connectgaps=False, **line)
     return figure
 
 
 def spectra_figure(found):
     """Spectra of an `Analysis` by case, its expected lines marked and named."""
-    figure = _figure(height=485, hovermode="closest", margin=LOOK["margin"] | {"t": 95})
+    figure = blank("frequency [Hz]", height=485, hovermode="closest", margin=LOOK["margin"] | {"t": 95})
     end = 1.15 * max(found.lines.values()) if found.lines else None
     for number, (name, one) in enumerate(found.spectra.items()):
         last = one.frequency.size if end is None else int(np.searchsorted(one.frequency, end)) + 1
         rows = slice(1, min(last, POINTS))
         figure.add_scatter(
-            x=one.frequency[rows], y=one.values[rows], name=name, line=_style(number) | {"width": 1.3},
+            x=one.frequency[rows], y=one.values[rows], name=name, line=style(number) | {"width": 1.3},
             hovertemplate="%{x:.2f} Hz: %{y:.3g} " + one.unit,
         )  # fmt: skip
     names = {}
@@ -91,26 +92,18 @@ def spectra_figure(found):
         names.setdefault(round(value, 3), []).append(name)
     for value, together in names.items():
         figure.add_vline(x=value, line={"color": "#777777", "dash": "dot", "width": 1})
-        figure.add_annotation(
-            x=value,
-            y=1,
-            yref="paper",
-            text=", ".join(together),
-            textangle=-90,
-            yanchor="bottom",
-            showarrow=False,
-            font={"size": 10},
-        )
+        told = {"text": ", ".join(together), "textangle": -90, "font": {"size": 10}, "showarrow": False}
+        figure.add_annotation(x=value, y=1, yref="paper", yanchor="bottom", **told)
     largest = max(one.values[1:].max() for one in found.spectra.values())
     figure.update_yaxes(title=f"amplitude [{found.unit}]", type="log", range=[np.log10(largest) - 5, np.log10(largest) + 0.2])
-    figure.update_xaxes(title="frequency [Hz]", range=None if end is None else [0, end])
+    figure.update_xaxes(range=None if end is None else [0, end])
     return figure
 
 
 def tooth_figure(pressed, field, scale, largest):
     """The loaded tooth in three dimensions, coloured by von Mises stress up to `largest` [MPa]."""
     points, faces, mises = shown_tooth(pressed, field, scale)
-    figure = _figure(height=560, margin={"l": 0, "r": 0, "t": 0, "b": 0}, hovermode="closest", dragmode="orbit")
+    figure = blank(height=560, margin={"l": 0, "r": 0, "t": 0, "b": 0}, hovermode="closest", dragmode="orbit")
     x, y, z = points.astype(np.float32)
     i, j, k = faces.astype(np.int32)
     bar = {"title": {"text": "von Mises<br>[MPa]"}, "len": 0.7, "thickness": 14}

@@ -1,45 +1,29 @@
 """What a report shows, computed: comparisons of all pairs, the loaded tooth, the machine's vibration; with what each cost."""
 
+import contextlib
 import time
 from dataclasses import dataclass, field
 
-from ..scene.load import load_scene
+from ..scene.load import Scene, load_scene
 from ..steps import part, steps
 from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
-from ..studies.vibration import analysis, check_run, responses
+from ..studies.vibration import Analysis, analysis, check_run, responses
 from ..threads import own_warnings
 
 
 @dataclass(slots=True)
 class Findings:
-    """All results of one scene.
+    """All results of one scene."""
 
-    Attributes
-    ----------
-    scene : Scene
-    case : str or None
-        Of damage, shown beside healthy.
-    comparisons : dict of (str, str or None) to gearfe.studies.by_zone.Comparison
-        By pair and case.
-    tooth : tuple or None
-        ``(pair name, Pressed, Field)``: the tooth in three dimensions.
-    vibration : gearfe.studies.vibration.Analysis or None
-    responses : dict of str to Response
-    notes : list of str
-        Warnings, and what could not be shown and why.
-    seconds : dict of str to float
-        Wall time of each part.
-    """
-
-    scene: object
-    case: str | None
-    comparisons: dict = field(default_factory=dict)
-    tooth: tuple | None = None
-    vibration: object | None = None
-    responses: dict = field(default_factory=dict)
-    notes: list = field(default_factory=list)
-    seconds: dict = field(default_factory=dict)
+    scene: Scene
+    case: str | None  # of damage, shown beside healthy
+    comparisons: dict = field(default_factory=dict)  # `gearfe.studies.by_zone.Comparison` by (pair, case or None)
+    tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
+    vibration: Analysis | None = None
+    responses: dict = field(default_factory=dict)  # `Response` by case
+    notes: list = field(default_factory=list)  # warnings, and what could not be shown and why
+    seconds: dict = field(default_factory=dict)  # wall time by part
 
     @property
     def headline(self):
@@ -56,22 +40,7 @@ class Findings:
 
 
 def find(scene, case=None, *, duration=0.2, phases=64):
-    """Compute all that a report shows.
-
-    Parameters
-    ----------
-    scene : Scene, str or path
-    case : str, optional
-        Default: the first case of damage of the scene, if it has one.
-    duration : float
-        Of the vibration of the scene's machine [s]; 0 leaves it out.
-    phases : int
-        Of the stiffness curves.
-
-    Returns
-    -------
-    Findings
-    """
+    """Compute all `Findings` that a report shows; what is given is that of `gearfe.report`."""
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene
@@ -100,19 +69,14 @@ def find(scene, case=None, *, duration=0.2, phases=64):
     return found
 
 
-class _counted:  # noqa: N801
+@contextlib.contextmanager
+def _counted(found, name):
     """Seconds of a part, and its warnings, into the findings."""
-
-    def __init__(self, found, name):
-        self.found, self.name, self.caught = found, name, own_warnings()
-
-    def __enter__(self):
-        self.told, self.started = self.caught.__enter__(), time.perf_counter()
-
-    def __exit__(self, *error):
-        self.found.seconds[self.name] = time.perf_counter() - self.started
-        self.caught.__exit__(*error)
-        self.found.notes += [f"{self.name}: {one.message}" for one in self.told]
+    started = time.perf_counter()
+    with own_warnings() as told:
+        yield
+    found.seconds[name] = time.perf_counter() - started
+    found.notes += [f"{name}: {one.message}" for one in told]
 
 
 def _tooth(found):

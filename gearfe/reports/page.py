@@ -1,7 +1,6 @@
 """`report`: a page of a scene in one file that needs no network."""
 
 import base64
-import contextlib
 import os
 import tempfile
 import time
@@ -15,12 +14,11 @@ from ..stiffness.methods import METHODS
 from ..stiffness.provenance import versions
 from ..stress.render import enlarged, render_stress, rounded_up
 from ..studies.told_scene import told_details, told_load, told_supports
-from .figures import cases_figure, curves_figure, share_figure, spectra_figure, tooth_figure
+from .figures import cases_figure, curves_figure, part_of_page, share_figure, spectra_figure, tooth_figure
 from .findings import find
 from .template import page_maker
 
 PICTURE, REFINE = (1120, 840), 0.7  # of stress [px], and of its mesh
-CONFIG = {"responsive": True, "displaylogo": False}
 
 
 def report(
@@ -46,11 +44,6 @@ def report(
     phases : int
         Of the stiffness curves, per mesh cycle.
 
-    Returns
-    -------
-    pathlib.Path
-        Of the page.
-
     Raises
     ------
     ValueError
@@ -62,8 +55,10 @@ def report(
     started = time.perf_counter()
     with part("", 0.0, 0.85):
         found = find(scene, case, duration=duration, phases=phases)
-    with part("stress pictures", 0.85, 1.0), _part(found, "stress pictures"):
+    with part("stress pictures", 0.85, 1.0):
+        drawing = time.perf_counter()
         pictures = _pictures(found)
+        found.seconds["stress pictures"] = time.perf_counter() - drawing
     figures = _Figures()
     return write(
         found=found, headline=found.headline, scene=found.scene, command=_command(found), case=found.case,
@@ -82,15 +77,7 @@ class _Figures:
 
     def __call__(self, figure):
         self.number += 1
-        options = {"include_plotlyjs": False, "full_html": False, "config": CONFIG, "div_id": f"figure-{self.number}"}
-        return {"name": f"figure-{self.number}", "html": figure.to_html(**options)}
-
-
-@contextlib.contextmanager
-def _part(found, name):
-    started = time.perf_counter()
-    yield
-    found.seconds[name] = time.perf_counter() - started
+        return {"name": f"figure-{self.number}", "html": part_of_page(figure, f"figure-{self.number}")}
 
 
 def _pairs(found, figures):
@@ -190,7 +177,7 @@ def _table(markdown):
 
 def _methods(found):
     """Methods that were used, and what each is."""
-    used = dict.fromkeys(name for one in found.comparisons.values() for name in one.curves)
+    used = dict.fromkeys(name for comparison in found.comparisons.values() for name in comparison.curves)
     return {name: METHODS[name] for name in used if name in METHODS}
 
 

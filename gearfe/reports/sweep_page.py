@@ -3,16 +3,15 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..many.sweeps.effects import curve_bands, main_effects
 from ..many.sweeps.runs import Runs, open_runs
-from ..pictures.look import COLOURS
-from .figures import DASH, LOOK
+from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
+SIZE = {"height": 420, "hovermode": "closest"}
 SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
 
 
@@ -25,11 +24,6 @@ def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[st
         As of `gearfe.open_runs`, or its folder.
     path : path
         A ``.html`` file.
-
-    Returns
-    -------
-    pathlib.Path
-        Of the page.
 
     Raises
     ------
@@ -80,29 +74,17 @@ def _failed(table):
     return [["cases", "error"], *([n, text] for text, n in count.head(20).items())]
 
 
-def _figure(**layout: Any):
-    from plotly.graph_objects import Figure
-
-    return Figure(layout=LOOK | {"height": 420, "hovermode": "closest"} | layout)
-
-
-def _html(figure, name):
-    options = {"include_plotlyjs": False, "full_html": False, "config": {"responsive": True, "displaylogo": False}}
-    return figure.to_html(div_id=name, **options)
-
-
 def _effects(runs, output):
     """Main effects, each input over its own range."""
-    found, figure = main_effects(runs, output), _figure(xaxis={"title": "place of the value in its range"})
-    figure.update_yaxes(title=f"mean {output} [{runs.units[output]}]")
-    for i, (name, own) in enumerate(found.groupby("input", sort=False)):
+    figure = blank("place of the value in its range", f"mean {output} [{runs.units[output]}]", **SIZE)
+    for i, (name, own) in enumerate(main_effects(runs, output).groupby("input", sort=False)):
         said = [str(value) if isinstance(value, str) else f"{value:.5g}" for value in own["value"]]
         figure.add_scatter(
             x=np.linspace(0, 1, len(own)), y=own["mean"], name=name, mode="lines+markers", text=said,
-            line={"color": COLOURS[i % len(COLOURS)], "dash": DASH[i % len(DASH)]},
+            line=style(i) | {"width": 2},
             hovertemplate="%{text}: %{y:.5g}",
         )  # fmt: skip
-    return _html(figure, "figure-effects")
+    return part_of_page(figure, "figure-effects")
 
 
 def _bands(runs, curve):
@@ -114,15 +96,8 @@ def _bands(runs, curve):
     except ValueError:  # other phases in other cases
         return ""
     phase, (low, middle, high) = found["phase"].to_numpy(), found[curve].to_numpy()
-    figure = _figure(xaxis={"title": "mesh phase"}, yaxis={"title": f"{curve} [{runs.units[curve]}]"})
+    figure = blank("mesh phase", f"{curve} [{runs.units[curve]}]", **SIZE)
     both = {"x": np.concatenate([phase, phase[::-1]]), "y": np.concatenate([high, low[::-1]]), "mode": "lines"}
-    figure.add_scatter(
-        **both,
-        fill="toself",
-        line={"width": 0},
-        fillcolor="rgba(0,114,178,0.25)",
-        name="5 to 95 %",
-        hoverinfo="skip",
-    )
+    figure.add_scatter(**both, **BAND, name="5 to 95 %")
     figure.add_scatter(x=phase, y=middle, mode="lines", line={"color": "#0072b2"}, name="middle")
-    return _html(figure, "figure-bands")
+    return part_of_page(figure, "figure-bands")

@@ -11,10 +11,7 @@ from ..files import check_output, written
 def page_maker(path: str | os.PathLike[str], name: str) -> Any:
     """Check that a page can be written; give a function that fills the template `name` with values and writes it.
 
-    Raises
-    ------
-    ValueError
-        If the page could not be written.
+    ValueError if the page could not be written.
     """
     check_output(path, "page")
     import jinja2

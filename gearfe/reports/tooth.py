@@ -21,22 +21,10 @@ def surface(cells, points):
 
 
 def shown_tooth(pressed, field, scale):
-    """Surface of tooth 0 and its neighbours, without most of the body.
+    """Surface of tooth 0 and its neighbours, without most of the body: points, faces and von Mises stress.
 
-    Parameters
-    ----------
-    pressed : gearfe.stress.holed.Pressed
-    field : gearfe.stress.fields.Field
-    scale : float
-        By which displacements are enlarged.
-
-    Returns
-    -------
-    points : ndarray, shape (3, n)
-        [mm], z along the width, y outwards through the tooth.
-    faces : ndarray, shape (3, k)
-    mises : ndarray, shape (n,)
-        [MPa]
+    Points ``(3, n)`` [mm], displaced `scale` times as far as they are, z along the width, y outwards through the tooth; faces
+    ``(3, k)`` of them; stress ``(n,)`` [MPa].
     """
     gear = pressed.sector.gear
     faces = surface(field.cells[:4], field.points)

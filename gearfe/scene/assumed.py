@@ -24,30 +24,10 @@ OF_STIFFNESS = re.compile(r"\bk\b|stiffness|reduction|rows|loss")  # in what is 
 def split(file, assumptions, given, tables):
     """Assumptions that hold, and what was changed.
 
-    Parameters
-    ----------
-    file : str
-        Name for messages.
-    assumptions : list of dict
-        Checked ``[[assumption]]`` tables.
-    given : dict
-        Values of the source by dotted key.
-    tables : dict
-        The scene's tables with their defaults filled in, as read.
-
-    Returns
-    -------
-    kept : tuple of dict
-        ``what``, ``why`` and ``depends`` of those that hold.
-    changed : tuple of str
-        One text for each value that is no longer the source's or the assumed one.
-    own : bool
-        Whether a value that the source gives was changed: the scene is not its machine any more.
-
-    Raises
-    ------
-    ValueError
-        If a key names no value of the scene.
+    Of checked ``[[assumption]]`` tables, the values `given` by the source by dotted key, and the scene's `tables` with their
+    defaults filled in: ``what``, ``why`` and ``depends`` of those that hold; one text for each value that is no longer the
+    source's or the assumed one; and whether a value that the source gives was changed: the scene is not its machine any more.
+    ValueError if a key names no value of the scene.
     """
     kept, changed = [], {}
     for i, one in enumerate(assumptions):
@@ -68,4 +48,4 @@ def _away(file, where, values, tables):
 
 def of_stiffness(assumptions):
     """Those of a scene's assumptions on which the mesh stiffness depends, or that do not say what depends on them."""
-    return [one for one in assumptions if not one["depends"] or OF_STIFFNESS.search(one["depends"])]
+    return [assumption for assumption in assumptions if not assumption["depends"] or OF_STIFFNESS.search(assumption["depends"])]

@@ -6,10 +6,9 @@ from typing import Any, NamedTuple
 
 from geometry.damage.crack import Crack
 from geometry.damage.kinds import Damage
-from geometry.damage.pit import Pit, pit_row
+from geometry.damage.pit import pit_row
 from geometry.damage.spall import Spall
 from geometry.pair.gear_pair import GearPair
-from geometry.pair.lines import bands_of
 from geometry.pair.pit_lines import in_both_halves, pit_line
 
 from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, WHOLE
@@ -23,16 +22,14 @@ class Table(NamedTuple):
     words: str
 
 
+PLACE = {"case": (TEXT, REQUIRED), "gear": (TEXT, REQUIRED), "tooth": (WHOLE, 0), "pair": (TEXT, None)}  # of all damage
 CRACK = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "level": (NUMBER, None),
     "length_mm": (NUMBER, None),
     "angle_deg": (NUMBER, 45.0),
     "start": (TEXT, "30deg"),
     "turning": (TRUTH, False),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
     "width_mm": (TWO, None),
     "ends": (NUMBERS, [1.0, 1.0]),
     "rounded": (TRUTH, False),
@@ -63,8 +60,7 @@ CRACK_WORDS = """\
 #pair = "stage"  # only in this pair; left out: in all pairs of the gear
 """
 PITS = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "radius_mm": (NUMBER, REQUIRED),
     "count": (WHOLE, 1),
     "first_mm": (NUMBER, None),
@@ -78,8 +74,6 @@ PITS = {
     "axes_mm": (TWO, REQUIRED),
     "depth_mm": (NUMBER, REQUIRED),
     "angle_deg": (NUMBER, 0.0),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
 }
 PIT_WORDS = """\
 # Pits: a row of ellipses.
@@ -101,16 +95,13 @@ PIT_WORDS = """\
 #pair = "stage"
 """
 SPALL = {
-    "case": (TEXT, REQUIRED),
-    "gear": (TEXT, REQUIRED),
+    **PLACE,
     "radius_mm": (NUMBER, REQUIRED),
     "z_mm": (NUMBER, REQUIRED),
     "sides_mm": (TWO, REQUIRED),
     "depth_mm": (NUMBER, REQUIRED),
     "corner_mm": (NUMBER, 0.0),
     "both_halves": (TRUTH, False),
-    "tooth": (WHOLE, 0),
-    "pair": (TEXT, None),
 }
 SPALL_WORDS = """\
 # Spalls: rectangles with rounded corners.
@@ -161,9 +152,8 @@ def pits_of(row, made, which, pair):
             f"{row['count']} pits about middle_mm: give pitch_mm, from one to the next, or span_mm, from first to last"
         )
     pitch = pitch if span is None else span / max(row["count"] - 1, 1)
-    options = {"bands": bands_of(made, face, pair["groove_mm"]), "mirrored": row["mirrored"]}
-    found = pit_line(made, which, Pit(z=middle, **numbers), row["along"], row["count"], pitch, **options)
-    return found + (in_both_halves((made.gear_1, made.gear_2)[which], found, face) if row["both_halves"] else [])
+    options = {"face": face, "groove": pair["groove_mm"], "both": row["both_halves"], "mirrored": row["mirrored"]}
+    return pit_line(made, which, row["along"], row["count"], pitch, middle=middle, **options, **numbers)
 
 
 def spall_of(row, made, which, pair):

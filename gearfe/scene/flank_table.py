@@ -1,11 +1,11 @@
-"""The [flank.NAME] tables of a scene: modifications and deviations of a gear's flanks, units in the key names."""
+"""Tables [flank.NAME] of a scene: their keys, how a row becomes a flank, and their commented lines in a new scene."""
 
 import math
 
 from geometry.pair.flanks import Misalignment, tilt_of
 from geometry.tooth.modified import Flank
 
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TWO, placed, sides
 
 RELIEFS = {
     f"{end}_{key}": (NUMBER, default)
@@ -42,6 +42,41 @@ FLANK = {
     "eccentricity_um": (NUMBER, 0.0),
     "eccentric_tooth": (NUMBER, 0.0),
 }
+WORDS = """\
+# What the flanks of a gear have less than the involute: um, positive is removed.
+#[flank.pinion]
+#gear = "pinion"
+#pair = "stage"  # left out: in all its pairs
+#tip_relief_um = {amount:.1f}  # at the tip, and where it starts, one of four:
+#tip_start_length_mm = {length:.3f}  # so far below the tip, as a length of roll (along the line of action)
+# tip_start_diameter_mm = {diameter:.3f}
+# tip_start_roll_mm = {roll:.3f}  # roll length of the involute there
+# tip_start_angle_deg = {angle:.3f}  # roll angle there
+#tip_exponent = 1.0  # 1: linear; 2: parabolic
+#root_relief_um = {amount:.1f}  # at the form point, and where it starts:
+#root_start_length_mm = {length:.3f}  # so far above the form point; or root_start_diameter_mm, root_start_roll_mm,
+# root_start_angle_deg
+#root_exponent = 1.0
+#crowning_um = 0.0  # of the profile: a parabola, so much at tip and form point
+#slope_um = 0.0  # of the profile: so much at the tip, nothing at the form point
+#lead_crowning_um = 0.0  # along the width: so much at both end faces
+#lead_slope_um = 0.0  # along the width: so much at z = b, nothing at z = 0
+#twist_um = 0.0  # at (tip, z = b) and (form point, z = 0)
+#end_relief_um = [0.0, 0.0]  # at the end faces z = 0 and z = b, over end_length_mm
+#end_length_mm = [0.0, 0.0]
+#end_exponent = 2.0
+#tip_rounding_mm = 0.0  # radius of the edge of the tip; or tip_chamfer_mm, a straight cut
+#eccentricity_um = 0.0  # of the teeth off the axis, towards tooth eccentric_tooth
+#eccentric_tooth = 0.0
+# Measured: table_roll_mm = [...] with table_removed_um = [...]; wear_roll_mm with wear_um; for each tooth pitch_um (how far it
+# lies behind its place) and tooth_scale (factor of its profile and lead).
+{mate}"""
+MATE_WORDS = """\
+#[flank.wheel]  # with the same keys
+#gear = "wheel"
+#tip_relief_um = {amount:.1f}
+#tip_start_length_mm = {length:.3f}
+"""
 
 
 def flanks_of(file, rows, name, pairs, gears):
@@ -49,21 +84,18 @@ def flanks_of(file, rows, name, pairs, gears):
 
     A flank of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
     """
-    out, pair = {}, pairs[name]
+    out = {}
     for key, row in rows.items():
         where = f"flank.{key}"
-        known(file, where, "gear", row["gear"], gears, "gear")
-        if row["pair"] is not None:
-            known(file, where, "pair", row["pair"], pairs, "pair")
-        made = placed(file, where, lambda r=row: _flank(r, gears[r["gear"]]))
-        for side, gear in (("pinion", "gear_1"), ("wheel", "gear_2")):
-            if pair[gear] == row["gear"] and row["pair"] in (None, name):
-                if side in out:
-                    raise ValueError(
-                        f"{file} [{where}]: gear {row['gear']!r} has a flank in pair {name!r} already; give each its pair"
-                    )
-                placed(file, where, lambda made=made, g=row["gear"]: made.on(gears[g]))
-                out[side] = made
+        stands = sides(file, where, row, name, pairs, gears)
+        flank = placed(file, where, lambda r=row: _flank(r, gears[r["gear"]]))
+        for side in stands:
+            if side in out:
+                raise ValueError(
+                    f"{file} [{where}]: gear {row['gear']!r} has a flank in pair {name!r} already; give each its pair"
+                )
+            placed(file, where, lambda flank=flank, gear=gears[row["gear"]]: flank.on(gear))
+            out[side] = flank
     return out
 
 

@@ -22,7 +22,7 @@ from .damage_tables import DAMAGE
 from .flank_table import FLANK, MISALIGNMENT, flanks_of, misalignment_of
 from .machine_table import checked_machine
 from .references import Reference, read_references
-from .strict import NUMBER, REQUIRED, TEXT, TEXTS, VALUES, WHOLE, checked, known, placed
+from .strict import NUMBER, REQUIRED, TEXT, TEXTS, VALUES, WHOLE, checked, known, placed, sides
 from .support_table import SUPPORTS, supports_of
 from .toml_file import read_toml
 
@@ -77,13 +77,7 @@ class ScenePair:
     supports: dict[str, Support | Shaft] = field(default_factory=dict)
 
     def case(self, name: str | None = None) -> Case:
-        """The pair as it is solved, in a case of damage; None: healthy.
-
-        Raises
-        ------
-        ValueError
-            If there is no such case of this pair.
-        """
+        """The pair as it is solved, in a case of damage; None: healthy. ValueError if there is no such case of this pair."""
         if name is not None and name not in self.damage:
             raise ValueError(f"no case {name!r} of this pair; it has {', '.join(self.damage) or 'none'}")
         given = {own: getattr(self, own) or None for own in ("flanks", "misalignment", "supports", "face")}
@@ -111,13 +105,7 @@ class Scene:
     changed: tuple[str, ...] = ()
 
     def pair(self, name: str | None = None) -> ScenePair:
-        """The pair called `name`; the first one if None.
-
-        Raises
-        ------
-        ValueError
-            If there is no such pair.
-        """
+        """The pair called `name`; the first one if None. ValueError if there is no such pair."""
         if name is None:
             return next(iter(self.pairs.values()))
         if name not in self.pairs:
@@ -127,10 +115,7 @@ class Scene:
     def case(self, pair: str | None = None, case: str | None = None) -> Case:
         """`Case` of a pair by name (None: the first), in a case of damage (None: healthy), as `gearfe.solve` takes it.
 
-        Raises
-        ------
-        ValueError
-            If there is no such pair or case.
+        ValueError if there is no such pair or case.
         """
         return self.pair(pair).case(case)
 
@@ -171,12 +156,12 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     run = checked_machine(file, data.pop("machine")) if "machine" in data else {}
     printed = data.pop("reference", [])
     top = checked(file, "top level", data, TOP, extra=(*TABLES, *DAMAGE, "machine", "assumption", "given", "reference"))
-    for kind, one in tables.items():
-        strict.named_tables(file, kind, one)
-        if not one and kind in ("gear", "pair", "material"):
+    for kind, named in tables.items():
+        strict.named_tables(file, kind, named)
+        if not named and kind in ("gear", "pair", "material"):
             raise ValueError(f"{file}: no table [{kind}.NAME]; a scene needs at least one")
-    for kind, one in {**damage, "assumption": told, "reference": printed}.items():
-        strict.listed_tables(file, kind, one)
+    for kind, listed in {**damage, "assumption": told, "reference": printed}.items():
+        strict.listed_tables(file, kind, listed)
     if not isinstance(given, dict):
         raise ValueError(f'{file}: [given] is a table of values by dotted key, such as "gear.sun.z" = 21')
     rows = {
@@ -189,28 +174,36 @@ def scene_of(file: str, data: dict[str, Any]) -> Scene:
     gears = {n: placed(file, f"gear.{n}", lambda r=r: _gear(r)) for n, r in rows["gear"].items()}
     for name, row in rows["gear"].items():
         known(file, f"gear.{name}", "material", row["material"], materials, "material")
-    pairs = {}
-    for name, row in rows["pair"].items():
-        where = f"pair.{name}"
-        for key in ("gear_1", "gear_2"):
-            known(file, where, key, row[key], gears, "gear")
-        made = placed(file, where, lambda r=row: GearPair(gears[r["gear_1"]], gears[r["gear_2"]], r["a_mm"]))
-        used = tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2"))
-        if not row["force_N"] > 0:
-            raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
-        found = _cases(file, damage, gears, name, rows["pair"], made)
-        bent = flanks_of(file, rows["flank"], name, rows["pair"], gears)
-        askew = misalignment_of(file, where, made, row)
-        held = supports_of(file, rows, name, rows["pair"], materials)
-        pairs[name] = ScenePair(made, used, float(row["force_N"]), row["face"], float(row["groove_mm"]), found, bent, askew, held)
-    notes = [checked(file, f"assumption {i + 1}", one, ASSUMPTION) for i, one in enumerate(told)]
-    cases = {kind: _by_case(checked(file, kind, one, DAMAGE[kind]) for one in made) for kind, made in damage.items()}
+    pairs = {name: _pair(file, name, rows, damage, gears, materials) for name in rows["pair"]}
+    notes = [checked(file, f"assumption {i + 1}", note, ASSUMPTION) for i, note in enumerate(told)]
+    cases = {kind: _by_case(checked(file, kind, table, DAMAGE[kind]) for table in listed) for kind, listed in damage.items()}
     kept, changed, own = assumed.split(file, notes, given, rows | cases | {"machine": run})
     title, source = top["title"], top["source"]
     if own:
         title, source = f"{title}, changed", f"own scene; changed from: {source}"
-    found = () if own else read_references(file, printed, pairs)
-    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, found, changed)
+    references = () if own else read_references(file, printed, pairs)
+    return Scene(file.removesuffix(".toml"), title, source, gears, pairs, kept, tuple(top["later"]), run, references, changed)
+
+
+def _pair(file, name, rows, damage, gears, materials):
+    """`ScenePair` of the checked tables of a scene."""
+    row, where = rows["pair"][name], f"pair.{name}"
+    for key in ("gear_1", "gear_2"):
+        known(file, where, key, row[key], gears, "gear")
+    made = placed(file, where, lambda: GearPair(gears[row["gear_1"]], gears[row["gear_2"]], row["a_mm"]))
+    if not row["force_N"] > 0:
+        raise ValueError(f"{file} [{where}] force_N = {row['force_N']}: a mesh is pressed together; give force_N > 0")
+    return ScenePair(
+        made,
+        materials=tuple(materials[rows["gear"][row[key]]["material"]] for key in ("gear_1", "gear_2")),
+        force=float(row["force_N"]),
+        face=row["face"],
+        groove=float(row["groove_mm"]),
+        damage=_cases(file, damage, gears, name, rows["pair"], made),
+        flanks=flanks_of(file, rows["flank"], name, rows["pair"], gears),
+        misalignment=misalignment_of(file, where, made, row),
+        supports=supports_of(file, rows, name, rows["pair"], materials),
+    )
 
 
 def _by_case(tables):
@@ -226,21 +219,15 @@ def _cases(file, damage, gears, name, pairs, made):
 
     Damage of a gear is in all its pairs, or only in its `pair`: a planet meets the sun with one flank, the ring with the other.
     """
-    out, pair = {}, pairs[name]
+    out = {}
     for kind, tables in damage.items():
         for i, table in enumerate(tables):
             where = f"{kind} {i + 1}"
             row = checked(file, where, table, DAMAGE[kind])
-            known(file, where, "gear", row["gear"], gears, "gear")
-            if row["pair"] is not None:
-                known(file, where, "pair", row["pair"], pairs, "pair")
-                if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
-                    raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
-            for which, (side, key) in enumerate((("pinion", "gear_1"), ("wheel", "gear_2"))):
-                if pair[key] == row["gear"] and row["pair"] in (None, name):
-                    table = damage_tables.TABLES[kind]
-                    own = placed(file, where, lambda r=row, t=table, n=which: t.made(r, made, n, pair))
-                    out.setdefault(row["case"], {}).setdefault(side, []).extend(own)
+            for side in sides(file, where, row, name, pairs, gears):
+                which, make = ("pinion", "wheel").index(side), damage_tables.TABLES[kind].made
+                found = placed(file, where, lambda r=row, n=which, make=make: make(r, made, n, pairs[name]))
+                out.setdefault(row["case"], {}).setdefault(side, []).extend(found)
     return out
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ..checks import one_of
 from ..units import NEWTON_PER_UM
 from .strict import NUMBER, REQUIRED, TABLES, TEXT, TRUTH, checked, known, listed_tables
 
@@ -39,27 +40,13 @@ ROW = {
 class Printed:
     """One printed value.
 
-    Attributes
-    ----------
-    case : str
-        What it is printed for.
-    pair : str or None
-        Pair of the scene.
-    value : float
-        The number as printed; for a statement 1 (true) or 0; nan where the source gives a formula but no number.
-    corrected : float or None
-        After the correction.
-    correction : str
-        What is changed in the printed value, or in the conditions ours is computed for.
-    reason : str
-        Why it cannot be reproduced.
-    kind : str
-        ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without a
-        model of the machine; ``"model"``: a result that could have come out otherwise.
-    set_by : str
-        Assumption of the scene, or choice of ours, that sets our value: agreement is then none, and is called so.
-    target : float
-        What ours is compared with: the corrected value if there is one, else the printed one.
+    `case` is what it is printed for, `pair` a pair of the scene or None. `value` is the number as printed; for a statement 1
+    (true) or 0; nan where the source gives a formula but no number. `corrected` (or None) is that after the `correction`: what is
+    changed in the printed value, or in the conditions ours is computed for. `reason` says why it cannot be reproduced.
+
+    `kind` is ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without
+    a model of the machine; ``"model"``: a result that could have come out otherwise. `set_by` names an assumption of the scene,
+    or choice of ours, that sets our value: agreement is then none, and is called so.
     """
 
     case: str
@@ -73,7 +60,7 @@ class Printed:
 
     @property
     def target(self) -> float:
-        """Corrected value if there is one, else the printed one."""
+        """What ours is compared with: the corrected value if there is one, else the printed one."""
         return self.value if self.corrected is None else self.corrected
 
 
@@ -81,20 +68,9 @@ class Printed:
 class Reference:
     """A quantity as its source prints it.
 
-    Attributes
-    ----------
-    id : str
-        Name of the function that computes it.
-    quantity, unit, source : str
-        `unit` is ``statement`` for statements; `source` the article and the place in it.
-    relative, absolute : float or None
-        Tolerance as a part of the printed value, or in `unit`; one of them.
-    tolerance : str
-        Its reason.
-    trend : bool
-        Whether the order of the cases is what the source concludes from.
-    note : str
-    rows : tuple of Printed
+    `id` is the name of the function that computes it, `unit` is ``statement`` for statements, `source` the article and the place
+    in it. The tolerance is `relative`, a part of the printed value, or `absolute`, in `unit`: one of them, and `tolerance` is its
+    reason. `trend` says whether the order of the cases is what the source concludes from.
     """
 
     id: str
@@ -115,13 +91,7 @@ class Reference:
 
 
 def read_references(file, tables, pairs):
-    """References of the [[reference]] tables of a scene file.
-
-    Raises
-    ------
-    ValueError
-        Naming file, table and key.
-    """
+    """References of the [[reference]] tables of a scene file; ValueErrors name file, table and key."""
     listed_tables(file, "reference", tables)
     out = tuple(_reference(file, f"reference {i + 1}", table, pairs) for i, table in enumerate(tables))
     names = [one.id for one in out]
@@ -167,18 +137,17 @@ def _row(file, where, table, reference, pairs):
     if corrected is not None:
         correction = correction or reference["correction"]
     kind = one["kind"] or reference["kind"]
-    if kind not in KINDS:
-        raise ValueError(f"{file} [{where}]: kind = {kind!r}, but it must be one of {', '.join(KINDS)}")
+    one_of(f"{file} [{where}]: kind", kind, KINDS)
     return Printed(one["case"], one["pair"], value, corrected, correction, reason, kind, one["set_by"] or reference["set_by"])
 
 
 def printed_stiffness(scene, pair, case=None):
     """Lines of text with the stiffnesses [N/um] that the sources of a scene print for a pair in a case (None: healthy)."""
     out, damaged = [], scene.pair(pair).damage
-    for one in scene.references:
-        for row in one.rows if one.unit == "N/m" else ():
+    for reference in scene.references:
+        for row in reference.rows if reference.unit == "N/m" else ():
             if row.pair == pair and (row.case == case if case else row.case not in damaged):
                 value, corrected = (None if k is None else f"{k / NEWTON_PER_UM:.4g} N/um" for k in (row.value, row.corrected))
                 more = "" if corrected is None else f"; {corrected} after a correction: {row.correction}"
-                out.append(f"printed, {one.quantity}: {value} ({one.source}){more}")
+                out.append(f"printed, {reference.quantity}: {value} ({reference.source}){more}")
     return out

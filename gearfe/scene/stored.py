@@ -10,9 +10,9 @@ import numpy as np
 COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "estimate", "seconds")
 
 
-def fingerprint(chosen, case):
-    """Eight letters that change with any number of a scene's pair or its damage; fields left at their default do not count."""
-    run = {"face": None, "groove": 0.0, **chosen.case(case)}
+def fingerprint(case):
+    """Eight letters that change with any number of a `Case`; fields left at their default do not count."""
+    run = {"face": None, "groove": 0.0, **case}
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
@@ -48,7 +48,7 @@ def read_curves(scene, file=None):
         name = case if case != "healthy" else None
         known = pair in scene.pairs and (name is None or name in scene.pairs[pair].damage)
         own = [row for row in rows if (row["pair"], row["case"]) == (pair, case)]
-        if known and own[0]["print"] == fingerprint(scene.pairs[pair], name):
+        if known and own[0]["print"] == fingerprint(scene.case(pair, name)):
             numbers = np.array([[float(row[column]) for column in COLUMNS[3:]] for row in own])
             out[pair, name] = (*numbers[:, :3].T, *numbers[0, 3:].tolist())
     return out
@@ -60,6 +60,6 @@ def write_curves(scene, curves, file):
         table = csv.writer(out, lineterminator="\n")
         table.writerow(COLUMNS)
         for (pair, case), (phase, k, tooth, *rest) in curves.items():
-            mark = fingerprint(scene.pairs[pair], case)
+            mark = fingerprint(scene.case(pair, case))
             for row in zip(phase, k, tooth, strict=True):
                 table.writerow([pair, case or "healthy", mark, *(f"{value:.8g}" for value in row), *(f"{v:.3g}" for v in rest)])

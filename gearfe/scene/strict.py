@@ -4,6 +4,8 @@ REQUIRED = object()
 NUMBER, TEXT, WHOLE, TEXTS = "a number", "a text", "a whole number", "a list of texts"
 TWO, TRUTH, TABLES, VALUES = "two numbers", "true or false", "a list of tables", "a table of values by dotted key"
 NUMBERS = "a list of numbers"
+PLAIN = {TEXT: str, TRUTH: bool, VALUES: dict}
+LISTS = {TWO: NUMBER, NUMBERS: NUMBER, TEXTS: TEXT, TABLES: VALUES}  # of what
 LARGEST, MOST = 1e30, 2**63  # no length, force or stiffness is larger, in any unit; whole numbers that arrays can hold
 SHOWN = 60  # characters of a value in a message
 
@@ -68,20 +70,10 @@ def _limits(value):
 
 
 def _fits(value, kind):
-    if kind == TEXT:
-        return isinstance(value, str)
-    if kind == TRUTH:
-        return isinstance(value, bool)
-    if kind == TWO:
-        return isinstance(value, list) and len(value) == 2 and all(_fits(v, NUMBER) for v in value)
-    if kind == NUMBERS:
-        return isinstance(value, list) and all(_fits(v, NUMBER) for v in value)
-    if kind == VALUES:
-        return isinstance(value, dict)
-    if kind == TABLES:
-        return isinstance(value, list) and all(isinstance(v, dict) for v in value)
-    if kind == TEXTS:
-        return isinstance(value, list) and all(isinstance(v, str) for v in value)
+    if kind in PLAIN:
+        return isinstance(value, PLAIN[kind])
+    if kind in LISTS:
+        return isinstance(value, list) and all(_fits(v, LISTS[kind]) for v in value) and (kind != TWO or len(value) == 2)
     if isinstance(value, bool):
         return False
     if isinstance(value, int):
@@ -95,6 +87,17 @@ def known(file, where, key, name, names, kind):
         raise ValueError(f"{file} [{where}] {key} = {shown(name)}: no such {kind}; there is {', '.join(names)}")
 
 
+def sides(file, where, row, name, pairs, gears, noun="gear"):
+    """Sides of the pair `name` on which the gear of a table stands: it counts in all its pairs, or only in its `pair`."""
+    known(file, where, "gear", row["gear"], gears, noun)
+    if row["pair"] is not None:
+        known(file, where, "pair", row["pair"], pairs, "pair")
+        if row["gear"] not in (pairs[row["pair"]]["gear_1"], pairs[row["pair"]]["gear_2"]):
+            raise ValueError(f"{file} [{where}] pair = {row['pair']!r} has no gear {row['gear']!r}")
+    both = ("pinion", "gear_1"), ("wheel", "gear_2")
+    return [side for side, key in both if pairs[name][key] == row["gear"] and row["pair"] in (None, name)]
+
+
 def placed(file, where, make):
     """What `make` gives, with the place in front of its ValueErrors."""
     try:
@@ -106,10 +109,7 @@ def placed(file, where, make):
 def known_path(file, where, key, tables):
     """Value of a dotted key such as ``gear.sun.b_mm`` in nested tables; of a list of tables the values of all, one if alike.
 
-    Raises
-    ------
-    ValueError
-        If there is no such value; the message names what there is.
+    ValueError if there is no such value; the message names what there is.
     """
     value = tables
     for part in key.split("."):

@@ -4,7 +4,7 @@ import math
 
 from ..supports.shaft import Shaft
 from ..supports.support import Support
-from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, known, placed
+from .strict import NUMBER, NUMBERS, REQUIRED, TEXT, TRUTH, TWO, known, placed, sides
 
 SUPPORTS = {
     "support": {
@@ -38,25 +38,20 @@ def supports_of(file, rows, name, pairs, materials):
 
     That of a gear holds it in all its pairs, or only in its `pair`.
     """
-    out, pair = {}, pairs[name]
+    out = {}
     gears = [row[side] for row in pairs.values() for side in ("gear_1", "gear_2")]
     for kind in SUPPORTS:
         for key, row in rows[kind].items():
             where = f"{kind}.{key}"
-            known(file, where, "gear", row["gear"], dict.fromkeys(gears), "gear in a pair")
-            if row["pair"] is not None:
-                known(file, where, "pair", row["pair"], pairs, "pair")
+            stands = sides(file, where, row, name, pairs, dict.fromkeys(gears), "gear in a pair")
             if kind == "shaft":
                 known(file, where, "material", row["material"], materials, "material")
             make = {"support": _support, "shaft": _shaft}[kind]
             made = placed(file, where, lambda r=row, make=make: make(r, materials))
-            for side, gear in (("pinion", "gear_1"), ("wheel", "gear_2")):
-                if pair[gear] == row["gear"] and row["pair"] in (None, name):
-                    if side in out:
-                        raise ValueError(
-                            f"{file} [{where}]: gear {row['gear']!r} is held in pair {name!r} already; give one of both"
-                        )
-                    out[side] = made
+            for side in stands:
+                if side in out:
+                    raise ValueError(f"{file} [{where}]: gear {row['gear']!r} is held in pair {name!r} already; give one of both")
+                out[side] = made
     return {side: out[side] for side in ("pinion", "wheel") if side in out}
 
 

@@ -20,10 +20,7 @@ def read_toml(file: Any) -> dict[str, Any]:
 def given_tables(given: str | os.PathLike[str] | Mapping[str, Any], what: str) -> tuple[str, Path, dict[str, Any]]:
     """Name of a file, its folder and its tables; of a dictionary `what` it is, the present folder, and plain values.
 
-    Raises
-    ------
-    ValueError
-        If there is no such file, or it is not TOML.
+    ValueError if there is no such file, or it is not TOML.
     """
     if isinstance(given, Mapping):
         return what, Path(), _plain(given)

@@ -34,21 +34,11 @@ class Row(NamedTuple):
 
 
 def judge(reference, found, run=""):
-    """Rows of a reference.
+    """Rows of a `Reference`.
 
-    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced.
-
-    Parameters
-    ----------
-    reference : gearfe.scene.references.Reference
-    found : dict
-        Our value by case, or by (case, pair) where the row names a pair; None where there is none (a measured value).
-    run : str
-        Name of the simulation behind them.
-
-    Returns
-    -------
-    list of Row
+    A row with a corrected value is judged by that alone: a value that its own row calls wrong cannot be reproduced. `found` are
+    our values by case, or by (case, pair) where the row names a pair; None where there is none (a measured value). `run` names
+    the simulation behind them.
     """
     ours = [_of(found, row) for row in reference.rows]
     ordered = reference.trend and _ordered([row.target for row in reference.rows], ours)
@@ -127,7 +117,7 @@ def counts(rows):
         parts.append(f"{_count(rest, 'input')} and arithmetic on printed numbers: {_words(rest)}")
     if len(rows) > len(printed):
         parts.append(f"{_count(rows[len(printed) :], 'value')} without a printed number")
-    return "; apart from them ".join(parts[:2]) + "".join(f"; {one}" for one in parts[2:])
+    return "; apart from them ".join(parts[:2]) + "".join(f"; {part}" for part in parts[2:])
 
 
 def _count(rows, noun):
@@ -158,7 +148,8 @@ def text(references, rows):
             printed = _shown(reference, row.printed)
             if not math.isnan(row.corrected):
                 printed += f" (corrected {_shown(reference, row.corrected)})"
-            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), _bold(row.verdict))
+            verdict = f"**{row.verdict}**" if row.verdict in (NOT, NEVER) else row.verdict
+            cells = (name, case, row.kind, printed, _shown(reference, row.ours), _away(reference, row), verdict)
             lines.append(table_row(cells))
     return "\n".join([*lines, "", "Sources, tolerances, reasons:", "", *(f"{i}. {one}" for i, one in enumerate(notes, 1))])
 
@@ -207,7 +198,3 @@ def _away(reference, row):
     if math.isnan(row.difference) or reference.unit == "statement":
         return ""
     return f"{row.difference:+.3g}" if reference.relative is None else f"{row.difference:+.2f} %"
-
-
-def _bold(word):
-    return f"**{word}**" if word in (NOT, NEVER) else word

@@ -9,6 +9,7 @@ import re
 from geometry.pair.gear_pair import GearPair
 
 from .damage_tables import TABLES
+from .flank_table import MATE_WORDS, WORDS
 
 PAIR = """\
 #a_mm = {a:.4f}  # centre distance; left out: the one without backlash
@@ -17,41 +18,6 @@ PAIR = """\
 #f_sigma_delta_um = 0.0  # inclination, in the plane of the axes
 #f_sigma_beta_um = 0.0  # skew, out of that plane
 #bearing_span_mm = {span:.1f}
-"""
-FLANK = """\
-# What the flanks of a gear have less than the involute: um, positive is removed.
-#[flank.pinion]
-#gear = "pinion"
-#pair = "stage"  # left out: in all its pairs
-#tip_relief_um = {amount:.1f}  # at the tip, and where it starts, one of four:
-#tip_start_length_mm = {length:.3f}  # so far below the tip, as a length of roll (along the line of action)
-# tip_start_diameter_mm = {diameter:.3f}
-# tip_start_roll_mm = {roll:.3f}  # roll length of the involute there
-# tip_start_angle_deg = {angle:.3f}  # roll angle there
-#tip_exponent = 1.0  # 1: linear; 2: parabolic
-#root_relief_um = {amount:.1f}  # at the form point, and where it starts:
-#root_start_length_mm = {length:.3f}  # so far above the form point; or root_start_diameter_mm, root_start_roll_mm,
-# root_start_angle_deg
-#root_exponent = 1.0
-#crowning_um = 0.0  # of the profile: a parabola, so much at tip and form point
-#slope_um = 0.0  # of the profile: so much at the tip, nothing at the form point
-#lead_crowning_um = 0.0  # along the width: so much at both end faces
-#lead_slope_um = 0.0  # along the width: so much at z = b, nothing at z = 0
-#twist_um = 0.0  # at (tip, z = b) and (form point, z = 0)
-#end_relief_um = [0.0, 0.0]  # at the end faces z = 0 and z = b, over end_length_mm
-#end_length_mm = [0.0, 0.0]
-#end_exponent = 2.0
-#tip_rounding_mm = 0.0  # radius of the edge of the tip; or tip_chamfer_mm, a straight cut
-#eccentricity_um = 0.0  # of the teeth off the axis, towards tooth eccentric_tooth
-#eccentric_tooth = 0.0
-# Measured: table_roll_mm = [...] with table_removed_um = [...]; wear_roll_mm with wear_um; for each tooth pitch_um (how far it
-# lies behind its place) and tooth_scale (factor of its profile and lead).
-{mate}"""
-MATE = """\
-#[flank.wheel]  # with the same keys
-#gear = "wheel"
-#tip_relief_um = {amount:.1f}
-#tip_start_length_mm = {length:.3f}
 """
 HELD = """\
 # What holds the hubs; without, the bores are rigid. Springs:
@@ -117,8 +83,8 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
         "diameter": 2 * math.hypot(gear.r_b, roll), "angle": math.degrees(roll / gear.r_b), "reach": 2 * b,
         "whole": 4 * b, "thick": 2 * (gear.r_bore or 0.0), "torque": force * gear.r_b * 1e-3,
     }  # fmt: skip
-    mate = MATE.format(**numbers)
-    parts = (*(table.words for table in TABLES.values()), FLANK, HELD, *([] if pair.gear_2.internal else [MACHINE]))
+    mate = MATE_WORDS.format(**numbers)
+    parts = (*(table.words for table in TABLES.values()), WORDS, HELD, *([] if pair.gear_2.internal else [MACHINE]))
     words = "\n".join(part.format(mate=mate, **numbers) for part in parts)
     return PAIR.format(a=pair.a, span=3 * b), _relieved(words, *relief) if relief else words
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..extras import missing
+from ..extras import needing
 from ..files import read
 from ..matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
@@ -47,10 +47,8 @@ def is_hdf(path: str | os.PathLike[str]) -> bool:
 
 def hdf_file(path: str | os.PathLike[str]) -> Found:
     """Channels of an HDF5 file, MATLAB's version 7.3 among them; attributes ``unit`` and ``rate`` are read."""
-    try:
+    with needing("h5py"):
         import h5py
-    except ImportError as error:
-        raise missing("h5py", error) from error
     found = Found({})
     try:
         with h5py.File(path, "r") as file:
@@ -83,10 +81,7 @@ def _check_links(file, h5py):
 def _hdf_values(item):
     """Values of a dataset that stands in the file itself.
 
-    Raises
-    ------
-    ValueError
-        If it is read from other files, or says it is larger than what is stored of it can be.
+    ValueError if it is read from other files, or says it is larger than what is stored of it can be.
     """
     if item.external or item.is_virtual:
         kind = "in other files" if item.external else "put together from datasets, maybe of other files"

@@ -1,5 +1,7 @@
 """Deconvolution: the filter that makes a signal most impulsive, so that pulses of a fault stand out of the way they came."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, solve_toeplitz
@@ -85,8 +87,7 @@ def deconvolve(
         taps = taps / np.linalg.norm(taps)
     y = lfilter(kept, 1.0, x)
     scale = np.std(signal.values) / np.std(y)
-    out = Signal(scale * y, signal.rate, signal.unit, f"{signal.name}, deconvolved", signal.angle, signal.shaft_frequency)
-    return out, scale * kept
+    return replace(signal, values=scale * y, name=f"{signal.name}, deconvolved"), scale * kept
 
 
 def _impulsive(y, apart):

@@ -54,10 +54,6 @@ def demodulate(
     band : (float, float), optional
         Band to use instead of the best one [Hz].
 
-    Returns
-    -------
-    Demodulated
-
     References
     ----------
     J. Antoni, Mech. Syst. Signal Process. 21(1) (2007) 108-124; the way article S2 treats its measured signals.

@@ -13,36 +13,16 @@ KEYS = (*RATES, *SHAFTS, "unit")
 
 @dataclass(slots=True)
 class Found:
-    """Channels of a file.
+    """Channels of a file."""
 
-    Attributes
-    ----------
-    vectors : dict of str to ndarray, shape (n,)
-        By name.
-    units : dict of str to str
-        As stated; missing or empty where nothing is stated.
-    stated : dict of str to number or str
-        What is said under the names of `KEYS`, by full name.
-    rates : dict of str to float
-        Sampling rates [Hz] of single channels, in formats that state them there.
-    nested : str
-        What parts a group from the names in it: ``.`` in MATLAB structs, ``/`` in HDF5 and TDMS; empty where there are none.
-    other : list of str
-        What else the file holds, in words, for the answer to who finds no channel in it.
-    hint : str
-        Of a file whose columns have no names: what to do.
-    parts : bool
-        Whether the values are parts of a full scale that the file does not say.
-    """
-
-    vectors: dict[str, NDArray[Any]]
-    units: dict[str, str] = field(default_factory=dict)
-    stated: dict[str, Any] = field(default_factory=dict)
-    rates: dict[str, float] = field(default_factory=dict)
-    nested: str = ""
-    other: list[str] = field(default_factory=list)
-    hint: str = ""
-    parts: bool = False
+    vectors: dict[str, NDArray[Any]]  # by name, shape (n,)
+    units: dict[str, str] = field(default_factory=dict)  # as stated; missing or empty where nothing is stated
+    stated: dict[str, Any] = field(default_factory=dict)  # what is said under the names of `KEYS`, by full name
+    rates: dict[str, float] = field(default_factory=dict)  # [Hz] of single channels, in formats that state them there
+    nested: str = ""  # what parts a group from the names in it: "." in MATLAB structs, "/" in HDF5 and TDMS; empty: no groups
+    other: list[str] = field(default_factory=list)  # what else the file holds, for the answer to who finds no channel in it
+    hint: str = ""  # of a file whose columns have no names: what to do
+    parts: bool = False  # whether the values are parts of a full scale that the file does not say
 
     def state(self, name: str, value: Any) -> None:
         """Note a value, if `KEYS` has its name."""

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import fft, ifft, rfft
 
 from ..markdown import table_row
-from .given import samples
+from .given import oscillation, samples
 from .orders import residual_signal, synchronous_average
 from .series import Signal
 
@@ -75,7 +75,7 @@ def gear_indicators(
     - P. Vecer, M. Kreidl, R. Smid, Condition indicators for gearbox condition monitoring systems, Acta Polytechnica 45(6) (2005).
     - M. Lebold et al., Review of vibration analysis methods for gearbox diagnostics and prognostics, MFPT 54 (2000).
     """
-    x = _oscillation(average)
+    x = _turn(average)
     difference = residual_signal(x, teeth, sidebands=1, shaft_orders=shaft_orders)
     regular = x - difference
     amplitude = 2 / x.size * np.abs(rfft(x))
@@ -84,7 +84,7 @@ def gear_indicators(
         raise ValueError(f"the average has no mesh line of {teeth} teeth: is it over a turn of that gear?")
     if not isinstance(before, (list, tuple)):
         raise ValueError(f"before is {type(before).__name__}, but give a list of earlier averages")
-    history = [x, *map(_oscillation, before)]
+    history = [x, *map(_turn, before)]
     residuals = [residual_signal(one, teeth, shaft_orders=shaft_orders) for one in history]
     envelopes = [_band_envelope(one, teeth) for one in history]
     floor = EMPTY * _rms(x)
@@ -139,12 +139,8 @@ def gear_table_text(table: Mapping[str, Mapping[str, float]]) -> str:
     return "\n".join(map(table_row, lines))
 
 
-def _oscillation(average: Any) -> NDArray[np.float64]:
-    x = given = samples("average", average)
-    x = x - x.mean()
-    if not np.abs(x).max() > 1e-12 * np.abs(given).max():
-        raise ValueError("a constant average has no indicators")
-    return x
+def _turn(average: Any) -> NDArray[np.float64]:
+    return oscillation(samples("average", average), "a constant average has no indicators")
 
 
 def _rms(x):

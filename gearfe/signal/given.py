@@ -14,10 +14,7 @@ HERTZ = (1e-12, 1e15)  # frequencies that clocks have
 def samples(name: str, values: Any) -> NDArray[np.float64]:
     """A row of real, finite numbers, copied.
 
-    Raises
-    ------
-    ValueError
-        If it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
+    ValueError if it is no row, has fewer than two samples, or one of them is not finite or no number that is measured.
     """
     try:
         values = np.array(values)
@@ -37,6 +34,14 @@ def samples(name: str, values: Any) -> NDArray[np.float64]:
     return values
 
 
+def oscillation(values: NDArray[np.float64], told: str) -> NDArray[np.float64]:
+    """Values without their mean; ValueError, with what is `told`, if they are constant."""
+    x = values - values.mean()
+    if not np.abs(x).max() > 1e-12 * np.abs(values).max():
+        raise ValueError(told)
+    return x
+
+
 def hertz(name: str, value: Any) -> None:
     """Raise ValueError unless it is a frequency: a positive number of Hz, of those that clocks have."""
     if not (is_number(value) and HERTZ[0] <= value <= HERTZ[1]):
@@ -46,10 +51,7 @@ def hertz(name: str, value: Any) -> None:
 def band_of(band: Any, rate: float, name: str) -> tuple[float, float]:
     """The ends (low, high) [Hz] of a band within half the rate; of all of it if None.
 
-    Raises
-    ------
-    ValueError
-        If they are no two numbers, or not ``0 <= low < high <= rate / 2``.
+    ValueError if they are no two numbers, or not ``0 <= low < high <= rate / 2``.
     """
     if band is None:
         return 0.0, rate / 2

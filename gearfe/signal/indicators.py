@@ -27,53 +27,25 @@ SOURCES = {
 LOBES = 4  # bins between two lines whose lobes, with a Hann window, do not overlap
 
 
-def rms(values):
-    """Root mean square, ``sqrt(mean(x**2))`` (S4), the mean included; in the unit of `values`, an ndarray, shape (n,)."""
-    return math.sqrt(np.mean(np.square(values)))
+def of_values(values, name):
+    """Indicators of the samples ``(n,)`` of a signal called `name` by the names of `SOURCES`, which has their formulae.
 
-
-def peak(values):
-    """Largest deviation from the mean, ``max|x - mean|`` (S4)."""
-    return float(np.abs(values - np.mean(values)).max())
-
-
-def crest_factor(values):
-    """Peak over root mean square, both without the mean; sine ``sqrt(2)``."""
-    return peak(values) / _spread(values)
-
-
-def crest_factor_s4(values):
-    """``max|x - mean| / rms`` as S4 prints it: the same as `crest_factor` only if the mean is 0.
-
-    S4's healthy sun moves from -7.21 to -10.77 um: with that mean the quotient is about 0.2, and a fault that moves the mean
-    changes it.
+    The crest factor as S4 prints it, with the mean in the rms only, is no measure of shape: S4's healthy sun moves from -7.21 to
+    -10.77 um, which makes it about 0.2, and a fault that moves the mean changes it.
     """
-    if not rms(values) > 0:
-        raise ValueError("a signal of zeros has no crest factor")
-    return peak(values) / rms(values)
-
-
-def kurtosis(values):
-    """Pearson's kurtosis, ``mean((x - mean)**4) / mean((x - mean)**2)**2`` (S4): 3 for Gaussian noise, 1.5 for a sine."""
-    y = (values - np.mean(values)) / _spread(values)
-    return float(np.mean(y**4))
-
-
-def shape_factor(values):
-    """Root mean square over mean modulus, without the mean: sine ``pi / (2 sqrt(2))``, Gaussian noise ``sqrt(pi / 2)``."""
-    return _spread(values) / float(np.abs(values - np.mean(values)).mean())
-
-
-def impulse_factor(values):
-    """Peak over mean modulus, without the mean: sine ``pi / 2``."""
-    return crest_factor(values) * shape_factor(values)
-
-
-def _spread(values):
-    spread = float(np.std(values))
+    y, spread = values - np.mean(values), float(np.std(values))
     if not spread > 1e-12 * np.abs(values).max():
-        raise ValueError("a constant signal has no crest, kurtosis, shape or impulse factor")
-    return spread
+        raise ValueError(f"{name} is constant: it has no indicators")
+    rms, peak, modulus = math.sqrt(np.mean(np.square(values))), float(np.abs(y).max()), float(np.abs(y).mean())
+    return {
+        "rms": rms,
+        "peak": peak,
+        "crest factor": peak / spread,
+        "crest factor S4": peak / rms,
+        "kurtosis": float(np.mean((y / spread) ** 4)),
+        "shape factor": spread / modulus,
+        "impulse factor": peak / modulus,
+    }
 
 
 def sideband_index(found, mesh_frequency, fault_frequency, *, tolerance=None, harmonics=1):
@@ -152,21 +124,6 @@ def _around(found, mesh_frequency, fault_frequency):
     if frequency.size < 9:
         raise ValueError(f"{found.name} has {frequency.size} bins around f_m, {found.resolution:g} Hz apart: record longer")
     return frequency, amplitude
-
-
-def of_values(values, name):
-    """Indicators of the samples ``(n,)`` of a signal called `name`."""
-    if not np.ptp(values) > 1e-12 * np.abs(values).max():
-        raise ValueError(f"{name} is constant: it has no indicators")
-    return {
-        "rms": rms(values),
-        "peak": peak(values),
-        "crest factor": crest_factor(values),
-        "crest factor S4": crest_factor_s4(values),
-        "kurtosis": kurtosis(values),
-        "shape factor": shape_factor(values),
-        "impulse factor": impulse_factor(values),
-    }
 
 
 def both_given(mesh_frequency, fault_frequency):

@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import ShortTimeFFT, fftconvolve, firwin, get_window, upfirdn
+from scipy.signal import fftconvolve, firwin, upfirdn
 
+from .given import oscillation
 from .series import Signal
 from .spectrum import Spectrum
+from .time_frequency import whole_frames
 
 HALF_TAPS, THIRD_TAPS = 33, 49  # of the filters that halve a band and cut it in three; both lose 16 samples at their ends
 ANALYTIC_TAPS = 1025  # at most, and at most an eighth of the record: what the filter loses at its ends
@@ -26,7 +28,8 @@ def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...
         SK(f) = <|X(t, f)|**4> / <|X(t, f)|**2>**2 - 2
 
     0 for stationary Gaussian noise (3 is subtracted at 0 Hz and Nyquist's frequency, where X is real), -1 for a sine, large
-    where impulses are. Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the largest get 0.
+    where impulses are; without unit ("1"). Over K separate frames noise scatters by ``2 / sqrt(K)``. Bins 140 dB below the
+    largest get 0.
 
     Parameters
     ----------
@@ -35,22 +38,12 @@ def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...
         Samples in a frame, fewer than between two impulses; frames overlap by three quarters.
     window : str or tuple
 
-    Returns
-    -------
-    Spectrum
-        Without unit ("1").
-
     References
     ----------
     J. Antoni, Mech. Syst. Signal Process. 20(2) (2006) 282-307.
     """
-    x, n = _oscillation(signal), signal.values.size
-    if not 8 <= size <= n // 4:
-        raise ValueError(f"size = {size} samples, but {signal.name} has {n}: give 8 to {n // 4}")
-    weights = get_window(window, size)
-    transform = ShortTimeFFT(weights, size // 4, signal.rate)
-    frames = transform.stft(x, p0=transform.lower_border_end[1], p1=transform.upper_border_begin(n)[1])
-    real = np.isin(np.arange(transform.f.size), [0] if size % 2 else [0, size // 2])
+    frequency, _, frames, weights = whole_frames(signal, _oscillation(signal), window, size, signal.values.size // 4)
+    real = np.isin(np.arange(frequency.size), [0] if size % 2 else [0, size // 2])
     power = np.abs(frames) ** 2
     mean = power.mean(axis=1)
     full = mean > EMPTY * mean.max()
@@ -58,7 +51,7 @@ def spectral_kurtosis(signal: Signal, size: int, *, window: str | tuple[Any, ...
     values[full] = (power[full] ** 2).mean(axis=1) / mean[full] ** 2 - np.where(real[full], 3, 2)
     step = signal.rate / size
     bandwidth = step * size * float(weights @ weights) / float(weights.sum()) ** 2
-    return Spectrum(transform.f, values, "1", step, bandwidth, f"spectral kurtosis of {signal.name}")
+    return Spectrum(frequency, values, "1", step, bandwidth, f"spectral kurtosis of {signal.name}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,10 +109,6 @@ def fast_kurtogram(signal: Signal, levels: int | None = None, *, filters: str = 
         Deepest whole level. Default and largest: ``log2(n / 128)``.
     filters : str
         ``sharp`` or ``antoni``.
-
-    Returns
-    -------
-    Kurtogram
 
     Raises
     ------
@@ -209,7 +198,5 @@ def _excess(x, gaussian, floor):
 
 def _oscillation(signal):
     """Values without their mean, the largest 1."""
-    x = signal.values - signal.values.mean()
-    if np.abs(x).max() <= 1e-12 * np.abs(signal.values).max():
-        raise ValueError(f"{signal.name} is constant: it has no kurtosis")
+    x = oscillation(signal.values, f"{signal.name} is constant: it has no kurtosis")
     return x / np.abs(x).max()

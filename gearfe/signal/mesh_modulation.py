@@ -46,10 +46,6 @@ def mesh_modulation(average: ArrayLike, teeth: int, *, harmonic: int = 1, sideba
     sidebands : int, optional
         On each side; default: up to half of the way to the next mesh line, ``(teeth - 1) // 2``.
 
-    Returns
-    -------
-    Modulation
-
     Raises
     ------
     ValueError

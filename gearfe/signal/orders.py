@@ -18,26 +18,12 @@ SLOWEST = 1 / 16  # of the mean speed: below it resampling by angle would multip
 
 
 def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.float64]:
-    """Values at equal steps of the shaft's angle, one row for each whole turn.
+    """Values at equal steps of the shaft's angle, one row for each whole turn: ``(turns, samples_per_turn)``.
 
     Interpolated by splines of degree 5, whose amplitude at frequency f is off by ``(f / (rate - f))**6``: 2e-6 at a tenth of
-    the rate, 1e-3 at a quarter, 7 % at 1/2.56.
-
-    Parameters
-    ----------
-    signal : Signal
-        One that has `angle` or `shaft_frequency`.
-    samples_per_turn : int, optional
-        Default: as many samples as a turn has where the shaft is slowest, so that no frequency is folded back.
-
-    Returns
-    -------
-    ndarray, shape (turns, samples_per_turn)
-
-    Raises
-    ------
-    ValueError
-        Without a shaft, with less than one turn, a speed near zero, or too few samples per turn.
+    the rate, 1e-3 at a quarter, 7 % at 1/2.56. By default a row has as many samples as a turn where the shaft is slowest, so that
+    no frequency is folded back. ValueError without a shaft (`angle` or `shaft_frequency`), with less than one turn, a speed near
+    zero, or too few samples per turn.
     """
     angle = signal.shaft_angle / (2 * math.pi)
     angle = angle - angle[0]
@@ -63,12 +49,7 @@ def by_turn(signal: Signal, samples_per_turn: int | None = None) -> NDArray[np.f
 def order_spectrum(signal: Signal, *, samples_per_turn: int | None = None, window: str | tuple[Any, ...] = "hann") -> Spectrum:
     """One-sided amplitude spectrum over the orders of the shaft, sharp also when the speed varies.
 
-    `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins.
-
-    Returns
-    -------
-    Spectrum
-        ``axis`` is ``order``; resolution ``1 / turns``.
+    `by_turn` resamples to whole turns, so that the orders 1, 2, ... are bins; the resolution is ``1 / turns``.
 
     References
     ----------

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..extras import missing
+from ..extras import needing
 from ..threads import Shared, own_warnings
 from .found import TIMES, Found, numeric, plain
 from .text_table import named
@@ -51,10 +51,8 @@ def _full_scale(data):
 
 def uff_file(path: str | os.PathLike[str]) -> Found:
     """Channels of the data sets 58 (functions at nodes) of a universal file that are responses over time."""
-    try:
+    with needing("pyuff"):
         import pyuff
-    except ImportError as error:
-        raise missing("pyuff", error) from error
     try:
         with open(path, "rb") as file:
             end = file.read().split()[-1:]
@@ -92,16 +90,14 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
 
 def _free(found, name):
     """Name, with a number behind it if it is taken."""
-    taken = [one for one in found.vectors if one == name or one.startswith(f"{name} (")]
+    taken = [vector for vector in found.vectors if vector == name or vector.startswith(f"{name} (")]
     return f"{name} ({len(taken) + 1})" if taken else name
 
 
 def tdms_file(path: str | os.PathLike[str]) -> Found:
     """Channels of a TDMS file, ``group/channel`` (``channel`` if there is one group), with their units and increments."""
-    try:
+    with needing("npTDMS"):
         from nptdms import TdmsFile
-    except ImportError as error:
-        raise missing("npTDMS", error) from error
     try:
         with open(path, "rb") as file:
             if file.read(4) != b"TDSm":
@@ -152,11 +148,9 @@ def _tdms_channel(found: Found, name: str, data: Any, properties: Any) -> None:
 
 def parquet_file(path: str | os.PathLike[str]) -> Found:
     """Columns of a Parquet file; units in the names, ``a [m/s^2]``, or as ``unit`` in the metadata of a field."""
-    try:
+    with needing("pyarrow"):
         import pyarrow as pa
         import pyarrow.parquet as pq
-    except ImportError as error:
-        raise missing("pyarrow", error) from error
     try:
         table = pq.ParquetFile(path).read()
     except (OSError, pa.ArrowException, ValueError) as error:

@@ -130,10 +130,6 @@ def decimate(signal: Signal, rate: float) -> Signal:
     rate : float
         [Hz]; a ratio of small whole numbers to that of the signal.
 
-    Returns
-    -------
-    Signal
-
     Raises
     ------
     ValueError
@@ -164,10 +160,6 @@ def integrate(signal: Signal, times: int, above: float, unit: str) -> Signal:
         What lies below [Hz] is taken out, with the mean: noise there would grow without bound.
     unit : str
         Unit of the result, for example ``m`` for ``m/s^2`` integrated twice.
-
-    Returns
-    -------
-    Signal
     """
     whole("times", times, 1)
     hertz("above", above)

@@ -99,12 +99,10 @@ def read_signals(
     columns: Sequence[str] | None = None,
     *,
     units: str | Mapping[str, str] | None = None,
-    rate: float | None = None,
-    header: str | None = None,
-    scale: float = 1.0,
     tachometer: str | None = None,
     pulses: int = 1,
     level: float | None = None,
+    **stated: Any,
 ) -> dict[str, Signal]:
     """Read channels of a file, by name; see `read_signal` for the formats.
 
@@ -115,8 +113,6 @@ def read_signals(
         Default: all, the tachometer excepted.
     units : str or dict of str to str, optional
         Of all channels, or by channel; where the file states none.
-    rate, header, scale
-        As of `read_signal`.
     tachometer : str, optional
         Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
         ``rpm`` or ``1/min`` it is taken for the speed of the shaft, which is told; its integral is the angle.
@@ -124,30 +120,27 @@ def read_signals(
         Of the tachometer, in a turn.
     level : float, optional
         At which a pulse counts, in the tachometer's unit; default: half its height.
-
-    Returns
-    -------
-    dict of str to Signal
+    **stated
+        ``rate``, ``header``, ``scale`` of `read_signal`.
     """
-    found = channels(path, header)
+    found = channels(path, stated.pop("header", None))
     pulse = None if tachometer is None else _choose(path, found, tachometer)
     names = [one for one in found.channels() if one != pulse]
     if columns is not None:
-        names = [_choose(path, found, one) for one in columns]
+        names = [_choose(path, found, column) for column in columns]
     if not names:
         _choose(path, found, None)
     given = units if isinstance(units, Mapping) else dict.fromkeys(names, units)
     unknown = [name for name in given if name not in found.vectors and given[name] is not None]
     if unknown:
         raise ValueError(f"{path}: units for {', '.join(map(repr, unknown))}, but it has {found.told()}")
-    out = {name: _signal(path, found, name, rate=rate, unit=given.get(name), scale=scale) for name in names}
+    out = {name: _signal(path, found, name, unit=given.get(name), **stated) for name in names}
     if pulse is None:
         return out
-    clock = _signal(path, found, pulse, rate=rate, unit="1" if not found.units.get(pulse) else None)
+    clock = _signal(path, found, pulse, unit=None if found.units.get(pulse) else "1", rate=stated.get("rate"))
     if clock.unit in SPEEDS:
-        warnings.warn(
-            f"{path}: {pulse!r} is in {clock.unit}: taken for the shaft's speed, its integral for the angle", stacklevel=3
-        )
+        told = "taken for the shaft's speed, its integral for the angle"
+        warnings.warn(f"{path}: {pulse!r} is in {clock.unit}: {told}", stacklevel=3)
         return {name: with_speed_record(one, clock) for name, one in out.items()}
     return {name: with_tachometer(one, clock, pulses, level=level) for name, one in out.items()}
 
@@ -155,10 +148,7 @@ def read_signals(
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     """What a file holds: its channels, their units and rates.
 
-    Raises
-    ------
-    ValueError
-        If its suffix is of no format, it cannot be read or is damaged, or holds no channel.
+    ValueError if its suffix is of no format, it cannot be read or is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
     if header is not None and suffix in READERS:
@@ -175,16 +165,7 @@ def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     return found
 
 
-def _signal(
-    path: Any,
-    found: Found,
-    name: str,
-    *,
-    rate: float | None = None,
-    unit: str | None = None,
-    shaft_frequency: float | None = None,
-    scale: float = 1.0,
-) -> Signal:
+def _signal(path, found, name, *, rate=None, unit=None, shaft_frequency=None, scale=1.0):
     """A channel with its rate, unit and angle."""
     if not (isinstance(scale, (int, float)) and math.isfinite(scale) and scale):
         raise ValueError(f"scale = {scale!r}, but give a finite factor other than 0")
@@ -195,14 +176,9 @@ def _signal(
     if found.parts and scale == 1 and unit and unit != "1":
         told = f"full scale is taken for 1 {unit}; give what it is as scale="
         warnings.warn(f"{path}: the values are parts of full scale, and {told}", stacklevel=4)
-    return Signal(
-        values if scale == 1 else scale * np.asarray(values, dtype=float),
-        _rate(path, found, name, rate, time),
-        _unit(path, found, name, unit, scale),
-        f"{Path(path).stem} {name}",
-        angle,
-        turning,
-    )
+    values = values if scale == 1 else scale * np.asarray(values, dtype=float)
+    stated = {"rate": _rate(path, found, name, rate, time), "unit": _unit(path, found, name, unit, scale)}
+    return Signal(values, **stated, name=f"{Path(path).stem} {name}", angle=angle, shaft_frequency=turning)
 
 
 def _unit(path, found, name, given, scale):
@@ -291,7 +267,7 @@ def _rate(path, found, name, given, time):
     if time is None:
         if rate is None:
             others = found.channels() if len(found.channels()) > 1 else []
-            rising = [one for one in others if np.all(np.diff(found.vectors[one]) > 0)]
+            rising = [other for other in others if np.all(np.diff(found.vectors[other]) > 0)]
             clock = f"; if {rising[0]!r}, which rises all along, is the time, name it so by header=" if rising else ""
             told = "add a column 'time [s]', write 'rate = ... Hz' into it, or give rate="
             raise ValueError(f"{path} states no sampling rate: {told}{clock}")

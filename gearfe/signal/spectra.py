@@ -1,5 +1,6 @@
 """Spectra of signals: amplitude, power density, squared envelope; the analytic signal and the envelope."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,17 +50,14 @@ def power_spectral_density(
 ) -> Spectrum:
     """One-sided power spectral density by Welch's mean over half-overlapping segments; it integrates to the variance.
 
+    Its unit is ``(unit)^2/Hz``.
+
     Parameters
     ----------
     signal : Signal
     resolution : float, optional
         Distance of two bins [Hz]; a segment lasts ``1 / resolution``. Default: a sixteenth of the record in one segment.
     window : str or tuple
-
-    Returns
-    -------
-    Spectrum
-        Unit ``(unit)^2/Hz``.
 
     References
     ----------
@@ -95,14 +93,7 @@ def analytic(signal, band=None):
 
 def envelope(signal: Signal, band: tuple[float, float] | None = None) -> Signal:
     """Envelope by Hilbert's transform: modulus of the analytic signal, of `band` = (low, high) [Hz] only if given."""
-    return Signal(
-        np.abs(analytic(signal, band)),
-        signal.rate,
-        signal.unit,
-        f"envelope of {signal.name}",
-        signal.angle,
-        signal.shaft_frequency,
-    )
+    return replace(signal, values=np.abs(analytic(signal, band)), name=f"envelope of {signal.name}")
 
 
 def squared_envelope_spectrum(

@@ -2,6 +2,11 @@
 
 import math
 
+from ..checks import whole
+from .given import hertz
+
+HIGHEST = {"harmonics": 1, "turns": 3, "window": 1}
+
 
 def stage_lines(
     sun: int,
@@ -11,9 +16,7 @@ def stage_lines(
     *,
     damaged: str | None = None,
     equal: bool = True,
-    harmonics: int = 1,
-    turns: int = 3,
-    window: int = 1,
+    **highest: int,
 ) -> dict[str, float]:
     """Frequencies of a planetary stage with a fixed ring and equally spaced planets, as a sensor that stands still finds them.
 
@@ -39,12 +42,9 @@ def stage_lines(
         Which gear has a damaged tooth.
     equal : bool
         Whether all planets are alike and share the load alike.
-    harmonics : int
-        n goes up to it.
-    turns : int
-        Of a damaged gear: q goes up to it, j of a damaged ring up to it times `n_planets`.
-    window : int
-        Highest harmonic of the window: 1 for that of `gearfe.housing_signal`.
+    **highest
+        ``harmonics`` (default 1): n goes up to it. ``turns`` (3) of a damaged gear: q goes up to it, j of a damaged ring up to it
+        times `n_planets`. ``window`` (1): its highest harmonic, 1 for that of `gearfe.housing_signal`.
 
     Returns
     -------
@@ -65,6 +65,9 @@ def stage_lines(
     {'f_m - f_c': 405.0}
     """
     _check(sun, ring, n_planets, carrier, damaged)
+    if unknown := sorted(set(highest) - set(HIGHEST)):
+        raise TypeError(f"stage_lines() has no argument {unknown[0]!r}; it has {', '.join(HIGHEST)}")
+    harmonics, turns, window = (HIGHEST | highest).values()
     mesh, planet = ring * carrier, round((ring - sun) / 2)
     turn = {"sun": mesh / sun, "planet": mesh / planet}.get(damaged or "", 0.0)
     reach, spread = (turns, window) if turn else (0, turns * n_planets if damaged == "ring" else window)
@@ -81,14 +84,12 @@ def stage_lines(
 
 def _check(sun, ring, n_planets, carrier, damaged):
     for name, value in {"sun": sun, "ring": ring, "n_planets": n_planets}.items():
-        if isinstance(value, bool) or value != int(value) or value < 1:
-            raise ValueError(f"{name} = {value!r}, but give a whole number above 0")
+        whole(name, value, 1)
     if ring <= sun:
         raise ValueError(f"ring = {ring}, sun = {sun}: a ring has more teeth than its sun")
     if (sun + ring) % n_planets:
         raise ValueError(f"{n_planets} equally spaced planets cannot be assembled: ({sun} + {ring}) / {n_planets} is not whole")
-    if not 0 < carrier < math.inf:
-        raise ValueError(f"carrier = {carrier} Hz, but give a positive number")
+    hertz("carrier", carrier)
     if damaged not in (None, "sun", "planet", "ring"):
         raise ValueError(f"damaged = {damaged!r}, but it must be 'sun', 'planet' or 'ring'")
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ..checks import whole
 from .series import Signal
 
 SPEEDS = {"rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "U/min": 1 / 60, "tr/min": 1 / 60}  # turns per second, by unit
@@ -15,25 +16,9 @@ MISSED = 1.7  # times the intervals before and after it: one that long hides a p
 
 
 def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool = False) -> NDArray[np.float64]:
-    """Times at which a tachometer's signal rises through a level [s], between samples by a straight line.
+    """Times at which a tachometer's signal rises (falls) through a level [s], between samples by a straight line.
 
-    Parameters
-    ----------
-    tachometer : Signal
-    level : float, optional
-        In its unit; default: half way between its smallest and its largest value.
-    falling : bool
-        Where it falls instead.
-
-    Returns
-    -------
-    ndarray, shape (pulses,)
-        From the first sample on.
-
-    Raises
-    ------
-    ValueError
-        If the signal has no pulses or only few.
+    `level` and `falling` are as of `with_tachometer`. ValueError if the signal has no pulses or only few.
     """
     x = -tachometer.values if falling else tachometer.values
     low, high = float(x.min()), float(x.max())
@@ -56,37 +41,18 @@ def pulse_times(tachometer: Signal, *, level: float | None = None, falling: bool
 def tachometer_angle(
     tachometer: Signal, pulses: int = 1, *, level: float | None = None, falling: bool = False
 ) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Angle of the shaft at the samples between the first and the last pulse.
+    """Angle of the shaft [rad] ``(m,)`` at the samples between the first and the last pulse, 0 at the first; which these are.
 
     Each pulse is ``2 pi / pulses`` further; through their times a cubic spline is laid, exact for a speed that changes evenly. A
-    pulse that lies between two samples is placed by a straight line between them, to a small part of a sample.
-
-    Parameters
-    ----------
-    tachometer : Signal
-    pulses : int
-        In a turn.
-    level, falling
-        As of `pulse_times`.
-
-    Returns
-    -------
-    angle : ndarray, shape (m,)
-        [rad], 0 at the first pulse, rising.
-    samples : ndarray, shape (m,)
-        Which samples these are.
-
-    Raises
-    ------
-    ValueError
-        If there are too few pulses, or one was lost: an interval of about two or more beside ordinary ones.
+    pulse that lies between two samples is placed by a straight line between them, to a small part of a sample. `pulses`, `level`
+    and `falling` are as of `with_tachometer`. ValueError if there are too few pulses, or one was lost: an interval of about two
+    or more beside ordinary ones.
 
     References
     ----------
     K. R. Fyfe, E. D. S. Munck, Mech. Syst. Signal Process. 11(2) (1997) 187-205.
     """
-    if not (isinstance(pulses, int | np.integer) and not isinstance(pulses, bool) and pulses > 0):
-        raise ValueError(f"pulses = {pulses!r}, but give how many pulses a turn has: 1, 2, 3...")
+    whole("pulses", pulses, 1)
     times = pulse_times(tachometer, level=level, falling=falling)
     gaps = np.diff(times)
     lost = np.flatnonzero(gaps[1:-1] > MISSED * np.maximum(gaps[:-2], gaps[2:]))
@@ -104,21 +70,8 @@ def tachometer_angle(
 def with_speed_record(signal: Signal, speed: Signal) -> Signal:
     """A signal with the `angle` of a shaft whose speed was recorded with it: the integral of the speed, from 0.
 
-    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not.
-
-    Parameters
-    ----------
-    signal, speed : Signal
-        Of one rate and length; the speed in one of the units of `SPEEDS`.
-
-    Returns
-    -------
-    Signal
-
-    Raises
-    ------
-    ValueError
-        If the two differ in rate or length, or the shaft stands still or turns back.
+    Errors of the speed add up, so that the angle drifts against the shaft; pulses (`with_tachometer`) do not. The speed is in one
+    of the units of `SPEEDS`. ValueError if the two differ in rate or length, or the shaft stands still or turns back.
     """
     _check_together(signal, speed)
     low = int(np.argmin(speed.values))
@@ -147,10 +100,6 @@ def with_tachometer(
         At which a pulse counts, in the tachometer's unit; default: half its height.
     falling : bool
         Count where the tachometer falls instead of rises.
-
-    Returns
-    -------
-    Signal
 
     Raises
     ------

@@ -33,24 +33,10 @@ class Way(NamedTuple):
 
 
 def text_table(path: str | os.PathLike[str], lines: list[str], header: str | None = None) -> Found:
-    """Channels of a text table.
+    """Channels of a text table: the `lines` of a file, whose `path` is for the messages.
 
-    Parameters
-    ----------
-    path : path
-        For the messages.
-    lines : list of str
-    header : str, optional
-        Names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others.
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    ValueError
-        If there are no rows of numbers, or one that does not fit the others: its line is named.
+    `header` has the names and units of the columns, ``"time [s], housing [m/s^2]"``, if the file has none, or others. ValueError
+    if there are no rows of numbers, or one that does not fit the others: its line is named.
     """
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]

@@ -19,17 +19,9 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
 
     Where they do not to a tenth of a step, because they were printed with so many decimals or significant digits, a line is
     looked for that is nowhere further from them than half of the last digit printed; of a known `rate` [Hz] one of just its step.
-    There is none if a sample is lost, unless that is within so few samples of the ends that rounding hides it.
-
-    Raises
-    ------
-    ValueError
-        If they fall, have a gap, are rounded too much to say a rate, or one is not finite.
-
-    Warns
-    -----
-    UserWarning
-        If the times are rounded: to what, and what rate is assumed.
+    There is none if a sample is lost, unless that is within so few samples of the ends that rounding hides it. ValueError if they
+    fall, have a gap, are rounded too much to say a rate, or one is not finite. Warns of times that are rounded: to what, and what
+    rate is assumed.
     """
     bad = np.flatnonzero(~np.isfinite(time))
     if bad.size:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 from scipy.signal import ShortTimeFFT, get_window
 
+from .given import oscillation
 from .series import Signal
 from .spectrum import Spectrum
 
@@ -55,17 +56,25 @@ def spectrogram(signal: Signal, size: int | None = None, *, window: str | tuple[
     """
     n = signal.values.size
     size = 2 ** round(np.log2(8 * n) / 2) if size is None else size
-    if not 8 <= size <= n // 2:
-        raise ValueError(f"size = {size} samples, but {signal.name} has {n}: give 8 to {n // 2}")
-    weights = get_window(window, size)
-    transform = ShortTimeFFT(weights * (2 / weights.sum()), size // 4, signal.rate)
-    first, end = transform.lower_border_end[1], transform.upper_border_begin(n)[1]
-    values = np.abs(transform.stft(signal.values - signal.values.mean(), p0=first, p1=end))
+    frequency, time, frames, weights = whole_frames(signal, signal.values - signal.values.mean(), window, size, n // 2)
+    values = np.abs(frames) * (2 / weights.sum())
     values[0] /= 2
     if size % 2 == 0:
         values[-1] /= 2  # 0 Hz and Nyquist's frequency have no twin
-    time = transform.t(n, p0=first, p1=end)
-    return Spectrogram(transform.f, time, values, signal.unit, f"spectrogram of {signal.name}")
+    return Spectrogram(frequency, time, values, signal.unit, f"spectrogram of {signal.name}")
+
+
+def whole_frames(signal, x, window, size, most):
+    """Frequencies [Hz], middles [s] and short-time Fourier transform of `x`, of whole frames that overlap by three quarters.
+
+    The last that is given are the weights of the window. ValueError if a frame is shorter than 8 samples or longer than `most`.
+    """
+    if not 8 <= size <= most:
+        raise ValueError(f"size = {size} samples, but {signal.name} has {x.size}: give 8 to {most}")
+    weights = get_window(window, size)
+    transform = ShortTimeFFT(weights, size // 4, signal.rate)
+    inside = {"p0": transform.lower_border_end[1], "p1": transform.upper_border_begin(x.size)[1]}
+    return transform.f, transform.t(x.size, **inside), transform.stft(x, **inside), weights
 
 
 def cepstrum(signal: Signal) -> Spectrum:
@@ -94,10 +103,8 @@ def cepstrum(signal: Signal) -> Spectrum:
     B. P. Bogert, M. J. R. Healy, J. W. Tukey, Proc. Symp. Time Series Analysis (1963) 209-243; R. B. Randall, Mech. Syst. Signal
     Process. 97 (2017) 3-19.
     """
-    x = signal.values - signal.values.mean()
+    x = oscillation(signal.values, f"{signal.name} is constant: it has no cepstrum")
     amplitude = np.abs(rfft(x))
-    if not amplitude.max() > 1e-12 * np.abs(signal.values).max() * x.size:
-        raise ValueError(f"{signal.name} is constant: it has no cepstrum")
     values = irfft(np.log(np.maximum(amplitude, FLOOR * amplitude.max())), x.size)[: x.size // 2 + 1]
     step = 1 / signal.rate
     return Spectrum(np.arange(values.size) * step, values, "1", step, step, f"cepstrum of {signal.name}", "s")

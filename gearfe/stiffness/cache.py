@@ -17,7 +17,7 @@ import geometry
 from geometry.damage.crack import meshed_path
 
 from ..elements import fe
-from ..elements.fe_gear3d import solid_flexibility, solid_plan
+from ..elements.fe_gear3d import WholeGear, solid_flexibility
 from ..flexibility.arrays import plane_arrays, plane_from, solid_arrays, solid_from
 from ..flexibility.solved import PROCESS, solved_gears
 from .flexibility_file import read_flexibility, write_flexibility
@@ -38,20 +38,8 @@ def folder():
 def solved_gear(gear, material, cracks=(), *, cache=True, **options):
     """Flexibility of a gear's section by finite elements, from the cache if it is there.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    cracks : tuple of Crack
-    cache : bool or SolvedGears
-        False: solve anew, store nothing. See `gearfe.flexibility.solved.solved_gears`; only with the results of this process is
-        the disk used.
-    **options
-        As in `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
-
-    Returns
-    -------
-    Flexibility
+    `cache` as of `gearfe.flexibility.solved.solved_gears`; False: solve anew, store nothing. Only with the results of this
+    process is the disk used. `options` as of `gearfe.elements.fe.flexibility`: neighbours, state, refine, teeth.
     """
     kept = solved_gears(cache)
 
@@ -66,23 +54,10 @@ def solved_gear(gear, material, cracks=(), *, cache=True, **options):
 
 
 def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options):
-    """Flexibility of a gear of finite width by finite elements of all of it, from the cache if it is there.
+    """`Flexibility3D` of a gear of finite width by finite elements of all of it, from the cache if it is there.
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    cracks : tuple of Crack
-    cache : bool or SolvedGears
-        As of `solved_gear`.
-    tell : callable, optional
-        Gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
-    **options
-        As in `gearfe.elements.fe_gear3d.solid_flexibility`: neighbours, degree, refine.
-
-    Returns
-    -------
-    Flexibility3D
+    `cache` as of `solved_gear`, `options` as of `gearfe.elements.fe_gear3d.WholeGear`: neighbours, degree, less, refine, section,
+    shaft. `tell` gets one line of text before each solve: which gear, the unknowns, the expected seconds and memory.
     """
     kept = solved_gears(cache)
     for crack in cracks:
@@ -95,7 +70,7 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
         own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(gear, material, cracks, **own, **options)
+        return solid_flexibility(WholeGear(gear, cracks, **options), material, **own)
 
     return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
 
@@ -107,17 +82,14 @@ def _solid_case(material, cracks, options):
 def unsolved(gear, material, cracks=(), *, cache=True, **options):
     """What `solved_solid` of the same would solve: `gearfe.elements.solver.Plan` by key, nothing that is kept or on the disk.
 
-    Raises
-    ------
-    RuntimeError
-        If one of them does not fit into memory, with the numbers.
+    RuntimeError, with the numbers, if one of them does not fit into memory.
     """
     key = ("solid", gear, *_solid_case(material, cracks, options))
     kept = solved_gears(cache)
     if key in kept or (kept is PROCESS and (file := _file(key)[0]) and file.exists()):
         return {}
     before = unsolved(gear, material, cache=kept, **options) if cracks else {}
-    return before | {key: solid_plan(gear, cracks, **options)}
+    return before | {key: WholeGear(gear, cracks, **options).plan()}
 
 
 def _file(key):

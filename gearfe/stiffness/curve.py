@@ -79,17 +79,10 @@ class StiffnessCurve:
         return f"<div>{drawn}<br>{escape(repr(self))}</div>"
 
     def to_pandas(self) -> Any:
-        """Table of the curve, one row for each phase.
+        """The curve as a `pandas.DataFrame`, one row for each phase.
 
-        Returns
-        -------
-        pandas.DataFrame
-            Columns with units in their names, as in the CSV table; the index is ``phase [-]``; ``attrs`` holds `meta`.
-
-        Raises
-        ------
-        RuntimeError
-            If pandas is missing; the message names what to install.
+        Columns have units in their names, as in the CSV table; the index is ``phase [-]``; ``attrs`` holds `meta`. RuntimeError
+        if pandas is missing; the message names what to install.
         """
         try:
             import pandas
@@ -102,17 +95,10 @@ class StiffnessCurve:
         return table
 
     def to_xarray(self) -> Any:
-        """Curve as arrays with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
+        """The curve as an `xarray.Dataset` with named axes ``phase`` and ``order`` (the tooth pair), units in ``attrs``.
 
-        Returns
-        -------
-        xarray.Dataset
-            ``k``, ``k_tangent``, ``lte`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
-
-        Raises
-        ------
-        RuntimeError
-            If xarray is missing; the message names what to install.
+        ``k``, ``k_tangent``, ``lte`` and, if there is one, ``error`` over ``phase``; ``force`` and ``pressure`` over both.
+        RuntimeError if xarray is missing; the message names what to install.
         """
         try:
             import xarray
@@ -125,25 +111,10 @@ class StiffnessCurve:
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
-        """Secant stiffness [N/m] at any phases, straight between those of the curve; for models of dynamics.
+        """Secant stiffness [N/m] at phases of any shape, straight between those of the curve; for models of dynamics.
 
-        Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``)
-        are not: what comes before and after it is another tooth.
-
-        Parameters
-        ----------
-        phase : float or ndarray
-            Mesh phases, any shape.
-
-        Returns
-        -------
-        ndarray
-            Of the same shape.
-
-        Raises
-        ------
-        ValueError
-            If the curve has no value there, or `phase` holds no finite numbers.
+        Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
+        not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
         """
         wanted = np.asarray(phase)
         if wanted.dtype.kind not in "iuf" or not np.isfinite(wanted).all():
@@ -219,41 +190,32 @@ class StiffnessCurve:
 
     @classmethod
     def from_csv(cls, path: str | os.PathLike[str]) -> "StiffnessCurve":
-        """Read what `to_csv` wrote.
-
-        Raises
-        ------
-        ValueError
-            If the file is not such a table, or its phases do not rise.
-        """
+        """Read what `to_csv` wrote; ValueError if the file is not such a table, or its phases do not rise."""
         return cls(**read_fields(path))
 
     def plot(self, path: str | os.PathLike[str] | None = None, title: str | None = None) -> "Figure":
         """Draw the curve under a `title` (default: teeth, damage and load); save to `path` if given.
 
-        Returns
-        -------
-        matplotlib.figure.Figure
-            Its ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
+        The figure's ``axes`` are two: the stiffness, and below it the load shares. A notebook shows it.
         """
         return plot_curves({self.meta.get("method", "k"): self}, path, title)
 
 
 def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
     """One curve of several that follow each other, of the same gears under the same load; columns of pairs by their order."""
-    order = np.unique(np.concatenate([one.order for one in curves]))
+    order = np.unique(np.concatenate([curve.order for curve in curves]))
 
     def rows(name: str) -> NDArray[np.float64]:
-        out = [np.zeros((one.phase.size, order.size)) for one in curves]
+        out = [np.zeros((curve.phase.size, order.size)) for curve in curves]
         for part, one in zip(out, curves, strict=True):
             part[:, np.searchsorted(order, one.order)] = getattr(one, name)
         return np.concatenate(out)
 
     def row(name: str) -> NDArray[np.float64] | None:
-        parts = [getattr(one, name) for one in curves]
+        parts = [getattr(curve, name) for curve in curves]
         return None if parts[0] is None else np.concatenate(parts)
 
-    whole = {name: np.concatenate([getattr(one, name) for one in curves]) for name in ("phase", "k", "k_tangent", "lte")}
+    whole = {name: np.concatenate([getattr(curve, name) for curve in curves]) for name in ("phase", "k", "k_tangent", "lte")}
     return StiffnessCurve(
         **whole,
         order=order,
@@ -268,5 +230,5 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
     """What is said of the first, and of the phases of all of them."""
-    marked = [name for name in MARKS if any(name in one.meta for one in curves)]
-    return curves[0].meta | {name: [at for one in curves for at in one.meta.get(name, ())] for name in marked}
+    marked = [name for name in MARKS if any(name in curve.meta for curve in curves)]
+    return curves[0].meta | {name: [at for curve in curves for at in curve.meta.get(name, ())] for name in marked}

@@ -10,17 +10,9 @@ MEAN = 1 / 2  # and the mean difference from those so close: one base pitch in a
 
 
 def fixed_phases(phase, periodic):
-    """Multiples of ``1 / STEPS`` that the estimate at `phase` looks at.
+    """Multiples ``(m,)`` of ``1 / STEPS`` that the estimate at `phase` ``(n,)`` looks at.
 
-    Parameters
-    ----------
-    phase : ndarray, shape (n,)
-    periodic : bool
-        Whether all teeth are alike, so that one base pitch says it all.
-
-    Returns
-    -------
-    ndarray, shape (m,)
+    `periodic`: all teeth are alike, so that one base pitch says it all.
     """
     if periodic:
         return np.arange(STEPS) / STEPS
@@ -46,22 +38,8 @@ def estimate(phase, periodic, k, coarse, finer=()):
     (all covered) and is judged on others there; ``ritz`` was looked at on seeds 0 to 39 of ``tests/energy/test_ritz.py``, its
     hats on ring pairs of seeds 0 to 259 of ``tests/stiffness/test_error_rings.py``, and is judged on others there.
 
-    Parameters
-    ----------
-    phase : ndarray, shape (n,)
-    periodic : bool
-        As for `fixed_phases`.
-    k : ndarray, shape (n + m,)
-        At `phase` and then at its `fixed_phases` [N/m].
-    coarse : sequence of ndarray, shape (n + m,)
-        The same from coarser solves, the coarsest first.
-    finer : sequence of ndarray, shape (n + m,)
-        The same with finer hats at tip corners.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [N/m].
+    `k` ``(n + m,)`` [N/m] is at `phase` ``(n,)`` and then at its `fixed_phases`; `coarse` are the same from coarser solves, the
+    coarsest first, `finer` those with finer hats. The error ``(n,)`` is in N/m.
     """
     away = np.abs(k - np.array(coarse))
     total, mean = away.sum(axis=0), away[0, phase.size :]

@@ -28,13 +28,7 @@ UNREADABLE = (
 
 
 def write_flexibility(path: Path, key: str, arrays: dict[str, NDArray]) -> None:
-    """Write arrays and the key they belong to; the file is in place when it is complete, or not at all.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be written.
-    """
+    """Write arrays and the key they belong to; the file is in place when it is complete, or not at all (ValueError)."""
     with written(path) as name:
         np.savez(name, **dict[str, Any](arrays | {KEY: np.frombuffer(key.encode(), dtype=np.uint8)}))
 

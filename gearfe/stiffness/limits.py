@@ -28,16 +28,7 @@ def check_count(phases: Any) -> int:
 def check_range(phases: NDArray, pairs: float) -> None:
     """Refuse phases too far away for their rounding, or over so many cycles at once that the contacts fill the memory.
 
-    Parameters
-    ----------
-    phases : ndarray, shape (n,)
-    pairs : float
-        Contact ratio: pairs in contact at each of them.
-
-    Raises
-    ------
-    ValueError
-        With the numbers.
+    `phases` ``(n,)``; `pairs` is the contact ratio: so many pairs are in contact at each of them.
     """
     far = float(np.abs(phases).max())
     if far > FURTHEST:
@@ -55,13 +46,7 @@ def check_range(phases: NDArray, pairs: float) -> None:
 
 
 def check_section(refine: float) -> None:
-    """Refuse a section of finite elements that does not fit into memory, before it is meshed.
-
-    Raises
-    ------
-    RuntimeError
-        With the numbers.
-    """
+    """RuntimeError for a section of finite elements that does not fit into memory, before it is meshed."""
     unknowns = sum(factor * refine**power for power, factor in enumerate(SECTION))
     memory = unknowns * sum(factor * refine**power for power, factor in enumerate(SECTION_BYTES))
     free = free_memory()

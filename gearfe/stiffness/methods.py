@@ -6,7 +6,7 @@ help, `compare`, `case_table` and `error_map` list its names. It imports nothing
 To add a closed form, write one file in ``gearfe/energy/closed/`` and one row in `ROWS`:
 
 - kind "sum", if it describes one tooth and the pairs are springs side by side: the file has ``components(gear, material, roll,
-  *, cracks=(), pits=(), crack_model="constant", ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
+  *, damage=ToothDamage(), ...)``, which gives `gearfe.energy.closed.beam.Components`, as ``textbook.py``;
   its other keywords become the variants of the method. ``DEFAULTS``, if it is there, holds its contact law and root profile;
 - kind "section", if it describes what a whole gear gives to all its contacts: the file has ``flexibility(gear, material, *,
   neighbours, state)``, which gives `gearfe.flexibility.plane.Flexibility`, as ``coupled.py``.
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 SPUR = ("spur",)
 FACES = ("spur", "helical", "herringbone")  # how teeth run
 WAYS = {  # who makes curves of a kind of method
-    "section": "gearfe.stiffness.plane:section_curves",
-    "sum": "gearfe.stiffness.plane:sum_curves",
-    "solid": "gearfe.stiffness.solid:solid_curves",
+    "section": "gearfe.stiffness.section_curves:section_curves",
+    "sum": "gearfe.stiffness.section_curves:sum_curves",
+    "solid": "gearfe.stiffness.wide_curves:solid_curves",
 }
 
 
@@ -106,16 +106,7 @@ class Method:
     def curves(self, case: "Case", how: Any, phase: "NDArray") -> list[Any]:
         """Stiffness curves of a `Case`, one for each of its loads, at phases ``(n,)`` of the mean pose.
 
-        Parameters
-        ----------
-        case : Case
-        how : Solve
-            With what its defaults stand for filled in.
-        phase : ndarray, shape (n,)
-
-        Returns
-        -------
-        list of StiffnessCurve
+        In `how`, a `Solve`, what its defaults stand for is filled in.
         """
         return _loaded(WAYS[self.kind])(self, case, how, phase)
 
@@ -186,7 +177,7 @@ def having(what, kind=None):
 
 
 def fitted(method, case):
-    """A case as far as a method knows it, with the variants it needs, and in words what is left out.
+    """A case as far as a method knows it, with the variants it needs (or None), and in words what is left out.
 
     This is the one rule for which face, groove and variants go to which method:
 
@@ -194,21 +185,8 @@ def fitted(method, case):
     - whatever knows no width takes shafts that tilt their gears as such that only give way;
     - a plain sum takes a ring's body as its row says: left out, or as its article prints it.
 
-    `gearfe.solve` itself refuses such cases, so that nobody gets a section who asked for a helical gear.
-
-    Parameters
-    ----------
-    method : str
-        A name of `NAMES`; ``auto`` takes everything.
-    case : Case
-
-    Returns
-    -------
-    case : Case
-    variants : dict or None
-        Of the `Solve`.
-    left_out : tuple of str
-        Empty if the method takes all of it.
+    `method` is one of `NAMES`; ``auto`` takes everything. `gearfe.solve` itself refuses such cases, so that nobody gets a section
+    who asked for a helical gear.
     """
     if method not in METHODS:
         return case, None, ()

@@ -1,6 +1,6 @@
 """`OwnFlexibility`: a model of the user's own of how one gear gives, in place of `ritz` or `fe`."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geometry.tooth.gear import Gear
 
+from ..checks import one_of
 from ..energy.closed import coupled
 from ..energy.closed.beam import Components
 from ..flexibility.plane import singly
@@ -96,8 +97,7 @@ class OwnFlexibility:
 
     def __post_init__(self) -> None:
         """Refuse what has no flexibility; name the model."""
-        if self.given not in GIVEN:
-            raise ValueError(f"given = {self.given!r}, but it must be one of {', '.join(GIVEN)}")
+        one_of("given", self.given, GIVEN)
         if self.wheel is None:
             object.__setattr__(self, "wheel", self.pinion)
         for side in ("pinion", "wheel"):
@@ -110,7 +110,7 @@ class OwnFlexibility:
     @property
     def extended(self) -> bool:
         """Whether both gears know what to do at a corner."""
-        return all(METHODS[one].extended if isinstance(one, str) else bool(getattr(one, "own", None)) for one in self.gears)
+        return all(METHODS[gear].extended if isinstance(gear, str) else bool(getattr(gear, "own", None)) for gear in self.gears)
 
     @property
     def gears(self) -> tuple[Any, Any]:
@@ -119,7 +119,7 @@ class OwnFlexibility:
 
     def told(self) -> dict[str, Any]:
         """What `meta` says of it."""
-        names = [one if isinstance(one, str) else getattr(one, "__name__", type(one).__name__) for one in self.gears]
+        names = [gear if isinstance(gear, str) else getattr(gear, "__name__", type(gear).__name__) for gear in self.gears]
         return {"flexibility": names, "given": self.given}
 
 
@@ -137,19 +137,13 @@ def _check(side: str, one: object) -> None:
         )
 
 
+def _unknown(gear: Any, roll: NDArray, tooth: int) -> None:
+    """Nothing is known of loads across the normal."""
+
+
 @dataclass(frozen=True, slots=True)
 class OwnGear:
-    """A user's function as what `gearfe.contact.plane.Mesh` reads of a gear.
-
-    Attributes
-    ----------
-    function : callable
-        As in `OwnFlexibility`.
-    gear : Gear
-    material : Material
-    state : str
-    given : {"bulk", "smooth"}
-    """
+    """A user's function, as in `OwnFlexibility`, as what `gearfe.contact.pair_contact.PairContact` reads of a gear."""
 
     function: Callable
     gear: Gear
@@ -159,6 +153,8 @@ class OwnGear:
     seam = None
     dofs = 0
     fine = 1.0
+    within = singly
+    yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] between contacts at `roll` ``(..., n)`` on `teeth` ``(n,)``.
@@ -172,13 +168,6 @@ class OwnGear:
             if own.size:
                 out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
         return out
-
-    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
-        """As of `gearfe.flexibility.plane.Flexibility`."""
-        return singly(self, rolls, teeth)
-
-    def yields_across(self, roll: NDArray, tooth: int) -> None:
-        """Nothing is known of loads across the normal."""
 
     def _among(self, roll, teeth):
         """Smooth flexibility between contacts of one phase, the function's values checked."""
@@ -203,6 +192,8 @@ class OwnMatrix:
     seam = None
     dofs = 0
     fine = 1.0
+    within = singly
+    yields_across = _unknown
 
     def matrix(self, roll: NDArray, teeth: NDArray) -> NDArray:
         """Smooth flexibility ``(..., n, n)`` [mm per N/mm] as the object gives it; zeros for contacts off the flank."""
@@ -211,13 +202,6 @@ class OwnMatrix:
         where = f"{type(self.made).__name__}.matrix of z = {self.gear.z}, roll of shape {roll.shape}, {np.size(teeth)} teeth"
         values = _checked(where, shape, lambda: self.made.matrix(roll, teeth))
         return np.where(on[..., :, None] & on[..., None, :], values, 0.0)
-
-    def within(self, rolls: Sequence[NDArray], teeth: Sequence[int]) -> list[NDArray]:
-        """As of `gearfe.flexibility.plane.Flexibility`."""
-        return singly(self, rolls, teeth)
-
-    def yields_across(self, roll: NDArray, tooth: int) -> None:
-        """Nothing is known of loads across the normal."""
 
 
 def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 from geometry.pair.gear_pair import GearPair
 
 from ..case import Case, case_of
-from ..contact.solid import Contact3D, pair_stiffness3d
+from ..contact.wide_contact import Contact3D, pair_stiffness3d
 from ..threads import single
 from .phases import phase_array
 from .supported import check_integral

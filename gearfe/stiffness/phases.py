@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from geometry.pair.gear_pair import GearPair
 
-from ..checks import numbers
+from ..checks import numbers, one_of
 from .limits import check_count, check_range
 from .turns import check_length, cycles_in
 
@@ -16,15 +16,9 @@ SPANS = ("cycle", "tooth", "revolution", "hunting")
 LONG = SPANS[2:]  # of many cycles
 
 
-def check_span(span: Any) -> None:
-    """ValueError unless the span is known."""
-    if span not in SPANS:
-        raise ValueError(f"span = {span!r}, but it must be one of {', '.join(SPANS)}")
-
-
 def phase_array(phases: Any, span: str, pair: GearPair, overlap: float = 0.0) -> NDArray[np.float64]:
     """Phases spelled out; an engagement lasts as long as profile and overlap ratio together."""
-    check_span(span)
+    one_of("span", span, SPANS)
     if np.ndim(phases) == 0:
         phases = check_count(phases)
         if span == "tooth":

@@ -28,21 +28,8 @@ DENTED = 0.035  # largest pressure, of the contact modulus E*
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
     """Refuse or warn of a curve beyond small strains, and refuse numbers that are none.
 
-    Parameters
-    ----------
-    curve : StiffnessCurve
-    pair : GearPair
-    materials : (Material, Material)
-
-    Raises
-    ------
-    ValueError
-        If the gears approach by more than `REFUSE` modules, or k is not positive and finite.
-
-    Warns
-    -----
-    UserWarning
-        If they approach by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
+    ValueError if the gears approach by more than `REFUSE` modules, or k is not positive and finite. UserWarning if they approach
+    by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
     """
     force, module = curve.meta["force_N"], pair.gear_1.m_n
     if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):

@@ -14,37 +14,15 @@ LEAST = 1e-13  # the same at the least, above the rounding of a phase
 MOST = 20
 
 
-def check_pose(pose):
-    """ValueError unless the pose is known."""
-    if pose not in SHIFT:
-        raise ValueError(f"pose = {pose!r}, but it must be one of {', '.join(SHIFT)}")
-
-
 def in_pose(curve_at, phase, pair, pose, flanks=None):
-    """Stiffness curve of gears of which only one turns, from curves in the mean pose.
+    """Stiffness curve of gears of which only one turns (`pose` ``pinion`` or ``wheel``), from curves in the mean pose.
 
     With the wheel held at its place at `phase` and the pinion turned by an approach delta, both stand as in the mean pose at
     ``phase + delta / (2 p_bt)``; with the pinion held, at ``phase - delta / (2 p_bt)`` (`geometry.pair.contacts`). Delta is the
-    approach found there, so the shift is solved for, phase by phase.
+    approach found there, so the shift is solved for, phase by phase; RuntimeError if it does not settle.
 
-    Parameters
-    ----------
-    curve_at : callable
-        Maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose.
-    phase : ndarray, shape (n,)
-    pair : GearPair
-    pose : {"pinion", "wheel"}
-    flanks : (FlankForm, FlankForm), optional
-        Modifications: without load, too, one gear is turned until flanks touch.
-
-    Returns
-    -------
-    StiffnessCurve
-
-    Raises
-    ------
-    RuntimeError
-        If the shift does not settle.
+    `curve_at` maps phases ``(n,)`` to their `StiffnessCurve` in the mean pose. With modified `flanks`, without load, too, one
+    gear is turned until they touch.
     """
     shift = SHIFT[pose] / pair.p_bt
     at, curve = _settled(

@@ -6,28 +6,21 @@ from itertools import chain
 
 from geometry.damage.crack import check_through
 
-from ..checks import is_number
+from ..checks import is_number, one_of
 from ..energy.closed.plain_sum import plain_sum
 from .limits import check_section, check_teeth
 from .methods import METHODS, RING_FOUNDATIONS, having
 from .supported import check_integral, check_tilt
 
-NO_VARIANTS = (
-    *("pair", "materials", "phase", "formulas", "gear", "material", "roll", "cracks", "pits", "variants", "face", "groove"),
-    "flanks",
-)
+NO_VARIANTS = ("case", "phase", "formulas", "variants", "gear", "material", "roll", "damage")
 CRACK_MODELS = tuple(dict.fromkeys(model for row in METHODS.values() for model in row.crack_models))
 
 
 def refuses(row, case, how):
     """Raise ValueError for what the method of a `row` of the table does not model of a case, or has no option for.
 
-    Raises
-    ------
-    ValueError
-        The message says what was given, and which methods have it.
-    RuntimeError
-        If a section of finite elements does not fit into memory.
+    The message says what was given, and which methods have it. RuntimeError if a section of finite elements does not fit into
+    memory.
     """
     method = f"method = {row.name!r}"
     of_case = (told for group in (_teeth, _damage, _flanks) for told in group(row, case, method))
@@ -111,5 +104,5 @@ def _check_variants(row, case, how, method):
             raise ValueError(f"variants: {name!r} is none of {method}; it has {', '.join(known)}")
         if name == "theta_f" and value is not None and not (is_number(value) and 0 < value < math.pi / 2):
             raise ValueError(f"variants: theta_f = {value!r}, but a root half angle lies between 0 and pi/2 rad")
-        if name == "crack_model" and value not in CRACK_MODELS:
-            raise ValueError(f"variants: crack_model = {value!r}, but it must be one of {', '.join(CRACK_MODELS)}")
+        if name == "crack_model":
+            one_of("variants: crack_model", value, CRACK_MODELS)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geometry.pair.gear_pair import GearPair
 
 from ..case import NAMES, Case, case_of
-from ..checks import checked_refine, is_number, truth
+from ..checks import checked_refine, is_number, one_of, truth
 from ..flexibility.solved import SolvedGears, solved_gears
 from ..material import check_state
 from ..threads import one_thread
@@ -19,9 +19,9 @@ from .curve import StiffnessCurve
 from .methods import METHODS, Method
 from .methods import NAMES as METHOD_NAMES
 from .own_flexibility import OwnFlexibility
-from .phases import LONG, check_span, phase_array
+from .phases import LONG, SPANS, phase_array
 from .plausible import check_plausible
-from .pose import check_pose, in_pose
+from .pose import SHIFT, in_pose
 from .turns import over_turns
 
 Loads = list[float] | tuple[float, ...] | NDArray[np.float64]
@@ -37,8 +37,8 @@ class Solve:
         What each takes is written in one table, `gearfe.stiffness.methods.ROWS`; in words:
         ``ritz``: the converged energy model of the transverse section, milliseconds (`gearfe.energy.ritz.plane`). ``ritz3d``: the
         same in three dimensions, seconds: spur, helical and herringbone gears of finite width, pits as lost contact
-        (`gearfe.contact.solid`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says why.
-        To compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
+        (`gearfe.contact.wide_contact`). ``auto``: ``ritz3d`` for helical gears and pits, otherwise ``ritz``; ``meta["why"]`` says
+        why. To compare a damaged curve with the healthy one ask for both by the same method. ``fe``: finite elements of whole
         sections, the independent reference (`gearfe.elements.fe`).
         ``fe3d``: hexahedra of whole gears of finite width, the same for ``ritz3d``, minutes (`gearfe.elements.fe_gear3d`).
         ``coupled``: closed forms repaired by known means, external healthy gears (`gearfe.energy.closed.coupled`). All with line
@@ -73,7 +73,7 @@ class Solve:
         ``components`` (``root``, ``foot``, ``foundation``, ``lever``, ``theta_f``, ``crack_model``, ``contact``, ``lost``).
     error : bool
         For ``ritz`` and ``fe``, also in three dimensions: estimate the discretisation error of every k from coarser solves (see
-        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.solid.solid_curves`).
+        `gearfe.stiffness.estimate.estimate` and `gearfe.stiffness.wide_curves.solid_curves`).
     cache : bool
         Reuse what was solved before in this process; for ``fe`` and ``fe3d`` also in an earlier one (see
         `gearfe.stiffness.cache`). False: solve everything anew, keep and displace nothing.
@@ -117,8 +117,8 @@ class Solve:
         if not isinstance(self.cache, SolvedGears):
             truth("cache", self.cache)
         check_state(self.state)
-        check_pose(self.pose)
-        check_span(self.span)
+        one_of("pose", self.pose, SHIFT)
+        one_of("span", self.span, SPANS)
         order = self.order
         if order is not None and (not is_number(order) or not 2 <= order <= 8 or order != int(order)):
             raise ValueError(f"order = {order!r}, but give a whole number from 2 to 8, or None for that of the method")
@@ -256,13 +256,7 @@ def mesh_stiffness(pair: GearPair | Case, force: Any = None, material: Any = Non
 
 
 def asked(function, pair, force, material, options):
-    """`Case` and `Solve` of the arguments of a function that takes both.
-
-    Raises
-    ------
-    TypeError
-        If it has no such argument.
-    """
+    """`Case` and `Solve` of the arguments of a function that takes both; TypeError if it has no such argument."""
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")

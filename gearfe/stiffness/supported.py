@@ -34,7 +34,7 @@ def check_tilt(case, method):
 
 
 def yielding(solve, case):
-    """`solve` of `gearfe.stiffness.plane.curve` with supports in series; loads are shared as without them.
+    """`solve` of `gearfe.stiffness.section_curves.curve` with supports in series; loads are shared as without them.
 
     Both hubs give way along the line of action and turn, by ``b (1 / radial + r_b**2 / torsion)`` of pinion and wheel per line
     load [mm per N/mm]. A constant added to all entries of a flexibility adds itself times the load to the approach, and changes

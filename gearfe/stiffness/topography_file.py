@@ -4,6 +4,8 @@ import csv
 import os
 from pathlib import Path
 
+from ..checks import one_of
+
 UNITS = {"um": 1e-3, "mm": 1.0}
 
 Topography = tuple[tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]]
@@ -31,8 +33,7 @@ def read_topography(path: str | os.PathLike[str], unit: str = "um") -> Topograph
     ValueError
         If the file is not such a table; the message names the line.
     """
-    if unit not in UNITS:
-        raise ValueError(f"unit = {unit!r}, but it must be one of {', '.join(UNITS)}")
+    one_of("unit", unit, UNITS)
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as file:
             rows = [row for row in csv.reader(file) if row]

@@ -49,10 +49,7 @@ class TransmissionError:
     def harmonics(self, count: int = 4) -> NDArray[np.float64]:
         """Amplitudes of the first mesh harmonics, by load ``(m, count)`` [m].
 
-        Raises
-        ------
-        ValueError
-            If the phases are not equidistant over whole mesh cycles, or too few.
+        ValueError if the phases are not equidistant over whole mesh cycles, or too few.
         """
         n = self.phase.size
         cycles = (self.phase[-1] - self.phase[0]) * n / (n - 1) if n > 1 else 0.0

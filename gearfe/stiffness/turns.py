@@ -32,25 +32,13 @@ def check_length(pair, span, phases):
 
 
 def over_turns(solve, phase, pair, span, differs):
-    """Curves over a span of many cycles, for a list of loads.
+    """Curves over a `span` of many cycles, for a list of loads.
 
     Cycle c brings the pinion's tooth c and the wheel's into contact. Only gears whose teeth differ tell cycles apart, so those
     that are alike are solved once and taken again.
 
-    Parameters
-    ----------
-    solve : callable
-        From the phases ``(n,)`` of one cycle to a list of `StiffnessCurve`, one for each load.
-    phase : ndarray
-        Of all cycles.
-    pair : GearPair
-    span : {"revolution", "hunting"}
-    differs : (bool, bool)
-        Whether the teeth of pinion and wheel differ from each other.
-
-    Returns
-    -------
-    list of StiffnessCurve
+    `solve` is from the phases ``(n,)`` of one cycle to a list of `StiffnessCurve`, one for each load; `phase` are those of all
+    cycles; `differs` (bool, bool) says of pinion and wheel whether their teeth differ from each other.
     """
     parts = np.split(phase, cycles_in(pair, span))
     alike = math.lcm(*(gear.z for gear, apart in zip((pair.gear_1, pair.gear_2), differs, strict=True) if apart))

@@ -7,13 +7,10 @@ import numpy as np
 
 from geometry.damage.crack import Crack
 from geometry.damage.kinds import check_crack
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 
-from ..elements.elasticity import Body
 from ..elements.fe import EDGES
-from ..elements.one_tooth import check_line_load, check_one, edge_lengths, load_at, narrow_load
+from ..elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
 from ..material import Material
 from ..threads import single
 
@@ -75,12 +72,10 @@ def stress_intensity(
     check_line_load(line_load, gear, material)
     check_crack(crack)
     edge = edge_lengths(gear, EDGES, refine)
-    arc, width = load_at(gear, radius), 0.05 * gear.m_n
-    roll = stations(gear, edge["flank"], patches=[(arc - width, arc + width, width / 4)])
-    sizes = {"fillet_size": edge["fillet"] / 2, "size": edge["near"], "far_size": edge["far"]}
-    mesh = section(gear, {crack.tooth: roll}, **sizes, cracks=[crack])
-    body = Body(mesh.mesh, material, state=state)
-    moved = line_load * body.solve(narrow_load(mesh, crack.tooth, arc, width))[:, 0]
+    edge["fillet"] /= 2
+    at = load_at(gear, radius), NARROW * gear.m_n, NARROW * gear.m_n / 4
+    mesh, body, load = narrow_section(gear, material, state, edge, at, crack.tooth, [crack])
+    moved = line_load * body.solve(load)[:, 0]
     return tip_intensity(body, moved, mesh.seams[0].faces)
 
 
@@ -88,20 +83,9 @@ def tip_intensity(body, moved, faces):
     """Stress intensity by the interaction integral over a ring of triangles around the tip.
 
     ``K = E' / 2 int (s_ij w_i,1 + t_ij u_i,1 - s_kl e_kl delta_1j) q,j dA``, with u, s the displacement and stress found, w, t, e
-    displacement, stress and strain of the unit singular field, axis 1 along the crack, q falling from 1 at half the ring's
-    radius to 0. The ring ends before the crack's mouth or bend and before any other boundary.
-
-    Parameters
-    ----------
-    body : Body
-    moved : ndarray, shape (2 nodes,)
-        Displacement [mm].
-    faces : ndarray, shape (2, n)
-        As in `geometry.mesh.mesher.Seam`.
-
-    Returns
-    -------
-    Intensity
+    displacement, stress and strain of the unit singular field, axis 1 along the crack, q falling from 1 at half the ring's radius
+    to 0. The ring ends before the crack's mouth or bend and before any other boundary. `moved` ``(2 nodes,)`` is the displacement
+    of a `Body` [mm], `faces` ``(2, n)`` as in `geometry.mesh.mesher.Seam`.
 
     References
     ----------

@@ -28,25 +28,11 @@ TO_ZERO = np.linalg.inv(np.vander(TUBES, increasing=True))[0]
 def front_intensity(points, cells, moved, material, front, ahead, normal, radius):
     """K_I, K_II and K_III at places of a crack front ``(3, k)`` [MPa sqrt(mm)].
 
-    Parameters
-    ----------
-    points : ndarray, shape (3, n)
-        Nodes [mm].
-    cells : ndarray, shape (20, m)
-        Hexahedra as of `geometry.mesh.solid.Solid`; the crack's faces have nodes of their own.
-    moved : ndarray, shape (3, n)
-        Displacements [mm].
-    material : Material
-    front : ndarray, shape (k, 3)
-        Places along the front [mm], k > 1; K is a mean with the weight of a hat from the place before to the place after.
-    ahead, normal : ndarray, shape (k, 3)
-        Unit vectors there: in the crack's plane away from the crack, and at right angles to that plane.
-    radius : float
-        Of the widest tube [mm]; it must not reach other boundaries, and six rings of elements should lie within half of it.
-
-    Returns
-    -------
-    ndarray, shape (3, k)
+    `points` and `moved` ``(3, n)`` are nodes and displacements [mm], `cells` ``(20, m)`` hexahedra as of
+    `geometry.mesh.solid.Solid`; the crack's faces have nodes of their own. `front` ``(k, 3)`` are places along the front [mm], k
+    > 1; K is a mean with the weight of a hat from the place before to the place after. `ahead`, `normal` ``(k, 3)`` are unit
+    vectors there: in the crack's plane away from the crack, and at right angles to that plane. `radius` is that of the widest
+    tube [mm]; it must not reach other boundaries, and six rings of elements should lie within half of it.
 
     References
     ----------

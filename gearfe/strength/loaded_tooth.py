@@ -6,15 +6,13 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from skfem import MeshTri
 
-from geometry.mesh.outline import stations
-from geometry.mesh.section_mesh import section
 from geometry.tooth.gear import Gear
 from geometry.tooth.profile import flank, roll_at_arc
 
 from ..checks import check_length
-from ..elements.elasticity import Body, edge_nodes, edge_shapes
+from ..elements.elasticity import edge_nodes, edge_shapes
 from ..elements.fe import EDGES
-from ..elements.one_tooth import check_line_load, check_one, edge_lengths, load_at, narrow_load
+from ..elements.one_tooth import NARROW, check_line_load, check_one, edge_lengths, load_at, narrow_section
 from ..material import Material
 from ..threads import single
 
@@ -25,12 +23,9 @@ HIGH, NEIGHBOURS = 0.9, 3  # which points of the fillet belong to the neighbourh
 
 def _solve(gear, material, state, arc, half_width, edges, refine):
     """Displacement under a unit load [N/mm], ``cos**2`` pressure over `half_width` [mm] around `arc`."""
-    edge = edge_lengths(gear, edges, refine)
-    inner = arc - half_width, arc + half_width
-    roll = stations(gear, edge["flank"], patches=[(*inner, half_width / (4 * refine))])
-    mesh = section(gear, {0: roll}, fillet_size=edge["fillet"], size=edge["near"], far_size=edge["far"])
-    body = Body(mesh.mesh, material, state=state)
-    return mesh, body, body.solve(narrow_load(mesh, 0, arc, half_width))[:, 0]
+    at = arc, half_width, half_width / (4 * refine)
+    mesh, body, load = narrow_section(gear, material, state, edge_lengths(gear, edges, refine), at)
+    return mesh, body, body.solve(load)[:, 0]
 
 
 @single
@@ -139,7 +134,7 @@ def root_stress(
     check_one(gear, material, refine)
     check_line_load(line_load, gear, material)
     check_length("half_width", half_width)
-    half_width = 0.05 * gear.m_n if half_width is None else half_width
+    half_width = NARROW * gear.m_n if half_width is None else half_width
     if not 0 < half_width <= gear.m_n:
         raise ValueError(f"half_width = {half_width} mm, but the load is narrow: give 0 < half_width <= {gear.m_n} mm")
     case = gear, material, state, load_at(gear, radius), half_width, STRESS_EDGES
@@ -151,12 +146,13 @@ def _unit_stress(gear, material, state, arc, half_width, edges, refine):
     """Largest principal stress on the fillet [MPa] under a unit load [N/mm]."""
     mesh, _, moved = _solve(gear, material, state, arc, half_width, edges, refine)
     nodes = edge_nodes(mesh.mesh, mesh.fillet[0])
-    _, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
+    shapes, slopes = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
     along = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], slopes)
     stretch = np.einsum("ned,np->dep", moved.reshape(-1, 2)[nodes], slopes)
     length = np.hypot(*along)
     stress = material.plane_modulus(state) * ((along * stretch).sum(axis=0) / length**2).ravel()
-    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(_gauss_places(mesh, nodes), axis=1)))])
+    points = np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)
+    place = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=1)))])
     return _peak(place, stress)
 
 
@@ -176,8 +172,3 @@ def _peak(place, stress):
     curve = Polynomial.fit(place[first:last] / scale, stress[first:last] / stress[top], 4)
     around = np.linspace(place[max(top - 2, first)], place[min(top + 2, last - 1)], 401) / scale
     return float(stress[top] * curve(around).max())
-
-
-def _gauss_places(mesh, nodes):
-    shapes, _ = edge_shapes(np.array([-1, 1]) / math.sqrt(3))
-    return np.einsum("dne,np->dep", mesh.mesh.doflocs[:, nodes], shapes).reshape(2, -1)

@@ -8,7 +8,7 @@ from geometry.pair.gear_pair import GearPair
 
 from ..case import Case
 from ..contact.bodies import seen_gears
-from ..contact.solid import Contact3D
+from ..contact.wide_contact import Contact3D
 from ..elements.line_load import check_spread
 from ..elements.one_tooth import check_one
 from ..material import Material

@@ -102,19 +102,10 @@ def root_stress_along_width(
 
 
 def stress_under_line(gear, roll, line_load, material, *, spread, refine=1.0) -> RootStress:
-    """`RootStress` under a load on a line of tooth 0.
+    """`RootStress` under a load on a line of tooth 0, at the roll lengths ``roll(z)`` [mm] at heights z [mm].
 
-    Parameters
-    ----------
-    gear : Gear
-    roll : callable
-        Roll length of the line at heights z [mm].
-    line_load : float or callable
-        Normal to the flank per width [N/mm], or as a function of z.
-    material : Material
-    spread : float
-        Half width of the hat over which the load is spread [mm].
-    refine : float
+    `line_load` is normal to the flank per width [N/mm], a number or a function of z; `spread` the half width [mm] of the hat over
+    which it is spread.
     """
     layer = min(LAYER * gear.m_n, gear.b / LAYERS)
     mesh = solid(

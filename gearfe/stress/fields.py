@@ -13,6 +13,7 @@ from geometry.tooth.profile import arc_at
 
 from ..elements.elasticity import Body
 from ..elements.fe import EDGES, flank_load
+from ..elements.one_tooth import edge_lengths
 from ..files import written
 from ..flexibility.hertz import contact_modulus, half_width
 from ..steps import steps
@@ -25,23 +26,10 @@ MISES = "von Mises stress [MPa]"
 class Field:
     """Displacement and stress on second-order elements.
 
-    Attributes
-    ----------
-    points : ndarray, shape (3, n)
-        Nodes [mm].
-    kind : {"triangle6", "tetra10"}
-    cells : ndarray, shape (6 or 10, m)
-        In VTK's order.
-    moved : ndarray, shape (3, n)
-        [mm].
-    stress : ndarray, shape (6, n)
-        xx, yy, zz, xy, yz, xz [MPa].
-    lines : ndarray, shape (2, k)
-        Pieces of edges worth drawing: outline, crack, rims of pits.
-    root : float
-        Largest von Mises stress on the fillets [MPa].
-    opening : float
-        Largest distance of crack faces that lie on each other without load [mm].
+    Nodes `points` ``(3, n)``, displacements `moved` ``(3, n)`` [mm], `stress` ``(6, n)`` (xx, yy, zz, xy, yz, xz) [MPa]; `cells`
+    ``(6 or 10, m)`` in VTK's order, of `kind` ``triangle6`` or ``tetra10``; `lines` ``(2, k)`` are pieces of edges worth drawing:
+    outline, crack, rims of pits. `root` is the largest von Mises stress on the fillets [MPa], `opening` the largest distance of
+    crack faces that lie on each other without load [mm].
     """
 
     points: np.ndarray
@@ -85,12 +73,9 @@ def loaded_phase(case):
 
 
 def stressed_gears(case, phase=0.0, refine=1.0):
-    """Both gears of a spur pair in mesh at `phase`, in plane strain; crack faces may pass through each other.
+    """`Field` of both gears of a spur pair in mesh at `phase`, in plane strain, pinion first, in the pinion's frame.
 
-    Returns
-    -------
-    list of Field
-        Pinion first, in the pinion's frame.
+    Crack faces may pass through each other.
     """
     pair, materials = case.pair, case.materials
     if any(case.pits):
@@ -141,7 +126,7 @@ def _placed(mesh, moved, stress, material, turn, centre, mirror):
 
 def _loaded_gear(gear, material, loads, refine, cracks):
     """Mesh a gear for contacts ``{tooth: (roll, line load, half width)}`` and solve it."""
-    edge = {name: size * gear.m_n / refine for name, size in EDGES.items()}
+    edge = edge_lengths(gear, EDGES, refine)
     rolls, arcs = {}, {}
     for tooth, (roll, _, a) in loads.items():
         top = arc_at(gear, gear.roll_a)

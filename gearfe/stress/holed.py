@@ -1,7 +1,7 @@
 """A damaged tooth with its pits as holes and its crack as a seam, under the contact load of its pair: straight second-order tets.
 
-The load is that of `gearfe.contact.solid` along the true contact lines, spread over a narrow strip to either side. The sector of
-the gear is held at the bore (or the outside of a ring) and where it was cut off.
+The load is that of `gearfe.contact.wide_contact` along the true contact lines, spread over a narrow strip to either side. The
+sector of the gear is held at the bore (or the outside of a ring) and where it was cut off.
 """
 
 import math
@@ -13,10 +13,10 @@ from geometry.mesh.holes import Holed, holed_sector, skin
 from geometry.pair.pit_lines import in_both_halves
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
-from ..contact.solid import Contact3D, pair_stiffness3d
+from ..contact.wide_contact import Contact3D, pair_stiffness3d
 from ..elements.hexahedron import assemble
 from ..elements.solver import factor, plan
-from ..elements.tetrahedron import EDGES, nodal_stress, second_order, tet_stiffness
+from ..elements.tetrahedron import EDGES, nodal_stress, nodes_of, second_order, tet_stiffness
 from ..steps import part
 from ..stiffness.supported import check_integral
 from .fields import Field
@@ -28,28 +28,15 @@ PARTS = 5  # parts along each side of a loaded triangle: it is cut into the squa
 
 @dataclass(frozen=True, slots=True)
 class Pressed:
-    """A damaged tooth under load at some phases.
+    """A damaged tooth under load at p phases: `load` ``(p,)`` on tooth 0, at right angles to its flank [N].
 
-    Attributes
-    ----------
-    sector : geometry.mesh.holes.Holed
-    nodes : ndarray, shape (3, n)
-        Vertices and edge middles [mm].
-    cells : ndarray, shape (10, m)
-        Of the gear with holes, in VTK's order.
-    contact : Contact3D
-    gear : str
-        ``pinion`` or ``wheel``.
-    load : ndarray, shape (phases,)
-        On tooth 0, at right angles to its flank [N].
-    moved : ndarray, shape (phases, 3, n)
-        Displacement [mm], nan at nodes inside of the pits.
-    stress : ndarray, shape (phases, 6, n)
-        xx, yy, zz, xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume.
-    extra : ndarray, shape (phases,)
-        By how much the removed material adds to the approach of the pair under the same loads, relative; empty if not asked for.
-        The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it less, too.
-    unknowns : int
+    `nodes` ``(3, n)`` are vertices and edge middles of the `sector` [mm], `cells` ``(10, m)`` those of the gear with holes, in
+    VTK's order. `moved` ``(p, 3, n)`` are displacements [mm], nan at nodes inside of the pits; `stress` ``(p, 6, n)`` xx, yy, zz,
+    xy, yz, xz at the nodes [MPa], mean of the tets there weighted by their volume. `gear` is ``pinion`` or ``wheel``.
+
+    `extra` ``(p,)`` says by how much the removed material adds to the approach of the pair under the same loads, relative; empty
+    if not asked for. The loads do not choose anew, which would make it less; loads spread wider than Hertz's pressure make it
+    less, too.
     """
 
     sector: Holed
@@ -65,41 +52,23 @@ class Pressed:
 
 
 def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, sizes=None, strip=None, spread=SPREAD):
-    """Solve the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
+    """`Pressed`: the damaged tooth of a pair with its pits as holes, under contact on the path of contact.
 
-    Parameters
-    ----------
-    case : Case
-        Damage of one tooth of one gear, its pits in one half if herringbone, or the same in both. Without any it is tooth 0 of
-        the pinion.
-    phases : array, optional
-        Default: the one of 16 at which the damaged tooth carries most.
-    refine, teeth, sizes
-        As of `geometry.mesh.holes.holed_sector`.
-    strip : float, optional
-        Edge length along the loaded contact lines of the damaged tooth [modules]; default: that of the flank.
-    spread : float
-        Of the load to either side of its line, as a hat [modules]; a hat of 1.2 Hertz half widths is as wide as his pressure.
-    removal : bool
-        Solve the tooth without its holes too, for `Pressed.extra`.
+    The damage is that of one tooth of one gear, its pits in one half if herringbone, or the same in both; without any it is tooth
+    0 of the pinion. `phases`: default the one of 16 at which the damaged tooth carries most. `refine`, `teeth`, `sizes` as of
+    `geometry.mesh.holes.holed_sector`; `strip` is the edge length along the loaded contact lines of the damaged tooth [modules],
+    default that of the flank; `spread` that of the load to either side of its line, as a hat [modules]: one of 1.2 Hertz half
+    widths is as wide as his pressure. With `removal` the tooth without its holes is solved too, for `Pressed.extra`.
 
-    Returns
-    -------
-    Pressed
-
-    Raises
-    ------
-    ValueError
-        If the damage is not that of one tooth, or cannot be.
-    RuntimeError
-        If a hole was not cut as it should, or the system does not fit.
+    ValueError if the damage is not that of one tooth, or cannot be. RuntimeError if a hole was not cut as it should, or the
+    system does not fit.
     """
     if not spread > 0:
         raise ValueError(f"spread = {spread}, but it is a length to either side of the contact line: give spread > 0")
     pair, materials, face, cracks, pits = case.pair, case.materials, case.runs, case.cracks, case.pits
     which = [i for i in (0, 1) if cracks[i] or pits[i]] or [0]
     if len(which) > 1 or len(cracks[which[0]]) > 1:
-        raise ValueError("give pits, one crack or both, of one tooth of one gear: holes are cut into one tooth")
+        raise ValueError("give damage of the flank, one crack or both, of one tooth of one gear: holes are cut into one tooth")
     side = which[0]
     gear, half, own_pits = _own(pair, side, face, case.groove, pits[side])
     crack = next(iter(cracks[side]), None)
@@ -115,7 +84,7 @@ def pressed_tooth(case, *, phases=None, refine=1.0, teeth=3, removal=False, size
     nodes, cells, number = second_order(sector.points, sector.cells)
     kept = cells[:, sector.plug < 0]
     loads = np.column_stack([_pressure(sector, nodes, number, found, spread) for found in lines])
-    held = _held(sector, number)
+    held = nodes_of(np.hstack([sector.faces["held"], sector.faces["sides"]]), number)
     with part("stress", 0.5, 1.0):
         moved, unknowns = _moved(nodes, kept, materials[side], held, loads)
     extra = np.zeros(0)
@@ -171,8 +140,8 @@ def _own(pair, side, face, groove, pits):
     parts = [tuple(pit for pit in pits if (pit.z > gear.b / 2) is upper) for upper in (False, True)]
     if all(parts) and not _mirrored(gear, *parts):
         raise ValueError(
-            "pits in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give those "
-            "of one"
+            "holes in both halves of a herringbone gear that are no mirror images: its halves are drawn one at a time, give "
+            "those of one"
         )
     half = int(not parts[0] and bool(parts[1]))
     pits = parts[half]
@@ -230,12 +199,6 @@ def _strips(gear, lines, edge, spread):
                 radius, angle = flank(gear, roll[load > 0])
                 out.append((np.array([*cartesian(radius, angle), z[load > 0]]), 1.5 * spread, edge))
     return out
-
-
-def _held(sector, number):
-    faces = np.hstack([sector.faces["held"], sector.faces["sides"]])
-    a, b, c = faces
-    return np.unique(np.concatenate([a, b, c, number(a, b), number(b, c), number(a, c)]))
 
 
 def _moved(nodes, cells, material, held, loads):

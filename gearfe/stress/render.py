@@ -25,13 +25,8 @@ OPENING = 0.2  # of a crack in a picture, in modules
 STEPS = (1, 2, 5)  # by which displacements are enlarged, times powers of ten
 LEAST = 40_000  # unknowns of a tooth in three dimensions at refine 1, at least; they grow with its power 2.5 to 3
 DEEP = 1.6  # modules of the body below the root circle that a picture of a tooth shows
-FINE = {
-    "tooth": 0.5,
-    "flank": 0.18,
-    "fillet": 0.22,
-    "tip": 0.1,
-    "rim": 0.3,
-}  # edge lengths of such a picture, see geometry.mesh.holes.SIZES
+# edge lengths of such a picture, see geometry.mesh.holes.SIZES
+FINE = {"tooth": 0.5, "flank": 0.18, "fillet": 0.22, "tip": 0.1, "rim": 0.3}
 STRIP = 0.08  # edge length along the contact lines of a tooth [modules], about half of the width that the load is spread over
 # corners and middles of a second-order tet (VTK's order) to eight tets
 EIGHT = ((0, 4, 6, 7), (4, 1, 5, 8), (6, 5, 2, 9), (7, 8, 9, 3), (4, 5, 6, 8), (4, 6, 7, 8), (6, 5, 9, 8), (6, 9, 7, 8))
@@ -103,13 +98,9 @@ def render_stress(
 def render_contact(case, path, *, phase=None, title=""):
     """Picture of the contact lines with their pressure on the flank, and of the load over the width (`gearfe.plot_contact`).
 
-    `case` is a `Case`; by default the phase at which the damaged tooth pair (or pair 0) carries most.
-
-    Returns
-    -------
-    dict
-        ``phase``, ``k`` [N/m], ``pressure`` (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the
-        pressure is unbounded, and the largest is that of the rest; nan if nothing else touches.
+    By default at the phase at which the damaged tooth pair (or pair 0) carries most. Gives ``phase``, ``k`` [N/m], ``pressure``
+    (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
+    is that of the rest; nan if nothing else touches.
     """
     found = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
     plot_contact(case.pair, found, path=path, pits=case.pits[0], title=title)

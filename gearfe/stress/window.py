@@ -15,13 +15,7 @@ OFFSCREEN = {"libEGL.so.1": "vtkEGLRenderWindow", "libOSMesa.so.8": "vtkOSOpenGL
 
 
 def drawing_library():
-    """Give pyvista, with a window it can open.
-
-    Raises
-    ------
-    RuntimeError
-        If pyvista, VTK or a window is missing; the message says what to install.
-    """
+    """Give pyvista, with a window it can open; RuntimeError that says what to install if it, VTK or a window is missing."""
     with _turn:
         try:
             import pyvista
@@ -52,10 +46,7 @@ def renderer_name():
 def choose_window():
     """Without a display, pick the offscreen window this machine can open: VTK itself ends the process if there is none.
 
-    Raises
-    ------
-    RuntimeError
-        If there is neither.
+    RuntimeError if there is neither.
     """
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("VTK_DEFAULT_OPENGL_WINDOW"):
         return

@@ -14,6 +14,7 @@ from geometry.mesh.mesher import gmsh_session
 from geometry.pair.gear_pair import GearPair
 
 from ..case import Case, case_of
+from ..checks import one_of
 from ..markdown import table_row
 from ..scene.load import Scene, load_scene
 from ..steps import steps
@@ -90,17 +91,13 @@ class Comparison:
         truth, doubt = reference.zones(), reference.zone_errors()
         others = {name: within(curve, self.cycle).zones() for name, curve in list(self.curves.items())[1:]}
         for zone in sorted(truth, key=lambda z: ZONES.index(z) if z in ZONES else 2):
-            yield (
-                zone,
-                truth[zone],
-                doubt.get(zone, float("nan")),
-                {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()},
-            )
+            beside = {name: (z[zone], z[zone] / truth[zone] - 1) for name, z in others.items()}
+            yield zone, truth[zone], doubt.get(zone, math.nan), beside
 
     def losses(self) -> dict[str, dict[str, float]]:
         """What damage takes of the stiffness [-] by method and zone, and at the phase where it takes most; empty if healthy."""
         two = {name: (healthy, self.curves[name]) for name, healthy in self.healthy.items()}
-        return {name: loss(*(within(one, self.cycle) for one in curves)) for name, curves in two.items()}
+        return {name: loss(*(within(curve, self.cycle) for curve in curves)) for name, curves in two.items()}
 
     @property
     def headline(self) -> str:
@@ -294,8 +291,8 @@ def _own(pair, given):
 
 def _methods(case, reference):
     """Reference and formulations for a case that have it whole, a ring's body included; why others are left out."""
-    if reference not in (None, *REFERENCES):
-        raise ValueError(f"reference = {reference!r}, but it must be one of {', '.join(REFERENCES)}")
+    if reference is not None:
+        one_of("reference", reference, REFERENCES)
     solid, ring = case.why_wide, case.pair.gear_2.internal
     if reference == REFERENCE and solid:
         raise ValueError(f"reference = {reference!r}, a transverse section, but {solid}: use 'ritz3d' or 'fe3d'")

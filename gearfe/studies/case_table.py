@@ -25,16 +25,8 @@ COST = {"fe3d": 30.0, "ritz3d": 3.0, "fe": 1.0}  # about, of a curve, in CPU sec
 class CaseCurve:
     """Stiffness over the cycle in which the damaged tooth is in the middle of its engagement.
 
-    Attributes
-    ----------
-    k : ndarray, shape (n,)
-        Of the mesh [N/m].
-    tooth : ndarray, shape (n,)
-        Of the damaged tooth's own pair: its force over the common approach [N/m].
-    seconds : float
-        What it took, when it was computed.
-    estimate : float
-        Relative error estimate of the mean; nan if there is none.
+    `k` ``(n,)`` of the mesh and `tooth` ``(n,)`` of the damaged tooth's own pair, its force over the common approach [N/m];
+    `seconds` it took, when it was computed; `estimate` of the relative error of the mean, nan if there is none.
     """
 
     k: np.ndarray
@@ -123,21 +115,11 @@ def _percent(value, form):
 
 
 def printed_beside(scene, published, reference, drops):
-    """Our values for the stiffnesses that the source of a scene prints, by id of its reference.
+    """Our values for the stiffnesses that the source of a scene prints, by id of its reference, for `judge`.
 
-    Parameters
-    ----------
-    scene : Scene
-    published, reference : dict
-        Mean stiffness [N/m] by (case, pair): by the source's own formulas and by the reference; case "healthy" without damage.
-    drops : dict
-        Largest loss of stiffness [%] by (case, pair).
-
-    Returns
-    -------
-    dict of str to dict
-        For `gearfe.scene.verdicts.judge`; the printed errors are recomputed from the printed (corrected) stiffnesses. Empty
-        without such rows.
+    By (case, pair), case "healthy" without damage: mean stiffness [N/m] by the source's own formulas (`published`) and by the
+    `reference`, and the largest loss of stiffness [%] (`drops`). The printed errors are recomputed from the printed (corrected)
+    stiffnesses. Empty without such rows.
     """
     ids = {"stiffness_analytical": published, "stiffness_fe": reference, "stiffness_reduction": drops}
     said = {one.id: {(row.case, row.pair): row.target for row in one.rows} for one in scene.references}
@@ -149,7 +131,7 @@ def printed_beside(scene, published, reference, drops):
 
 def printed_cases(scene):
     """(pair, case) of the stiffnesses that the source of a scene prints for healthy and damaged gears; none if it does not."""
-    rows = [row for one in scene.references if one.id == "stiffness_fe" for row in one.rows]
+    rows = [row for reference in scene.references if reference.id == "stiffness_fe" for row in reference.rows]
     return [(row.pair, None if row.case == "healthy" else row.case) for row in rows]
 
 
@@ -161,7 +143,7 @@ def printed_text(scene, table):
     }
     drops = {(case, pair): 100 * table.drops(pair, case, table.reference)[0] for pair, case in table.cases() if case}
     ours = printed_beside(scene, means["published"], means[table.reference], drops)
-    asked = [one for one in scene.references if one.id in ours]
+    asked = [reference for reference in scene.references if reference.id in ours]
     return text(asked, [row for one in asked for row in judge(one, ours[one.id])]) if asked else ""
 
 
@@ -171,19 +153,14 @@ def damage_cycle(chosen):
     return length / 2 - 0.5 + (np.arange(PHASES) + 0.5) / PHASES
 
 
-def _cycle(chosen, phases):
-    """Phases of tooth 0 of a scene's pair as `compare` has them, so many, or if 0 those of curves on file."""
-    return damage_phases(chosen.case(), phases) if phases else damage_cycle(chosen)
-
-
 def is_wide(chosen):
     """Whether a scene's pair needs three dimensions in any of its cases."""
     return any(chosen.case(case).why_wide for case in (None, *chosen.damage))
 
 
-def case_curve(chosen, case, method, phase, **options):
-    """`CaseCurve` of a scene's pair in a case (None: healthy) by a method; `options` as of `Solve`."""
-    known, variants, _ = fitted(method, chosen.case(case))
+def case_curve(case, method, phase, **options):
+    """`CaseCurve` of a `Case` by a method, as far as that knows it; `options` as of `Solve`."""
+    known, variants, _ = fitted(method, case)
     started = time.perf_counter()
     curve = solve(known, Solve(**{"method": method, "phases": phase, "variants": variants} | options))
     seconds = time.perf_counter() - started
@@ -194,34 +171,15 @@ def case_curve(chosen, case, method, phase, **options):
 
 
 def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
-    """Every pair and case of a scene by every method that has it.
+    """`CaseTable`: every pair and case of a scene by every method that has it.
 
     The reference is finite elements: of the section where that is the whole truth, else of the whole gears in three dimensions.
     The latter take minutes a gear: those of a built-in scene are read from the file that comes with it; without one for just
     these gears, loads and damages, the energy model `ritz3d` is the reference unless `compute` asks for them.
 
-    Parameters
-    ----------
-    scene : Scene
-        With cases of damage.
-    cases : sequence of (str, str or None), optional
-        Pairs with their cases, each pair with None (healthy) too; default all, pairs without damage too.
-    phases : int
-        Of the mesh cycle; where curves on file are read, theirs.
-    compute : bool
-        Compute three-dimensional finite elements that are not on file.
-    progress : callable, optional
-        Gets a text before each solve.
-
-    Returns
-    -------
-    CaseTable
-        Formulas that have no value for a damage have nan; a warning says why.
-
-    Raises
-    ------
-    ValueError
-        If the scene has no damage.
+    `cases` are (pair, case), each pair with None (healthy) too; default all, pairs without damage too. `phases` counts those of
+    the mesh cycle; where curves on file are read, theirs. `progress` gets a text before each solve. Formulas that have no value
+    for a damage have nan; a warning says why. ValueError if the scene has no damage.
     """
     if not any(pair.damage for pair in scene.pairs.values()):
         names = " or ".join(f"[[{name}]]" for name in DAMAGE)
@@ -234,7 +192,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
     reference = "fe3d" if solid else "ritz3d" if wide else "fe"
     methods = (*dict.fromkeys([reference, "ritz3d" if wide else "ritz"]), *SUMS)
     taken = {(key, "fe3d") for key in stored}
-    curves, cycles = {}, {name: _cycle(pair, 0 if stored else phases) for name, pair in scene.pairs.items()}
+    phases_of = damage_cycle if stored else (lambda chosen: damage_phases(chosen.case(), phases))
+    curves, cycles = {}, {name: phases_of(chosen) for name, chosen in scene.pairs.items()}
     work = [(name, case, method) for name, case in wanted for method in methods]
     cost = [0.0 if (key[:2], key[2]) in taken else COST.get(key[2], 0.1) for key in work]
     for name, case, method in steps(work, lambda key: f"{key[0]} {key[1] or 'healthy'}: {key[2]}", cost):
@@ -245,8 +204,8 @@ def case_table(scene, cases=None, *, phases=64, compute=False, progress=None):
         if progress:
             progress(f"{name} {case or 'healthy'}: {method}")
         try:
-            tooth = scene.case(name, case).first_tooth or 0
-            curves[name, case, method] = case_curve(scene.pairs[name], case, method, cycles[name] - tooth)
+            given = scene.case(name, case)
+            curves[name, case, method] = case_curve(given, method, cycles[name] - (given.first_tooth or 0))
         except ValueError as error:
             if METHODS[method].converged:
                 raise

@@ -11,12 +11,7 @@ from ..stiffness.transmission_error import TransmissionError, transmission_error
 def harris(case: Case, **options: Any) -> tuple[TransmissionError, TransmissionError | None]:
     """Transmission error of a pair as it is and, if its flanks are modified, by the same method of the pair without `flanks`.
 
-    Parameters
-    ----------
-    case : Case
-        Under several loads.
-    **options
-        As of `gearfe.Solve`.
+    Of a case under several loads; `options` as of `gearfe.Solve`.
     """
     found = transmission_error(case, **options)
     if not case.flanks:
@@ -28,12 +23,7 @@ def harris(case: Case, **options: Any) -> tuple[TransmissionError, TransmissionE
 def harris_table(found: TransmissionError, plain: TransmissionError | None, r_b: float) -> str:
     """Peak-to-peak, beside that of plain involutes if given, mean and first harmonics by load, as text [um].
 
-    Parameters
-    ----------
-    found, plain : TransmissionError
-        As of `harris`.
-    r_b : float
-        Base radius of the pinion [mm], for its torque.
+    `found` and `plain` as of `harris`; `r_b` is the base radius of the pinion [mm], for its torque.
     """
     beside = found.peak_to_peak if plain is None else plain.peak_to_peak
     head = "" if plain is None else "  of involutes"

@@ -80,14 +80,8 @@ def zone_table(curve: StiffnessCurve) -> str:
 def beside_health(curve: StiffnessCurve, case: Case, how: Solve) -> str:
     """A damaged pair's curve beside that of the same pair without damage, by the same method, in words and a table by zone.
 
-    Parameters
-    ----------
-    curve : StiffnessCurve
-        Over the whole engagement of the damaged tooth (`engaged_phases`).
-    case : Case
-        With its damage.
-    how : Solve
-        As the curve was solved, its phases a number per mesh cycle.
+    The curve is over the whole engagement of the damaged tooth (`engaged_phases`), solved as `how` says, whose phases are a
+    number per mesh cycle.
     """
     cycle = damage_phases(case, cast(int, how.phases))
     healthy = solve(case.healthy, replace(how, phases=cycle, span="cycle", error=False))
@@ -148,17 +142,8 @@ def kind_of(damage: Mapping[str, Iterable[Damage]] | None) -> str:
 
 
 def headline(said: str, kind: str, found: Mapping[str, float], doubt: Mapping[str, float]) -> str:
-    """One sentence on what damage takes.
+    """One sentence on what damage takes; `said`, `kind`, `found`, `doubt` of `told_damage`, `kind_of`, `loss`, `loss_errors`.
 
-    Parameters
-    ----------
-    said, kind : str
-        As of `told_damage` and `kind_of`.
-    found, doubt : dict of str to float
-        As of `loss` and `loss_errors`.
-
-    Examples
-    --------
     >>> headline("2 mm crack at 60 degrees", "cracked", {"single": 0.158, "mean": 0.0951}, {"single": 0.0021})
     '2 mm crack at 60 degrees: the mesh is 15.8 ± 0.3 % softer where the cracked tooth carries alone; 9.5 % in the mean'
     """

@@ -58,13 +58,8 @@ class ModelFile:
     def total(self, pair: GearPair, phase: ArrayLike) -> NDArray[np.float64]:
         """Mesh stiffness at mesh phases, as the file has it: [N/m], or [N/m per m] if `per_width`.
 
-        Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the
-        same side counts.
-
-        Raises
-        ------
-        ValueError
-            If the rows do not cover one mesh cycle, cover more than one, or are more than `COARSEST` apart.
+        Linear between rows, never across the phases at which a pair enters or leaves: beside them the nearest row on the same
+        side counts. ValueError if the rows do not cover one mesh cycle, cover more than one, or are more than `COARSEST` apart.
         """
         cycle = 2 * math.pi / pair.gear_1.z if self.abscissa == "angle" else 1.0
         x = self.x / cycle
@@ -116,10 +111,7 @@ class ModelFile:
     def single(self, pair: GearPair, radius: ArrayLike) -> NDArray[np.float64]:
         """Stiffness of one tooth pair touching at `radius` on the pinion [mm], linear between rows; units as `total`.
 
-        Raises
-        ------
-        ValueError
-            If the rows do not cover the path of contact or are more than `COARSEST` of it apart.
+        ValueError if the rows do not cover the path of contact or are more than `COARSEST` of it apart.
         """
         low, high = np.hypot(pair.gear_1.r_b, pair.path)
         if self.x[0] > low + 1e-3 or self.x[-1] < high - 1e-3:

@@ -51,23 +51,10 @@ OwnModel = Callable[[NDArray[np.float64]], NDArray[np.float64]] | PairModel | Ow
 def own_models(models, taken=()):
     """Models by name; files are read.
 
-    Parameters
-    ----------
-    models : sequence or dict
-        Functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the whole
-        width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of tables
-        (see `read_model`) or `ModelFile`; the keys of a dict are the names.
-    taken : sequence of str
-        Names that no model may have.
-
-    Returns
-    -------
-    dict of str to callable, PairModel, OwnFlexibility or ModelFile
-
-    Raises
-    ------
-    ValueError
-        If something is none of these, cannot be read, or two share a name.
+    Models are functions ``f(phase) -> k`` (mesh phases from 0 to 1, ndarray of shape (n,), to the total stiffness [N/m] over the
+    whole width), `PairModel`, `OwnFlexibility`, ``"file.py:name"`` of one of these in a Python file, which is run, paths of
+    tables (see `read_model`) or `ModelFile`; the keys of a dict are the names, and no model may have one of `taken`. ValueError
+    if something is none of these, cannot be read, or two share a name.
     """
     if callable(models) or isinstance(models, (str, os.PathLike, PairModel, OwnFlexibility, ModelFile)):
         raise ValueError(f"models = {models!r}, but give a list, models=[...], or a dict, models={{'name': ...}}")
@@ -121,26 +108,11 @@ def _name(model, number):
 
 
 def own_curve(name, model, pair, reference):
-    """Curve of an own model at the phases and the load of a reference curve.
+    """`StiffnessCurve` of an own model, as `own_models` gives it, at the phases and the load of a reference curve.
 
-    Parameters
-    ----------
-    name : str
-    model : callable, PairModel, OwnFlexibility or ModelFile
-        As `own_models` gives it.
-    pair : GearPair
-    reference : StiffnessCurve
-
-    Returns
-    -------
-    StiffnessCurve
-        ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only
-        their total. An `OwnFlexibility` gives all of it, by `mesh_stiffness`.
-
-    Raises
-    ------
-    ValueError
-        If the model fails, or k has the wrong shape or is not finite and positive; if a file does not cover what is asked.
+    ``k_tangent = k`` and ``lte = F / k``; pressures are nan, and so are the forces of the pairs if the model gives only their
+    total. An `OwnFlexibility` gives all of it, by `mesh_stiffness`. ValueError if the model fails, or k has the wrong shape or is
+    not finite and positive; if a file does not cover what is asked.
     """
     if isinstance(model, OwnFlexibility):
         materials = tuple(Material(**one) for one in reference.meta["materials"])

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..case import Case
-from ..contact.solid import Contact3D
+from ..contact.wide_contact import Contact3D
 from ..pictures.contact_plot import plot_contact
 from ..stiffness.pattern import contact_pattern
 from .losses import damage_phases
@@ -49,18 +49,12 @@ class Pattern:
 
 
 def pattern_of(case: Case, phases: int = 24) -> Pattern:
-    """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one.
-
-    Raises
-    ------
-    ValueError
-        If it can not be solved.
-    """
+    """Contact pattern of a case, with its damaged tooth in the middle of its engagement if it has one."""
     contact = contact_pattern(case, phases=damage_phases(case, phases) if case.damaged else phases)
     pressures = [np.where(np.isnan(cells.pressure), -math.inf, cells.pressure) for cells in contact.cells]
     most = int(np.argmax([own.max() for own in pressures]))
     cells, at = contact.cells[most], int(np.argmax(pressures[most]))
-    corners = sum(bool(((one.corner > 0) & (one.load > 0)).any()) for one in contact.cells)
+    corners = sum(bool(((cell.corner > 0) & (cell.load > 0)).any()) for cell in contact.cells)
     load = face_load(contact)[1]
     return Pattern(
         contact, float(pressures[most][at]), float(contact.phase[most]), math.hypot(case.pair.gear_1.r_b, cells.roll_1[at]),

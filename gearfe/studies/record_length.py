@@ -6,29 +6,18 @@ from ..signal.indicators import LOBES
 
 
 def resolving_seconds(fault, turning=None, carrier=None):
-    """Seconds of a record that resolve the lines of a fault, with Hann's window.
+    """Seconds of a record that resolve the lines of a fault, with Hann's window; 0 without a fault.
 
     ::
 
-        T = max(2 LOBES / s, LOBES / d)
+    T = max(2 LOBES / s, LOBES / d)
 
     A line fills `LOBES` bins of 1 / T. The lines of a fault stand s apart, the turns of its gear (without, the fault's own
     frequency): from 2 LOBES / s on half of the bins between them show the noise, which tells what is a line. And from the
     multiples of the turns of gear and carrier that are nearest to it the fault's line stands d away.
 
-    Parameters
-    ----------
-    fault, turning, carrier : float, optional
-        How often the faulty tooth meshes, turns of its gear against the carrier, turns of the carrier [Hz].
-
-    Returns
-    -------
-    float
-        [s]; 0 without a fault.
-
-    Examples
-    --------
-    A sun tooth of 21/31/84 teeth, 40 Hz: its gear turns at 13.33 Hz, the carrier at 3.33 Hz.
+    Given is how often the faulty tooth meshes, the turns of its gear against the carrier, and those of the carrier [Hz]. A sun
+    tooth of 21/31/84 teeth, 40 Hz: its gear turns at 13.33 Hz, the carrier at 3.33 Hz.
 
     >>> round(resolving_seconds(40.0, 40 / 3, 10 / 3), 3)
     1.2

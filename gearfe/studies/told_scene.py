@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import fields
 
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
@@ -15,10 +16,12 @@ from ..units import in_newton_per_um
 from .losses import told_damage
 
 SIDES = ("pinion", "wheel")
-AMOUNTS = {  # of a flank, in um
+WORDS = {  # for amounts of a flank, in um, whose names do not say enough
     "crowning": "profile crowning", "slope": "profile slope", "lead_crowning": "crowning along the width",
-    "lead_slope": "slope along the width", "twist": "twist", "eccentricity": "eccentricity",
+    "lead_slope": "slope along the width",
 }  # fmt: skip
+AMOUNTS = [own.name for own in fields(Flank) if own.default == 0.0 and not own.name.startswith(("tip_", "root_", "end_"))]
+AMOUNTS.remove("eccentric_tooth")
 OTHERS = {"table": "a measured profile", "topography": "a measured flank", "pitch": "pitch deviations", "wear": "wear",
           "tooth_scale": "teeth that differ"}  # fmt: skip
 
@@ -101,7 +104,8 @@ def told_flank(flank: Flank, gear: Gear) -> str:
             shape = {1.0: "linear", 2.0: "parabolic"}.get(exponent := getattr(flank, f"{end}_exponent"), f"power {exponent:g}")
             at = f"from a diameter of {2 * math.hypot(gear.r_b, start):.5g} mm on, over {abs(roll - start):.3g} mm of roll"
             said.append(f"{end} relief {relief:.4g} um, {shape}, {at}")
-    said += [f"{word} {1e3 * value:.4g} um" for name, word in AMOUNTS.items() if (value := getattr(flank, name))]
+    amounts = {name: 1e3 * getattr(flank, name) for name in AMOUNTS}
+    said += [f"{WORDS.get(name, name)} {value:.4g} um" for name, value in amounts.items() if value]
     if any(flank.end_relief if isinstance(flank.end_relief, tuple) else (flank.end_relief,)):
         said.append("end relief")
     said += [f"tip {edge} {value:g} mm" for edge in ("rounding", "chamfer") if (value := getattr(flank, f"tip_{edge}"))]
@@ -119,7 +123,7 @@ def _start(flank: Flank, end: str, gear: Gear) -> float:
 
 def _held(held: Support | Shaft) -> str:
     if isinstance(held, Shaft):
-        parts = ", ".join(f"{one.length:g} mm of {one.diameter:g} mm" for one in held.segments)
+        parts = ", ".join(f"{segment.length:g} mm of {segment.diameter:g} mm" for segment in held.segments)
         places = " and ".join(f"{at:g}" for at in held.bearings)
         stiff = " and ".join("rigid" if math.isinf(one) else f"{1e-3 * one:g} N/um" for one in held.bearing_stiffness)
         whole = ", one piece" if held.integral else ""

@@ -55,7 +55,7 @@ class Analysis:
     @property
     def too_short(self):
         """What to do if the record is too short to resolve the lines of the fault; empty if it is not."""
-        return too_short(min(one.duration for one in self.signals.values()), self.resolving)
+        return too_short(min(signal.duration for signal in self.signals.values()), self.resolving)
 
     @property
     def unit(self):
@@ -165,25 +165,10 @@ def _risen(found: Demodulated, name, before):
 
 
 def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progress=None):
-    """Responses of a scene's machine, healthy and, if asked for, in a case of damage.
+    """`Response` of a scene's machine by case: ``"healthy"`` and, if asked for, a case of damage.
 
-    Parameters
-    ----------
-    scene : Scene
-    case : str, optional
-    duration : float
-        Kept [s], from when the free vibrations have fallen to a thousandth (`recorded`).
-    method : str
-        Of `gearfe.simulate`.
-    phases : int
-        Of the stiffness curves, per mesh cycle.
-    progress : callable, optional
-        Of `gearfe.simulate`.
-
-    Returns
-    -------
-    dict of str to Response
-        ``"healthy"`` and the case.
+    `duration` [s] is kept, from when the free vibrations have fallen to a thousandth (`recorded`); `phases` are those of the
+    stiffness curves, per mesh cycle; `method` and `progress` as of `gearfe.simulate`.
     """
     check_run(duration, method)
     cases = {name for pair in scene.pairs.values() for name in pair.damage}
@@ -191,7 +176,7 @@ def responses(scene, case=None, *, duration=1.0, method="fast", phases=64, progr
         raise ValueError(f"no case {case!r} in scene {scene.name}; it has {', '.join(sorted(cases)) or 'none'}")
     found = [one for pair in scene.pairs.values() for own in pair.damage.get(case, {}).values() for one in own]
     damage = [] if scene.machine.get("contact") == "impact" else found
-    along = not all(one.through for one in damage)
+    along = not all(hurt.through for hurt in damage)
     curves = "ritz3d" if along else "auto"  # one method for what is compared
     names = ("healthy", *([case] if case else []))
     with part("", 0.0, 0.5):
@@ -216,27 +201,13 @@ def check_run(duration, method="fast"):
 
 
 def recorded(machine, duration, rate, *, method="fast", start=0.0, progress=None):
-    """Response of a machine from when the free vibrations that its start sets off have died out.
+    """`Response` of a machine from when the free vibrations that its start sets off have died out.
 
     The time left out, by the fast path, is that in which the least damped mode falls to `FREE`, meshes at their mean stiffness.
-    The run begins before and ends after what is kept, so that its filter has all it looks at.
-    ``stats["settled"]`` is that time [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take longer
-    than `LONGEST`, or for ever.
+    The run begins before and ends after what is kept, so that its filter has all it looks at. ``stats["settled"]`` is that time
+    [s], ``stats["free"]`` what is left of that mode: above `FREE` where it would take longer than `LONGEST`, or for ever.
 
-    Parameters
-    ----------
-    machine : Machine
-    duration, rate : float
-        Of what is kept [s, Hz].
-    method : str
-    progress : callable, optional
-        Of `gearfe.simulate`.
-    start : float
-        Time at which the machine starts [s]: where its damaged tooth is then.
-
-    Returns
-    -------
-    Response
+    `duration` [s] and `rate` [Hz] are those of what is kept; at `start` [s] the machine starts: where its damaged tooth is then.
     """
     decay, margin = slowest_decay(machine), REACH / rate
     need = -math.log(FREE) / decay if decay else math.inf
@@ -263,18 +234,9 @@ def slowest_decay(machine):
 
 
 def analysis(found, channel=None):
-    """Spectrum lines and indicators of a channel of `responses`.
+    """`Analysis` of a channel of `responses`, by default the force of the first mesh of the driven stage.
 
-    Parameters
-    ----------
-    found : dict of str to Response
-        Of ``"healthy"`` alone no lines of a fault are looked for: there is none.
-    channel : str, optional
-        Default: the force of the first mesh of the driven stage.
-
-    Returns
-    -------
-    Analysis
+    Of ``"healthy"`` alone no lines of a fault are looked for: there is none.
     """
     first = next(iter(found.values()))
     if not first.machine.stages:
@@ -292,20 +254,10 @@ def analysis(found, channel=None):
 
 
 def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="signal"):
-    """Spectrum lines and indicators of signals, computed or measured.
+    """`Analysis` of signals by case, computed or measured, the first the healthy one.
 
-    Parameters
-    ----------
-    signals : dict of str to Signal
-        By case, the first the healthy one.
-    mesh, fault, turning, carrier : float, optional
-        Frequencies [Hz] of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one of both
-        is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
-    channel : str
-
-    Returns
-    -------
-    Analysis
+    Frequencies [Hz] are those of the mesh, of the faulty tooth, of the gear that has it against the carrier (lines ``f_r``; one
+    of both is enough), and of the carrier. Lines of the carrier that the spectrum cannot part from others are left out.
     """
     for name, value in {"mesh": mesh, "fault": fault, "turning": turning, "carrier": carrier}.items():
         if value is not None and not (isinstance(value, Real) and 0 < value < math.inf):

@@ -5,8 +5,8 @@ the axial distance from its centre along the tooth trace. A kind of hollow (`Pit
 
 - `axes`, `angle`: half extents [mm] along the profile and along the width before it is turned, and by how much [rad];
 - `reach`: half extents along the profile and along the width [mm];
-- ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``borders(u, w)``: polynomials that are
-  zero where a line leaves it; ``along(p, q, dp, dq)``: where straight lines lie in it, in units of its half extents;
+- ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
+  straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
 - `kinks`: u and w (two tuples) where its outline is not smooth between its ends; ``edge()``: its outline;
 - ``drawn(centre, axes)``: its outline in space by curves, as `geometry.mesh.mesher.tetrahedra` takes them.
 """
@@ -14,7 +14,6 @@ the axial distance from its centre along the tooth trace. A kind of hollow (`Pit
 import math
 
 import numpy as np
-from numpy.polynomial import Polynomial, polynomial
 
 from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 
@@ -73,34 +72,44 @@ def check_hollows(gear, hollows):
     Hollows may cross the tip edge and the end faces, and may overlap; what reaches below the form circle is not on the flank and
     is left out.
     """
-    for hollow in hollows:
-        noun = hollow.nouns[0]
+    for one in hollows:
+        noun = one.nouns[0]
         low, high = sorted((gear.r_form, gear.r_a))
-        if not low <= hollow.radius <= high:
+        if not low <= one.radius <= high:
             raise ValueError(
-                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
+                f"{noun} at radius = {one.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
                 f"put the {noun}'s centre there"
             )
-        if not 0 <= hollow.z <= gear.b:
-            raise ValueError(f"{noun} at z = {hollow.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
-        radius, angle = flank(gear, rolls(gear, hollow)[1])
+        if not 0 <= one.z <= gear.b:
+            raise ValueError(f"{noun} at z = {one.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
+        radius, angle = flank(gear, rolls(gear, one)[1])
         half = float(radius * math.sin(angle))
-        if hollow.depth >= half:
+        if one.depth >= half:
             raise ValueError(
-                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
+                f"{noun} of depth = {one.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
                 "upper end: make it shallower or put it nearer the root"
             )
 
 
 def intervals(gear, hollows, arc):
-    """Axial intervals the hollows take from the flank at profile arcs `arc` [mm] (of `arc_at`; nan is off the flank).
+    """Axial intervals the hollows take from the flank at profile arcs `arc`.
 
-    Two arrays ``(hollows, *arc.shape)``: their ends [mm] within 0..b, equal where the hollow takes nothing.
+    Parameters
+    ----------
+    gear : Gear
+    hollows : sequence of Pit
+    arc : ndarray
+        As of `geometry.tooth.profile.arc_at` [mm]; nan is off the flank.
+
+    Returns
+    -------
+    low, high : ndarray, shape (hollows, *arc.shape)
+        Ends [mm] within 0..b, equal where the hollow takes nothing.
     """
     arc = np.asarray(arc, dtype=float)
     low, high = np.zeros((2, len(hollows), *arc.shape))
-    for k, hollow in enumerate(hollows):
-        low[k], high[k] = (np.clip(end, 0, gear.b) for end in hollow.span(arc - centre_arc(gear, hollow)))
+    for k, one in enumerate(hollows):
+        low[k], high[k] = (np.clip(end, 0, gear.b) for end in one.span(arc - centre_arc(gear, one)))
     return low, high
 
 
@@ -117,46 +126,6 @@ def union_length(low, high):
 def lost_width(gear, hollows, arc):
     """Width [mm] the hollows of one flank take away at profile arcs `arc` [mm]: length of the union of `intervals`."""
     return union_length(*intervals(gear, hollows, arc))
-
-
-def crossing(gear, hollow, roll, z):
-    """Where a straight contact line runs through a hollow.
-
-    Parameters
-    ----------
-    gear : Gear
-    hollow : Pit or Spall
-    roll, z : (float, float)
-        Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
-
-    Returns
-    -------
-    list of (float, float)
-        Ranges of t inside the hollow; the profile arc is quadratic in t.
-    """
-    slope, reach = z[1] - z[0], hollow.reach[1]
-    change = (roll[1] - roll[0]) / slope
-    w = Polynomial([0.0, reach])  # of v, which is between -1 and 1 in the hollow, whatever the line's length
-    u = gear.outward / (2 * gear.r_b) * Polynomial([roll[0] + change * (hollow.z - z[0]), change * reach]) ** 2
-    u -= centre_arc(gear, hollow)
-    met = np.concatenate([_real_roots(border.coef) for border in hollow.borders(u, w)])
-    places = np.unique([-1.0, *met[np.abs(met) < 1], 1.0])
-    middles = (places[1:] + places[:-1]) / 2
-    ends = []
-    for first, last, inside in zip(places[:-1], places[1:], hollow.covers(u(middles), w(middles)), strict=True):
-        if inside and ends and ends[-1][1] == first:
-            ends[-1][1] = last
-        elif inside:
-            ends.append([first, last])
-    parts = [np.clip((hollow.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in ends]
-    return [(float(t.min()), float(t.max())) for t in parts if t.max() > t.min()]
-
-
-def _real_roots(coefficients):
-    size = np.abs(coefficients)
-    there = np.flatnonzero(size > 1e-15 * size.max())
-    roots = polynomial.polyroots(coefficients[: there[-1] + 1] if there.size else [1.0])
-    return roots.real[np.abs(roots.imag) < 1e-9]
 
 
 def in_circle(p, q, dp, dq, flat):

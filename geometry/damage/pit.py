@@ -1,17 +1,17 @@
 """`Pit`: an elliptic pit on a flank, and where lines cross it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Integral
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from ..checks import is_whole
 from ..tooth.gear import Gear
-from .given import check_hollow
-from .hollow import doubts, in_circle, profile
+from .given import finite, tooth_and_side
+from .hollow import centre_arc, doubts, in_circle, profile
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -70,9 +70,19 @@ class Pit:
 
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
-        check_hollow(self, ("radius", "z", "depth", "angle"), "axes", "semi-axes")
-        if not min(self.axes) > 0:
-            raise ValueError(f"axes = {self.axes}, but they must be positive [mm]")
+        for name in ("radius", "z", "depth", "angle"):
+            object.__setattr__(self, name, finite("pit", name, getattr(self, name)))
+        try:
+            axes = tuple(self.axes)
+        except TypeError:
+            axes = ()
+        if len(axes) != 2:
+            raise ValueError(f"axes = {self.axes!r}, but give two semi-axes [mm]: along the profile, along the width")
+        object.__setattr__(self, "axes", tuple(finite("pit", "axes", value) for value in axes))
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+        for name, value in (("radius", self.radius), ("depth", self.depth), ("axes", min(self.axes))):
+            if not value > 0:
+                raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
         if not (min(self.axes) >= LEAST and max(self.axes) <= LONGEST):
             raise ValueError(f"axes = {self.axes} mm, but a semi-axis lies between {LEAST:g} and {LONGEST:g} mm: it is squared")
         if not abs(self.angle) <= math.pi:
@@ -137,19 +147,55 @@ class Pit:
         """Where lines ``(p + t dp, q + t dq)``, in units of the semi-axes, are in it: from t to t, equal where nowhere."""
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
-    def borders(self, u: Polynomial, w: Polynomial) -> list[Polynomial]:
-        """Polynomials that vanish where a line ``(u, w)`` from its centre [mm] meets its edge."""
+    def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
+        """Where a straight contact line runs through it.
+
+        Parameters
+        ----------
+        gear : Gear
+        roll, z : (float, float)
+            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
+
+        Returns
+        -------
+        list of (float, float)
+            Ranges of t inside the pit; at most two, because the profile arc is quadratic in t.
+        """
         across, mixed, along = self.form
-        return [across * w**2 + 2 * mixed * u * w + along * u**2 - 1]
+        slope = z[1] - z[0]
+        reach = self.reach[1]
+        # in v = (z - self.z) / reach, which is between -1 and 1 in the pit, whatever the line's length
+        change = (roll[1] - roll[0]) / slope
+        at = roll[0] + change * (self.z - z[0])
+        sign = gear.outward / (2 * gear.r_b)
+        u = np.array([sign * at**2 - centre_arc(gear, self), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
+        w = np.array([0.0, reach])
+        inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
+        inside[0] -= 1.0
+        inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
+        found = np.polynomial.polynomial.polyroots(inside)
+        found = found.real[np.abs(found.imag) < 1e-9]
+        places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
+        parts = zip(places[:-1], places[1:], strict=True)
+        kept = [(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0]
+        ends = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
+        return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
 
 
 def pit_row(count, first, last, **numbers):
-    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `numbers` as of `Pit`."""
-    check_count(count)
+    """Return `count` equal pits with centres evenly from z = `first` to `last` [mm]; `numbers` as of `Pit`.
+
+    Raises
+    ------
+    ValueError
+        If `count` is not a whole number from 1 to `MOST`: contact lines are cut at every pit.
+    """
+    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
+        raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
     return [Pit(z=float(z), **numbers) for z in np.linspace(first, last, count)]
 
 
-def check_count(count):
-    """ValueError unless the number of pits in a row is from 1 to `MOST`: contact lines are cut at every pit."""
-    if not (is_whole(count) and 1 <= count <= MOST):
-        raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
+def _times(a, b, size):
+    """Product of two polynomials, padded."""
+    out = np.convolve(a, b)
+    return np.append(out, np.zeros(size - out.size))

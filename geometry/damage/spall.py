@@ -1,16 +1,16 @@
 """`Spall`: a spall of rectangular outline with rounded corners on a flank, and where lines cross it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
-from .given import check_hollow
-from .hollow import doubts, in_circle, profile
+from .given import finite, tooth_and_side
+from .hollow import centre_arc, doubts, in_circle, profile
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
@@ -67,7 +67,16 @@ class Spall:
 
     def __post_init__(self) -> None:
         """Refuse contradictory descriptions."""
-        check_hollow(self, ("radius", "z", "depth", "corner"), "sides", "lengths")
+        sides = self.sides if isinstance(self.sides, (tuple, list)) else ()
+        if len(sides) != 2:
+            raise ValueError(f"sides = {self.sides!r}, but give two lengths [mm]: along the profile, along the width")
+        for name in ("radius", "z", "depth", "corner"):
+            object.__setattr__(self, name, finite("spall", name, getattr(self, name)))
+        object.__setattr__(self, "sides", tuple(finite("spall", "sides", side) for side in sides))
+        object.__setattr__(self, "tooth", tooth_and_side(self.tooth, self.side))
+        for name in ("radius", "depth"):
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name} = {getattr(self, name)}, but it must be positive [mm]")
         if not (min(self.sides) >= LEAST and max(self.sides) <= LONGEST):
             raise ValueError(f"sides = {self.sides} mm, but a side is from {LEAST:g} to {LONGEST:g} mm long")
         if not 0 <= self.corner <= min(self.sides) / 2:
@@ -153,13 +162,60 @@ class Spall:
         low, high = np.where(there, low, np.inf).min(axis=0), np.where(there, high, -np.inf).max(axis=0)
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
-    def borders(self, u: Polynomial, w: Polynomial) -> list[Polynomial]:
-        """Polynomials that vanish where a line ``(u, w)`` from its centre [mm] meets a side along it or a corner's circle."""
+    def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
+        """Where a straight contact line runs through it.
+
+        Parameters
+        ----------
+        gear : Gear
+        roll, z : (float, float)
+            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
+
+        Returns
+        -------
+        list of (float, float)
+            Ranges of t inside the spall, between places where the line meets a side or a corner's circle.
+        """
+        slope, reach = z[1] - z[0], self.axes[1]
+        change = (roll[1] - roll[0]) / slope
+        # in v = (z - self.z) / reach, which is between -1 and 1 in the spall, whatever the line's length
+        one = np.array([1.0, 0.0, 0.0])
+        u = (
+            gear.outward / (2 * gear.r_b) * _square(roll[0] + change * (self.z - z[0]), change * reach)
+            - centre_arc(gear, self) * one
+        )
         inner = [half - self.corner for half in self.axes]
-        sides = [u - sign * half for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
-        if not self.corner:
-            return sides
-        return sides + [(u - i * inner[0]) ** 2 + (w - j * inner[1]) ** 2 - self.corner**2 for i in (-1, 1) for j in (-1, 1)]
+        limits = [u - sign * half * one for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
+        for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
+            circle = _square(*(u - i * inner[0] * one))
+            circle[:3] += _square(-j * inner[1], reach) - self.corner**2 * one
+            limits.append(circle)
+        found = np.concatenate([_roots(limit) for limit in limits])
+        places = np.unique([-1.0, *found[np.abs(found) < 1], 1.0])
+        middles = (places[1:] + places[:-1]) / 2
+        there = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
+        ends: list[list[float]] = []
+        for first, last, inside in zip(places[:-1], places[1:], there, strict=True):
+            if inside and ends and ends[-1][1] == first:
+                ends[-1][1] = last
+            elif inside:
+                ends.append([first, last])
+        parts = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in ends]
+        return [(float(t.min()), float(t.max())) for t in parts if t.max() > t.min()]
+
+
+def _square(*coefficients):
+    """Coefficients of the square of a polynomial."""
+    return np.convolve(coefficients, coefficients)
+
+
+def _roots(coefficients):
+    """Real roots of a polynomial, if it may have some between -1 and 1."""
+    size = np.abs(coefficients)
+    if size[0] > size[1:].sum() or not size.any():
+        return np.zeros(0)
+    found = np.polynomial.polynomial.polyroots(coefficients[: np.flatnonzero(size > 1e-15 * size.max())[-1] + 1])
+    return found.real[np.abs(found.imag) < 1e-9]
 
 
 def _in_box(p, q, dp, dq, wide, high):

@@ -173,11 +173,11 @@ def _check_volume(gear, pits, volumes, made):
     missing = [k for k in range(len(pits)) if not (made.plug == k).any()]
     if not (abs(cut - want) <= CUT * want and abs(meshed - cut) <= MESHED * cut):  # nan fails too
         raise RuntimeError(
-            f"the pits should take {want:.6g} mm**3 from the tooth of z = {gear.z}, but {cut:.6g} mm**3 were cut and "
+            f"the holes should take {want:.6g} mm**3 from the tooth of z = {gear.z}, but {cut:.6g} mm**3 were cut and "
             f"{meshed:.6g} mm**3 meshed"
-            + (f"; nothing of pit {missing[0]}" if missing else "")
+            + (f"; nothing of hole {missing[0]}" if missing else "")
             + ": a boolean operation failed or "
-            "the mesh is too coarse; change refine, or move the pits by a little"
+            "the mesh is too coarse; change refine, or move the holes by a little"
         )
 
 

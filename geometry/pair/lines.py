@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..damage.hollow import crossing, rolls, union_length
+from ..damage.hollow import rolls, union_length
 from ..kept import keeping
 from .gear_pair import GearPair
 
@@ -38,11 +38,19 @@ class Band(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Lines:
-    """Contact lines of a pair at some phases, in its `bands`.
+    """Contact lines at some phases.
 
-    `order` (pairs,) are the numbers of the tooth pairs, as of `geometry.pair.contacts.Contacts`. Arrays of shape (phases,
-    pairs, bands): `low` and `high` the heights [mm] between which a pair touches, equal where it does not; `roll_0` the
-    pinion's roll length [mm] that the line, prolonged, has at z = 0.
+    Attributes
+    ----------
+    pair : GearPair
+    bands : tuple of Band
+    phase : ndarray, shape (phases,)
+    order : ndarray, shape (pairs,)
+        Numbers of the tooth pairs, as of `geometry.pair.contacts.Contacts`.
+    low, high : ndarray, shape (phases, pairs, bands)
+        Heights [mm] between which a pair touches; equal where it does not.
+    roll_0 : ndarray, shape (phases, pairs, bands)
+        The pinion's roll length [mm] that the line, prolonged, has at z = 0.
     """
 
     pair: GearPair
@@ -86,10 +94,21 @@ class Removed:
 
 
 def halves(pair, face, groove=0.0):
-    """Parts of the common width of both gears with one hand of helix, each from its outer end to its inner one: heights [mm].
+    """Parts of the common width of both gears with one hand of helix, each from its outer end to its inner one.
 
-    A ``spur`` or ``helical`` face is one part, the whole width from z = 0; a ``herringbone`` face two mirrored ones of width
-    ``(b - groove) / 2`` left and right of a relief `groove` [mm] in the middle.
+    Parameters
+    ----------
+    pair : GearPair
+    face : {"spur", "helical", "herringbone"}
+        ``spur`` and ``helical``: one part, the whole width from z = 0. ``herringbone``: two mirrored ones of width
+        ``(b - groove) / 2`` left and right of a relief groove in the middle.
+    groove : float
+        Its width [mm].
+
+    Returns
+    -------
+    list of (float, float)
+        Heights [mm].
 
     Raises
     ------
@@ -110,11 +129,20 @@ def halves(pair, face, groove=0.0):
 
 
 def face_bands(pair, face="helical", groove=0.0):
-    """Bands of the face: the `halves` of a pair as a tuple of `Band`.
+    """Bands of the face, as `Band`, of the `halves` of a pair.
 
     The pinion's beta is that of the half at z = 0, and the phase is counted at z = 0, of a herringbone pair at both outer ends:
-    with beta > 0 the inner ends touch first, with beta < 0 the outer ones. A helical pair of beta = 0 is a spur one; ValueError
-    if gears with a helix angle are called spur gears.
+    with beta > 0 the inner ends touch first, with beta < 0 the outer ones. Parameters as of `halves`; a helical pair of
+    beta = 0 is a spur one.
+
+    Returns
+    -------
+    tuple of Band
+
+    Raises
+    ------
+    ValueError
+        As of `halves`, and if gears with a helix angle are called spur gears.
     """
     slope = math.tan(pair.gear_1.beta_b)
     if face == "spur" and slope:
@@ -124,7 +152,10 @@ def face_bands(pair, face="helical", groove=0.0):
 
 
 def bands_of(pair, face, groove):
-    """`face_bands` as (end that touches first, other end) [mm], of a herringbone pair the outer ends first."""
+    """Bands of the face as (end that touches first, other end) [mm], of a herringbone pair the outer ends first.
+
+    Parameters and errors as of `face_bands`.
+    """
     bands = face_bands(pair, face, groove)
     if face != "herringbone" and pair.gear_1.beta > 0:
         return [(band.high, band.low) for band in bands]
@@ -134,7 +165,17 @@ def bands_of(pair, face, groove):
 def contact_lines(pair, phase, *, face="helical", groove=0.0):
     """Contact lines of all tooth pairs that touch anywhere at some phases, on the path of contact.
 
-    `phase`, a number or an array ``(phases,)``, is that of the section it is counted at, see `face_bands`; any numbers.
+    Parameters
+    ----------
+    pair : GearPair
+    phase : float or ndarray, shape (phases,)
+        Of the section the phase is counted at, see `face_bands`; any numbers.
+    face, groove
+        As in `face_bands`.
+
+    Returns
+    -------
+    Lines
     """
     bands = face_bands(pair, face, groove)
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
@@ -163,9 +204,17 @@ def _touching(band, roll_0, start, end, pitch):
 
 
 def removed(lines, pits):
-    """What pits of pinion and wheel, each a sequence, take from contact lines.
+    """What pits take from contact lines.
 
-    Teeth are numbered in each gear's own frame; pits on unloaded flanks take nothing.
+    Parameters
+    ----------
+    lines : Lines
+    pits : (sequence of Pit, sequence of Pit)
+        Of pinion and wheel, teeth numbered in each gear's own frame; those on unloaded flanks take nothing.
+
+    Returns
+    -------
+    Removed
     """
     pair = lines.pair
     i, j, k = np.nonzero(lines.high > lines.low)
@@ -199,17 +248,17 @@ def covered(pair, pits, order, rolls, z):
         Part of the piece that a pit takes, 0 at its first end and 1 at the other; parts may overlap.
     """
     rows, common = [], min(pair.gear_1.b, pair.gear_2.b)
-    for which, (gear, own) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
-        own = tuple(pit for pit in own if pit.side == "loaded")
-        if not own or not order.size:
+    for which, (gear, found) in enumerate(zip((pair.gear_1, pair.gear_2), pits, strict=True)):
+        found = tuple(pit for pit in found if pit.side == "loaded")
+        if not found or not order.size:
             continue
-        tooth, near, far, bottom, top = _limits(gear, own)
+        tooth, near, far, bottom, top = _limits(gear, found)
         height = z + (gear.b - common) / 2  # the gears lie centred on each other
         meets = (tooth - (1 - 2 * which) * order[:, None]) % gear.z == 0
         meets &= (rolls[which].min(axis=1)[:, None] <= far) & (rolls[which].max(axis=1)[:, None] >= near)
         meets &= (height.min(axis=1)[:, None] < top) & (height.max(axis=1)[:, None] > bottom)
         for i, k in np.argwhere(meets).tolist():
-            rows += [(i, which, s, t) for s, t in crossing(gear, own[k], rolls[which][i], height[i])]
+            rows += [(i, which, s, t) for s, t in found[k].crossing(gear, rolls[which][i], height[i])]
     piece, gear, first, last = np.array(rows, dtype=float).reshape(-1, 4).T
     return piece.astype(int), gear.astype(int), first, last
 
@@ -233,10 +282,21 @@ def lost_length(lines, pits):
 
 
 def total_length(pair, phase, *, face="helical", groove=0.0, pits=((), ())):
-    """Total length of all `contact_lines` [mm] at some phases ``(phases,)``, without what pits (as in `removed`) take.
+    """Total length of all contact lines [mm] at some phases ``(phases,)``, without what pits take.
 
     Without pits its mean over a cycle is ``eps_alpha b / cos(beta_b)``, b without the groove; it is constant when eps_alpha
     or the overlap ratio ``b tan(beta_b) / p_bt`` (of each half) is a whole number.
+
+    Parameters
+    ----------
+    pair, phase, face, groove
+        As in `contact_lines`.
+    pits : (sequence of Pit, sequence of Pit)
+        As in `removed`.
+
+    Returns
+    -------
+    ndarray, shape (phases,)
     """
     lines = contact_lines(pair, phase, face=face, groove=groove)
     return (lines.length - lost_length(lines, pits)).sum(axis=(1, 2))

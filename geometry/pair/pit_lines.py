@@ -2,19 +2,22 @@
 
 import math
 from dataclasses import replace
+from numbers import Integral
 
 import numpy as np
 
 from ..damage.hollow import centre_arc
-from ..damage.pit import check_count
+from ..damage.pit import MOST, Pit
 from ..tooth.profile import roll_at_arc
-from .lines import Band
+from .lines import Band, bands_of
 
 ALONG = ("axis", "contact_line", "profile")
 
 
-def pit_line(pair, which, middle, along, count, pitch, *, bands=(), mirrored=False):
-    """`count` equal pits along a line of a flank, evenly to both sides of the pit `middle`.
+def pit_line(
+    pair, which, along, count, pitch, *, radius, middle, face="helical", groove=0.0, both=False, mirrored=False, **numbers
+):
+    """`count` equal pits along a line of a flank, evenly to both sides of the point at `radius` and height `middle`.
 
     A contact line is straight, in the flank and in the plane of action: over a height dz the pinion's roll length falls by
     ``tan(beta_b) dz`` away from the end that touches first, and the line is ``dz / cos(beta_b)`` long. So pits of radius r at a
@@ -25,16 +28,25 @@ def pit_line(pair, which, middle, along, count, pitch, *, bands=(), mirrored=Fal
     pair : GearPair
     which : {0, 1}
         Whether they are on the flank of the pinion or of the wheel.
-    middle : Pit
     along : {"axis", "contact_line", "profile"}
         ``axis``: at one radius; ``contact_line``: where one tooth pair touches at one phase; ``profile``: at one height.
     count : int
     pitch : float
         Distance of neighbouring centres along the line [mm]: of ``profile`` of the transverse profile's arc.
-    bands : list of (float, float)
-        How the teeth run, as of `geometry.pair.lines.bands_of`: a contact line is that of the band that `middle` is in.
+    radius, middle : float
+        Of the middle of the row: distance from the gear's axis and height [mm], as of a `Pit`.
+    face, groove
+        How the teeth run, as in `geometry.pair.lines.bands_of`. A contact line is that of the half that `middle` is in.
+    both : bool
+        Whether its mirror image is in the other half of a herringbone gear too.
     mirrored : bool
         Whether a row along a contact line is inclined the other way, as on teeth of the other hand: contact lines cross it.
+    **numbers
+        As of `Pit`: axes, depth, angle, tooth, side.
+
+    Returns
+    -------
+    list of Pit
 
     Raises
     ------
@@ -44,57 +56,58 @@ def pit_line(pair, which, middle, along, count, pitch, *, bands=(), mirrored=Fal
 
     >>> from geometry.tooth.gear import Gear
     >>> from geometry.pair.gear_pair import GearPair
-    >>> from geometry.pair.lines import bands_of
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), beta=math.radians(16), b=60.0)
     >>> pair = GearPair(Gear(z=18, r_bore=8.1, **rack), Gear(z=27, r_bore=12.8, **rack))
-    >>> middle, bands = Pit(radius=18.73, z=15.0, axes=(0.5, 0.5), depth=0.2), bands_of(pair, "herringbone", 0.0)
-    >>> [(round(pit.radius, 3), round(pit.z, 3)) for pit in pit_line(pair, 0, middle, "contact_line", 3, 1.0, bands=bands)]
-    [(18.823, 14.034), (18.73, 15.0), (18.64, 15.966)]
+    >>> row = dict(radius=18.73, middle=15.0, face="herringbone", axes=(0.5, 0.5), depth=0.2)
+    >>> [(round(pit.radius, 3), round(pit.z, 3)) for pit in pit_line(pair, 0, "contact_line", 3, 1.0, both=True, **row)]
+    [(18.823, 14.034), (18.73, 15.0), (18.64, 15.966), (18.823, 45.966), (18.73, 45.0), (18.64, 44.034)]
     """
     gear = (pair.gear_1, pair.gear_2)[which]
     if along not in ALONG:
         raise ValueError(f"along = {along!r}, but pits lie along one of {', '.join(ALONG)}")
-    check_count(count)
+    if isinstance(count, bool) or not isinstance(count, Integral) or not 1 <= count <= MOST:
+        raise ValueError(f"count = {count!r} pits in a row, but give a whole number from 1 to {MOST}")
     if count > 1 and not pitch > 0:
         raise ValueError(f"pitch = {pitch} mm, but pits of a row lie apart: give a positive distance of their centres")
     if mirrored and along != "contact_line":
         raise ValueError(f"mirrored with along = {along!r}, but only a row along a contact line can be inclined the other way")
-    radius, height = middle.radius, middle.z
+    start = Pit(radius=radius, z=middle, **numbers)
     steps = pitch * (np.arange(count) - (count - 1) / 2) if count > 1 else np.zeros(1)
-    radii, heights = np.full(count, radius), height + steps
+    radii, heights = np.full(count, float(radius)), middle + steps
     if along == "profile":
-        arc = centre_arc(gear, middle) + gear.outward * steps[:: gear.outward]
-        radii, heights = np.sqrt(gear.r_b**2 + roll_at_arc(gear, arc) ** 2), np.full(count, height)
+        arc = centre_arc(gear, start) + gear.outward * steps[:: gear.outward]
+        radii, heights = np.sqrt(gear.r_b**2 + roll_at_arc(gear, arc) ** 2), np.full(count, float(middle))
     elif along == "contact_line":
         if not radius > gear.r_b:
             raise ValueError(
                 f"pits about radius = {radius:.6g} mm, but contact lines of z = {gear.z} lie beyond {gear.r_b:.6g} mm"
             )
-        band = _band(pair, gear, bands, height)
+        band = _band(pair, gear, face, groove, middle)
         slope = band.slope * (1 if which == 0 else -pair.outward) * (-1 if mirrored else 1)
-        heights = height + steps * math.cos(gear.beta_b)
-        rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - height)
+        heights = middle + steps * math.cos(gear.beta_b)
+        rolls = math.sqrt(radius**2 - gear.r_b**2) + slope * (heights - middle)
         if not (rolls > 0).all() or heights[0] < band.low or heights[-1] > band.high:
             raise ValueError(
                 f"a row of {count} pits over {(count - 1) * pitch:.6g} mm along the contact line leaves the flank of "
                 f"z = {gear.z}, or its half of the width: make it shorter, or move its middle"
             )
         radii = np.hypot(gear.r_b, rolls)
-    return [replace(middle, radius=float(r), z=float(z)) for r, z in zip(radii, heights, strict=True)]
+    row = [replace(start, radius=float(r), z=float(z)) for r, z in zip(radii, heights, strict=True)]
+    return row + (in_both_halves(gear, row, face) if both else [])
 
 
 def in_both_halves(gear, pits, face):
     """Mirror images of pits of a herringbone gear, in its other half."""
     if face != "herringbone":
-        raise ValueError(f"pits in both halves, but teeth of face = {face!r} have none: only herringbone gears do")
+        raise ValueError(f"{pits[0].nouns[1]} in both halves, but teeth of face = {face!r} have none: only herringbone gears do")
     return [pit.mirrored(gear.b) for pit in pits]
 
 
-def _band(pair, gear, bands, height):
-    """`Band` of the face at a height of a gear, in the gear's own heights; rolls fall from the end that touches first."""
+def _band(pair, gear, face, groove, middle):
+    """`Band` of the face at height `middle` of a gear, in the gear's own heights; rolls fall from the end that touches first."""
     below = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2  # the gears lie centred on each other
-    for first, last in bands:
+    for first, last in bands_of(pair, face, groove):
         low, high = sorted((first + below, last + below))
-        if low <= height <= high:
+        if low <= middle <= high:
             return Band(low, high, math.copysign(math.tan(pair.gear_1.beta_b), first - last), first + below)
-    raise ValueError(f"pits about z = {height:.6g} mm, but there the teeth of z = {gear.z} touch nothing")
+    raise ValueError(f"pits about middle = {middle:.6g} mm, but there the teeth of z = {gear.z} touch nothing")

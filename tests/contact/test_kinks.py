@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from gearfe.contact import kink_law
 from gearfe.contact.kinks import _nearest, kink_rows, near_kink
-from gearfe.contact.plane import PairContact
+from gearfe.contact.pair_contact import PairContact
 from gearfe.contact.sharing import share
 from gearfe.energy.ritz.plane import flexibility
 from geometry.pair.flanks import flank_forms

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from gearfe.contact import sharing
-from gearfe.contact.sharing import approaches, line_contact, line_contacts, share, stacked
+from gearfe.contact.sharing import LineContacts, approaches, line_contact, line_contacts, share, stacked
 
 
 def brute_force(flexibility, gap, load):
@@ -59,18 +59,6 @@ def test_where_the_active_set_does_not_settle(monkeypatch, seed, scale):
     assert (force > 0).sum() > 1
 
 
-def test_a_start_in_any_unit_saves_the_steps(monkeypatch):
-    """The line loads themselves in another unit: they are those of the load given, and one step finds nothing to change."""
-    smooth, gap = 4e-5 * (np.eye(3) + 0.2), np.array([0.0, 0.001, 0.003])
-    case = smooth, gap, 400.0, 5.6e-6, np.array([2.0, 4.0, 5.0]), 1.13e5
-    force, *told = line_contact(*case)
-    asked = []
-    monkeypatch.setattr(sharing, "share", lambda *given: asked.append(given) or share(*given))
-    again, *same = line_contact(*case, start=1e-6 * force)
-    assert_allclose([*again, *same], [*force, *told], rtol=1e-9)
-    assert len(asked) == 1
-
-
 @pytest.mark.parametrize("load", [0.0, -1.0, float("nan")])
 def test_load_must_push(load):
     with pytest.raises(ValueError, match="give load > 0"):
@@ -90,14 +78,15 @@ def test_line_contact_satisfies_its_equations(seed):
     gap = np.array([0.0, *rng.exponential(size=2) * 0.01])
     radius, c, modulus = rng.uniform(1, 8, size=n), 5.6e-6, 1.13e5
     tilt = rng.uniform(0, 0.05, size=n) * smooth[0, 0] / load  # what contacts gain by sliding, up to a twentieth
-    force, approach, tangent = line_contact(smooth, gap, load, c, radius, modulus, tilt=tilt)
+    case = LineContacts(smooth, gap, c, radius, modulus, tilt)
+    force, approach, tangent = line_contact(case, load)
     width = np.sqrt(4 * np.maximum(force, 1e-300) * radius / (np.pi * modulus))
     closing = smooth @ force + gap + np.where(force > 0, c * (np.log(2 / width) + 0.5) * force, 0) - tilt * force**2
     assert_allclose(force.sum(), load, rtol=1e-12)
     touch = force > 1e-6 * load
     assert_allclose(closing[touch], approach, rtol=1e-7)
     assert (closing[~touch] >= approach * (1 - 1e-6)).all()
-    more = line_contact(smooth, gap, load * 1.0001, c, radius, modulus, tilt=tilt)[1]
+    more = line_contact(case, load * 1.0001)[1]
     assert_allclose(tangent, 0.0001 * load / (more - approach), rtol=5e-3)
 
 
@@ -113,13 +102,12 @@ def test_many_contacts_at_once_are_those_one_by_one(seed):
     loads = 10 ** rng.uniform(0, 3.5, size=len(cases))
     flexibility, gap, coefficient, radius = (stacked(values) for values in zip(*cases, strict=True))
     there = stacked([np.ones(case[1].size, dtype=bool) for case in cases])
-    force, approach, tangent, settled = line_contacts(
-        flexibility, gap, loads, coefficient, np.where(there, radius, 1.0), modulus, there
-    )
+    together = LineContacts(flexibility, gap, coefficient, np.where(there, radius, 1.0), modulus)
+    force, approach, tangent, settled = line_contacts(together, loads, there)
     assert settled.sum() >= len(cases) - 1
     found = approaches(flexibility, gap, loads, there)
     for k, (own, distance, softness, curved) in enumerate(cases):
-        want = line_contact(own, distance, loads[k], softness, curved, modulus)
+        want = line_contact(LineContacts(own, distance, softness, curved, modulus), loads[k])
         if settled[k]:
             assert_allclose(force[k], np.pad(want[0], (0, gap.shape[1] - want[0].size)), atol=1e-8 * loads[k])
             assert_allclose([approach[k], tangent[k]], want[1:], rtol=1e-8)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.contact.plane import OVERLAP, _closing
+from gearfe.contact.pair_contact import OVERLAP, _closing
 from gearfe.contact.sliding import sliding
 from geometry.pair.contacts import contacts
 from geometry.tooth.profile import arc_at

@@ -23,13 +23,13 @@ GEAR = gf.Gear(z=12, x=0.2, m_n=2.0, alpha_n=math.radians(20), b=6.0, r_bore=6.0
 @pytest.fixture(scope="module")
 def hats_at():
     """Plane-strain displacement of the hats by resolution."""
-    return {refine: plane_hats(GEAR, gf.Material(), (), refine, PER_HAT, SIZES) for refine in (0.5, 1.0, 2.0)}
+    return {refine: plane_hats(GEAR, gf.Material(), (), refine) for refine in (0.5, 1.0, 2.0)}
 
 
 def test_the_finest_section_is_that_of_the_energy_model_in_plane_strain(hats_at):
     model = flexibility3d(GEAR, gf.Material(), axial=0, order=5)
     half = half_space(gf.Material())
-    local = own_distance(GEAR, GEAR.b, 0) + edge_factor(gf.Material()) * own_mirrors(GEAR, GEAR.b, 0)
+    local = own_distance(GEAR, 0) + edge_factor(gf.Material()) * own_mirrors(GEAR, 0)
     assert_allclose(hats_at[2.0], model.near[0] + half * local, rtol=1e-3)
 
 
@@ -43,7 +43,7 @@ def test_sections_are_too_stiff_and_less_so_the_finer(hats_at):
 
 def test_a_section_changes_steadily_with_the_helix_angle(hats_at):
     """Of a gear that is hardly helical it is that of the spur gear, to within the meshes."""
-    almost = plane_hats(replace(GEAR, beta=1e-3), gf.Material(), (), 1.0, PER_HAT, SIZES)
+    almost = plane_hats(replace(GEAR, beta=1e-3), gf.Material(), (), 1.0)
     assert_allclose(almost, hats_at[1.0], rtol=1e-3)
 
 
@@ -78,14 +78,14 @@ def test_forces_that_lean_by_a_helix_are_taken_in_the_section(monkeypatch):
     spur, helical = leaning()
     places = hats(spur)
     monkeypatch.setattr(section_error, "hats", lambda gear: places)
-    want = plane_hats(spur, gf.Material(), (), 0.5, PER_HAT, SIZES)
+    want = plane_hats(spur, gf.Material(), (), 0.5)
     thin = replace(spur, b=section_error.THIN * helical.m_n)
     monkeypatch.setattr(
         section_error,
         "mesh_patches",
         lambda gear, *given, **more: replace(mesh_patches(thin, *given, **more), gear=gear),
     )
-    assert_allclose(plane_hats(helical, gf.Material(), (), 0.5, PER_HAT, SIZES), want, rtol=2e-3)
+    assert_allclose(plane_hats(helical, gf.Material(), (), 0.5), want, rtol=2e-3)
 
 
 def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at, monkeypatch):
@@ -93,10 +93,9 @@ def test_what_a_section_lacks_is_added_to_every_axial_mode(hats_at, monkeypatch)
     monkeypatch.setattr(section_error, "FINER", 2.0)
     size = 2 * PLACES
     near, far = {0: np.zeros((size, size)), 1: np.zeros((size, size))}, {(0, 1): np.ones((size, size))}
-    plain = Flexibility3D(GEAR, 6.0, 1, 1.0, near, far, 0)
+    plain = Flexibility3D(GEAR, 1, 1.0, near, far, 0)
     crack = gf.Crack(level=0.4, tooth=1, width=(0.0, 2.0))
-    options = {"refine": 0.5, "per_hat": PER_HAT, "sizes": SIZES}
-    more = finer_section(plain, gf.Material(), (crack,), **options)
+    more = finer_section(plain, gf.Material(), (crack,), refine=0.5)
     want = hats_at[1.0] - hats_at[0.5]
     for first in (0, 1):
         assert_allclose(more.near[0][first::2, first::2], want, rtol=1e-9)

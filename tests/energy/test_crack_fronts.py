@@ -12,6 +12,7 @@ from gearfe.elements import fe3d
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.bent import bent
 from gearfe.energy.ritz.join import join
+from gearfe.energy.ritz.panel3d import SolidModel
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.solved import solved_gears
 from geometry.damage.crack import deepest
@@ -29,9 +30,9 @@ HAT = 5  # the patch that is looked at
 
 def compliance(gear, crack, *, order=2, modes=3):
     """Influence ``(modes, modes)`` [mm per N/mm] of the first modes along the width under one patch."""
-    size = {"width": gear.b, "order": order, "axial": 6, "refine": 1.0}
-    healthy = ritz3d.solid_sector(gear, STEEL, (), **size)
-    panels = {0: ritz3d.solid_sector(gear, STEEL, (crack,), **size) if crack else healthy, 1: healthy}
+    model = SolidModel(gear, STEEL, order, 6)
+    healthy = ritz3d.solid_sector(model, ())
+    panels = {0: ritz3d.solid_sector(model, (crack,)) if crack else healthy, 1: healthy}
     at = HAT * 7 + np.arange(modes)
     return join(gear, panels, healthy)[0][0, 0][np.ix_(at, at)]
 
@@ -71,7 +72,7 @@ def test_a_front_on_a_gear_of_the_other_hand_is_the_mirrored_one():
     size = {"order": 2, "axial": 6}
     found, healthy = (ritz3d.flexibility3d(other, STEEL, own, **size).near[0][np.ix_(at, at)] for own in ((crack,), ()))
     want = compliance(other, crack) - compliance(other, None)
-    want[0, 0] += ritz3d._missing_along(other, STEEL, crack, other.b, 2, 1.0, solved_gears(True))[HAT, HAT]
+    want[0, 0] += ritz3d._missing_along(SolidModel(other, STEEL, 2, size["axial"]), crack, solved_gears(True))[HAT, HAT]
     assert_allclose(found - healthy, want, rtol=1e-7, atol=1e-7 * want[0, 0])
     assert want[0, 1] < -0.01 * want[0, 0], "more compliant at the end at z = 0, where it is deep"
 
@@ -127,7 +128,7 @@ def test_fronts_are_followed_to_their_shallowest_place_or_refused():
     def fronts(low):
         own = replace(crack, ends=(1.0, low))
         yield lambda: follow_front(quads, 0, own)[1]
-        yield lambda: bent(SPUR, triangles, 0, own, SPUR.b)[1]
+        yield lambda: bent(SPUR, triangles, 0, own)[1]
 
     for low in (0.7, 0.3, 0.2):
         for follow in fronts(low):

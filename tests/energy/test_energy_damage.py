@@ -14,7 +14,7 @@ import gearfe as gf
 from gearfe.energy.closed import published, textbook
 from gearfe.energy.closed.beam import load_angle
 from gearfe.energy.closed.plain_sum import plain_sum
-from gearfe.energy.closed.section import limits, section
+from gearfe.energy.closed.section import ToothDamage, limits, section
 from geometry.damage.crack import crack_path
 from geometry.damage.hollow import centre_arc
 from geometry.damage.pit import pit_row
@@ -40,9 +40,8 @@ def seven(**numbers):
 
 def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **options):
     """K [N/mm per mm] with cracks and pits on the pinion."""
-    cracks = tuple(d for d in damage if isinstance(d, gf.Crack))
-    pits = tuple(d for d in damage if isinstance(d, gf.Pit))
-    solve, _ = plain_sum(on or pair(), BOTH, phase, formulas, cracks=(cracks, ()), pits=(pits, ()), **options)
+    of_case = {name: options.pop(name) for name in ("face", "groove") if name in options}
+    solve, _ = plain_sum(gf.Case(on or pair(), load, STEEL, damage={"pinion": damage}, **of_case), phase, formulas, **options)
     return load / solve(load).closing
 
 
@@ -133,7 +132,7 @@ def test_textbook_with_a_crack_equals_independent_quadrature(crack, model):
         return area, area**3 / 12, 2 * x
 
     want = expected(GEAR, roll, true_profile(GEAR, roll), living, breaks)
-    got = textbook.components(GEAR, STEEL, roll, cracks=(crack,), crack_model=model)
+    got = textbook.components(GEAR, STEEL, roll, damage=ToothDamage((crack,), crack_model=model))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
 
 
@@ -150,7 +149,7 @@ def test_published_with_a_crack_equals_independent_quadrature(level):
         return area, area**3 / 12, 2 * x
 
     want = expected(GEAR, roll, profiles, living, breaks[1:])
-    got = published.components(GEAR, STEEL, roll, cracks=(gf.Crack(level=level),))
+    got = published.components(GEAR, STEEL, roll, damage=ToothDamage((gf.Crack(level=level),)))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-8)
 
 
@@ -177,7 +176,7 @@ def test_pits_equal_independent_quadrature(formulas):
     living_below = lambda x, y, t: (2 * x, 2 * x**3 / 3, 2 * x)  # noqa: E731
     above = [(curve, a, b) for a, b in zip([start, *ends], [*ends, stop], strict=True)]
     want = np.add(expected(GEAR, roll, [lower], living_below, []), expected(GEAR, roll, above, living, []))
-    got = formulas.components(GEAR, STEEL, roll, pits=(pit,))
+    got = formulas.components(GEAR, STEEL, roll, damage=ToothDamage((), (pit,)))
     assert_allclose([float(v[0]) for v in (got.bending, got.shear, got.axial)], want, rtol=1e-7)
     healthy = formulas.components(GEAR, STEEL, roll)
     assert want[0] > healthy.bending[0] * 1.001, "the pit matters"
@@ -194,7 +193,7 @@ def test_section_equals_a_sum_over_its_width(seed):
         )
         for k in range(6)
     ]  # fmt: skip
-    found = limits(GEAR, [gf.Crack(level=rng.uniform(0.05, 0.5))], MODELS[seed % 3])
+    found = limits(GEAR, ToothDamage((gf.Crack(level=rng.uniform(0.05, 0.5)),), crack_model=MODELS[seed % 3]))
     roll = rng.uniform(GEAR.roll_f, GEAR.roll_a, 9)
     h, y = cartesian(*flank(GEAR, roll))
     arc = arc_at(GEAR, roll)
@@ -287,7 +286,7 @@ def test_rings_have_beams_but_no_sainsot():
             formulas.components(ring, STEEL, np.array([ring.roll_a]))
     roll = np.linspace(ring.roll_f, ring.roll_a, 5)
     whole = textbook.components(ring, STEEL, roll, foundation="none")
-    cracked = textbook.components(ring, STEEL, roll, foundation="none", cracks=(gf.Crack(level=0.3),))
+    cracked = textbook.components(ring, STEEL, roll, foundation="none", damage=ToothDamage((gf.Crack(level=0.3),)))
     assert (np.diff(whole.total) > 0).all(), "softer towards the tip"
     assert (cracked.bending > whole.bending).all()
     x_f, y_f = cartesian(*flank(ring, ring.roll_a))

@@ -21,10 +21,10 @@ GEAR = gf.Gear(z=18, m_n=2.0, alpha_n=math.radians(20), b=14.0, r_bore=9.0)
 @pytest.mark.parametrize("cracks", [(), (gf.Crack(level=0.4),)], ids=["healthy", "cracked"])
 def test_halves_give_what_both_give_together(degree, cracks, monkeypatch):
     made = sector(GEAR, cracks, sizes=SIZES, refine=0.8)
-    run = (GEAR, made, STEEL, hats(GEAR)[:, ::3], GEAR.b)
-    halves = panel3d.panel3d(*run, order=2, degree=degree)
+    run = (panel3d.SolidModel(GEAR, STEEL, 2, degree), made, hats(GEAR)[:, ::3])
+    halves = panel3d.panel3d(*run)
     monkeypatch.setattr(panel3d, "front_by_parity", front)
-    whole = panel3d.panel3d(*run, order=2, degree=degree)
+    whole = panel3d.panel3d(*run)
     assert whole.unknowns == halves.unknowns
     for name in ("stiffness", "push", "own", "open_push", "open_own", "open_open"):
         one, two = getattr(halves, name), getattr(whole, name)
@@ -37,5 +37,5 @@ def test_a_crack_over_a_part_of_the_width_is_not_parted(monkeypatch):
     monkeypatch.setattr(panel3d, "front_by_parity", lambda *_: asked.append(1))
     crack = gf.Crack(level=0.4, width=(0.0, 5.0))
     made = sector(GEAR, (crack,), sizes=SIZES, refine=0.7)
-    panel3d.panel3d(GEAR, made, STEEL, hats(GEAR)[:, ::4], GEAR.b, order=2, degree=3, parts=(((0.0, 5.0),),))
+    panel3d.panel3d(panel3d.SolidModel(GEAR, STEEL, 2, 3), made, hats(GEAR)[:, ::4], parts=(((0.0, 5.0),),))
     assert not asked

@@ -13,6 +13,7 @@ import gearfe as gf
 from gearfe.energy.closed import published, textbook
 from gearfe.energy.closed.beam import SAINSOT, Validity, load_angle
 from gearfe.energy.closed.plain_sum import plain_sum
+from gearfe.energy.closed.section import ToothDamage
 from gearfe.energy.closed.slices import faces
 from gearfe.flexibility import hertz
 from geometry.damage.hollow import centre_arc, lost_width
@@ -38,9 +39,8 @@ def seven(**numbers):
 
 def stiffness(*damage, on=None, formulas=textbook, load=100.0, phase=PHASE, **options):
     """K [N/mm per mm] with cracks and pits on the pinion."""
-    cracks = tuple(d for d in damage if isinstance(d, gf.Crack))
-    pits = tuple(d for d in damage if isinstance(d, gf.Pit))
-    solve, _ = plain_sum(on or pair(), BOTH, phase, formulas, cracks=(cracks, ()), pits=(pits, ()), **options)
+    of_case = {name: options.pop(name) for name in ("face", "groove") if name in options}
+    solve, _ = plain_sum(gf.Case(on or pair(), load, STEEL, damage={"pinion": damage}, **of_case), phase, formulas, **options)
     return load / solve(load).closing
 
 
@@ -54,10 +54,10 @@ def test_damage_belongs_to_its_tooth():
     assert_allclose(stiffness(replace(crack, tooth=1), phase=PHASE - 1), base, rtol=1e-12)
     assert_allclose(stiffness(replace(crack, tooth=-20), phase=PHASE - 1), base, rtol=1e-12)
     swapped = gf.GearPair(pair().gear_2, pair().gear_1)
-    wheel = {"cracks": ((), (replace(crack, tooth=-2),)), "pits": ((), tuple(seven(radius=31.2, tooth=-2)))}
-    other = {"cracks": ((crack,), ()), "pits": (tuple(seven(radius=31.2)), ())}
-    one = plain_sum(pair(), BOTH, PHASE - 2, textbook, **wheel)[0](100.0)
-    two = plain_sum(swapped, BOTH, pair().eps_alpha - PHASE, textbook, **other)[0](100.0)
+    wheel = gf.Case(pair(), 1.0, STEEL, damage={"wheel": [replace(crack, tooth=2), *seven(radius=31.2, tooth=2)]})
+    other = gf.Case(swapped, 1.0, STEEL, damage={"pinion": [crack, *seven(radius=31.2)]})
+    one = plain_sum(wheel, PHASE - 2, textbook)[0](100.0)
+    two = plain_sum(other, pair().eps_alpha - PHASE, textbook)[0](100.0)
     assert_allclose(one.closing, two.closing, rtol=1e-12)
     assert_allclose(one.line_load.sum(axis=1), 100.0, rtol=1e-12)
 
@@ -71,7 +71,7 @@ def test_cracks_and_pits_that_leave_nothing_are_refused():
     across = gf.Pit(radius=22.0, z=10.0, axes=(0.3, 1e4), depth=0.1)
     in_double_contact = (math.sqrt(22.0**2 - GEAR.r_b**2) - pair().path[0]) / pair().p_bt
     assert 1 < in_double_contact < pair().eps_alpha
-    one = plain_sum(pair(), BOTH, in_double_contact, textbook, pits=((across,), ()))[0](100.0)
+    one = plain_sum(gf.Case(pair(), 1.0, STEEL, damage={"pinion": [across]}), in_double_contact, textbook)[0](100.0)
     assert (one.line_load > 0).sum() == 1, "a pair whose contact is lost altogether carries nothing"
 
 
@@ -122,9 +122,9 @@ def test_beam_and_body_of_the_article_end_where_they_are_told_to():
     prism = GEAR.r_b * cos - math.sqrt(GEAR.r_f**2 - (GEAR.r_b * sin) ** 2)
     force = load_angle(GEAR, roll)
     assert_allclose(whole.axial - beam.axial, np.sin(force) ** 2 * prism / (2 * STEEL.E * GEAR.r_b * sin), rtol=1e-9)
-    crack = gf.Crack(level=0.3)
-    hurt = published.components(GEAR, STEEL, roll, cracks=(crack,), root="base")
-    assert (hurt.bending < published.components(GEAR, STEEL, roll, cracks=(crack,)).bending).all()
+    crack = ToothDamage((gf.Crack(level=0.3),))
+    hurt = published.components(GEAR, STEEL, roll, damage=crack, root="base")
+    assert (hurt.bending < published.components(GEAR, STEEL, roll, damage=crack).bending).all()
     on_base = replace(GEAR, dedendum=(GEAR.r - GEAR.r_b) / GEAR.m_n)  # its root circle is the base circle
     assert_allclose(body.foundation, published.components(on_base, STEEL, roll).foundation, rtol=1e-6)
     for name in ("root", "foot"):
@@ -135,7 +135,7 @@ def test_beam_and_body_of_the_article_end_where_they_are_told_to():
 @pytest.mark.parametrize("contact", ["weber", "palmgren"])
 def test_load_dependent_contact(contact):
     """One approach for all, loads that add up, and a tangent that is the derivative."""
-    solve, _ = plain_sum(pair(), BOTH, PHASE, textbook, contact=contact, pits=(tuple(seven()), ()))
+    solve, _ = plain_sum(gf.Case(pair(), 1.0, STEEL, damage={"pinion": seven()}), PHASE, textbook, contact=contact)
     low, middle, high = (solve(load) for load in (99.9, 100.0, 100.1))
     assert_allclose(middle.line_load.sum(axis=1), 100.0, rtol=1e-12)
     assert_allclose(middle.tangent, 0.2 / (high.closing - low.closing), rtol=1e-6)
@@ -206,8 +206,8 @@ def test_slices_converge_to_the_damaged_helical_sum(lost):
         if not on.any():
             continue
         rolls = gears.curvature_radii(place[on])
-        here = {"cracks": tuple(whole[:1]), "pits": tuple(whole[1:])} if number == 0 else {}
-        teeth = textbook.components(gears.gear_1, STEEL, rolls[0], **here).total
+        here = ToothDamage(tuple(whole[:1]), tuple(whole[1:])) if number == 0 else ToothDamage()
+        teeth = textbook.components(gears.gear_1, STEEL, rolls[0], damage=here).total
         teeth = teeth + textbook.components(gears.gear_2, STEEL, rolls[1]).total
         free = np.ones(on.sum(), dtype=bool)
         if number == 0:
@@ -257,14 +257,16 @@ def test_sainsot_table_equals_the_published_one():
 
 
 def test_what_is_outside_its_range_is_named():
-    _, details = plain_sum(pair(), BOTH, PHASE, textbook)
+    case = gf.Case(pair(), 1.0, STEEL)
+    _, details = plain_sum(case, PHASE, textbook)
     assert [type(v) for v in details["outside"]] == [Validity]
     seen = details["outside"][0]
     assert "theta_f" in seen.what
     assert seen.value > seen.high == 0.12
     thin = gf.GearPair(*(gf.Gear(z=62, r_bore=r, **RACK) for r in (50.0, 20.0)))
-    assert [v.what for v in plain_sum(thin, BOTH, PHASE, published)[1]["outside"]] == ["h = r_f / r_bore of z = 62 (Sainsot)"]
-    assert plain_sum(pair(), BOTH, PHASE, textbook, foundation="none")[1]["outside"] == ()
+    outside = plain_sum(gf.Case(thin, 1.0, STEEL), PHASE, published)[1]["outside"]
+    assert [v.what for v in outside] == ["h = r_f / r_bore of z = 62 (Sainsot)"]
+    assert plain_sum(case, PHASE, textbook, foundation="none")[1]["outside"] == ()
 
 
 @pytest.mark.parametrize("formulas", [textbook, published])

@@ -64,7 +64,7 @@ def test_area_of_the_sector_is_that_of_the_profile(gear, cracks):
 
 def test_sectors_join_to_the_whole_gear():
     """Doubling against sectors joined one by one, and all teeth explicit."""
-    one = ritz.loaded_sector(GEAR, STEEL, (), order=3)
+    one = ritz.loaded_sector(panel.SectionModel(GEAR, STEEL, order=3), ())
     row = one.stiffness
     for count in range(2, 8):
         row = join.side_by_side(row, one.stiffness)
@@ -82,7 +82,7 @@ def test_sectors_join_to_the_whole_gear():
 
 @pytest.mark.parametrize("gear", [GEAR, RING], ids=["18", "ring"])
 def test_reciprocity_error_falls_with_the_order(gear):
-    own = [ritz.loaded_sector(gear, STEEL, (), order=order).own for order in (2, 3, 4, 6)]
+    own = [ritz.loaded_sector(panel.SectionModel(gear, STEEL, order=order), ()).own for order in (2, 3, 4, 6)]
     off = [np.abs(one - one.T).max() / np.abs(one).max() for one in own]
     assert off[0] > off[1] > off[2] > off[3]
     assert off[2] < 8e-3

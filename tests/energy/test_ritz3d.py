@@ -15,6 +15,7 @@ from gearfe.energy.ritz import plane as ritz
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.axial import axial
 from gearfe.energy.ritz.join import join
+from gearfe.energy.ritz.panel import SectionModel
 from gearfe.flexibility import halfspace
 from gearfe.flexibility import solid as flexibility3d
 from gearfe.flexibility.hertz import half_plane, hat_logarithm
@@ -59,9 +60,10 @@ def test_rigid_motions_store_no_energy():
     made = replace(made, bulge={edge: 0 * curve for edge, curve in made.bulge.items()})  # nodes at the middles
     numbers, count, _ = panel3d.numbering(made, order)
     numbers, _ = elimination.all_nodes(numbers, count, order)
-    section = panel3d._section(made, order, STEEL, math.tan(BETA) / GEAR.r)
+    section = panel3d._section(panel3d.SolidModel(GEAR, STEEL, order), made, math.tan(BETA) / GEAR.r)
     no = np.zeros(0, dtype=int)
-    body = elimination.body_of(numbers, np.zeros((count, 3, 1)), section, axial(width, degree), sides=np.arange(1), held=no)
+    section = elimination.Section(numbers, section, np.zeros((count, 3, 1)), np.arange(1), no)
+    body = elimination.body_of(section, axial(width, degree))
     size = int(body.size[: body.first_load].sum())
     blocks = [np.zeros(shape, order="F") for shape in ((0, 0), (size, 0), (size, size))]
     elimination.leaf(body, np.arange(numbers.shape[1]), no, np.arange(body.first_load), blocks)
@@ -101,8 +103,8 @@ def test_plane_strain_is_the_constant_along_the_width():
     knots = flexibility3d.hats(gear)
     local = half_plane(STEEL) * hat_logarithm(knots, knots)
     for cracks in ((), (gf.Crack(level=0.5),)):
-        plane = [ritz.loaded_sector(gear, STEEL, own, order=6) for own in (cracks, ())]
-        solid = [ritz3d.solid_sector(gear, STEEL, own, width=10.0, order=3, axial=0, refine=1.0) for own in (cracks, ())]
+        plane = [ritz.loaded_sector(SectionModel(gear, STEEL, order=6), own) for own in (cracks, ())]
+        solid = [ritz3d.solid_sector(panel3d.SolidModel(replace(gear, b=10.0), STEEL), own) for own in (cracks, ())]
         want, _ = join(gear, dict(enumerate(plane)), plane[1])
         got, _ = join(gear, dict(enumerate(solid)), solid[1])
         places = slice(carry.shape[-1])  # the loads after these lean off the normal
@@ -124,7 +126,8 @@ def test_even_load_on_a_wide_gear_is_the_plane_law():
     plane = ritz.flexibility(gear, STEEL, order=6)
     for arc in np.linspace(*plane.limits, 9)[2:-1]:
         roll = roll_at_arc(gear, np.full(z.size, arc))
-        moved = (body.matrix(np.zeros(z.size, dtype=int), roll, z) + kernel) @ np.diff(edge)
+        rows = body.basis(roll, z)
+        moved = (rows @ body.between(0, 0) @ rows.T + kernel) @ np.diff(edge)
         want = plane.near[0](arc) + half_plane(STEEL) * (math.log(2 / a) + 0.5)
         assert_allclose(moved.mean(), want, rtol=3e-3)
 
@@ -144,7 +147,7 @@ def test_less_along_the_width_and_fewer_cubics_are_stiffer_by_almost_nothing(mon
     knots = flexibility3d.hats(GEAR)[:, ::2]
 
     def loads():
-        found = panel3d.panel3d(GEAR, made, STEEL, knots, 12.0, order=3, degree=7)
+        found = panel3d.panel3d(panel3d.SolidModel(replace(GEAR, b=12.0), STEEL, axial=7), made, knots)
         return found, join(GEAR, {0: found}, found)[0][0, 0]
 
     few, less = loads()
@@ -163,7 +166,7 @@ def test_both_sides_have_the_same_degrees_and_the_flank_the_highest():
         numbers, count, chain = panel3d.numbering(made, 3)
         sides = np.concatenate([chain(side)[1:] for side in (made.left, made.right)])
         every, _ = elimination.all_nodes(numbers, count, 3)
-        found = depth.degrees(GEAR, made, every, sides, 40.0, 18, 3)
+        found = depth.degrees(replace(GEAR, b=40.0), made, every, sides, 18, 3)
         first, second = found[sides].reshape(2, -1)
         assert_allclose(first, second)
         assert (found[chain(made.flank)] == 18).all()
@@ -176,7 +179,7 @@ def test_both_sides_have_the_same_degrees_and_the_flank_the_highest():
 def test_the_other_hand_is_the_mirror_image(width):
     """A gear with negative beta is not solved for; solving for it gives the same, opening of its cracks included."""
     gear, crack = replace(GEAR, beta=-BETA, b=6.0), gf.Crack(level=0.5, width=width)
-    case = gear, STEEL, (crack,), 1, 6.0, 2, 3, 0.7
+    case = panel3d.SolidModel(gear, STEEL, 2, 3, 0.7), (crack,), 1
     mirrored, solved = ritz3d._mirrored(*case, PROCESS), ritz3d._solved(*case, PROCESS)
     assert mirrored.gear == solved.gear
     for one, two in ((mirrored, solved), (mirrored.healthy, solved.healthy)):
@@ -204,7 +207,7 @@ def test_cracks_the_energy_model_has_not(cracks, message):
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"width": 0.0}, "positive face width"), ({"order": 1}, "polynomial order"), ({"axial": 2}, "degree along the width")],
+    [({"order": 1}, "polynomial order"), ({"axial": 2}, "degree along the width")],
 )
 def test_impossible_options(options, message):
     with pytest.raises(ValueError, match=message):

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.machine.contact_cycle import SI, friction_weights, impact_cycle
-from gearfe.machine.contact_law import force, friction_coefficient, slopes, step
+from gearfe.machine.contact_law import force, friction_coefficient, parameters, slopes, step
 from gearfe.machine.gear_mesh import GearMesh, Samples, ToothDamage, cycle_table
 
 
@@ -20,20 +20,22 @@ def test_step_and_friction_at_their_corners():
     assert_allclose(got, [-0.05, -0.08, -0.055, 0, 0.055, 0.08, 0.065, 0.05, 0.05], atol=1e-12)
 
 
+def law_of_meshes(*fields):
+    return parameters([GearMesh("m", np.ones(1), 1e8, **one) for one in fields])
+
+
 def test_slopes_are_derivatives_of_the_force():
-    law = {
-        "power": np.array([1.0, 1.0, 1.5, 1.5]),
-        "damping": np.array([50.0, 30.0, 80.0, 80.0]),
-        "beta": np.array([0.0, 1e-6, 0.0, 0.0]),
-        "per_depth": np.array([0.0, 0.0, 1e4, 1e4]),
-        "backlash": np.array([0.0, 2e-5, np.inf, 3e-5]),
-        "film": np.array([1.0, 0.3, 1.0, 0.0]),
-        "push": np.array([False, False, True, True]),
-    }
+    law = law_of_meshes(
+        {"damping": 50.0},
+        {"damping": 30.0, "beta": 1e-6, "backlash": 2e-5, "film": 0.3},
+        {"power": 1.5, "damping": 80.0, "depth": 1e-4, "backlash": math.inf, "push": True},
+        {"power": 1.5, "damping": 80.0, "depth": 1e-4, "backlash": 3e-5, "push": True, "film": 0.0},
+        {"power": 1.2, "damping": 80.0, "depth": 1e-4, "backlash": 3e-5},
+    )
     rng = np.random.default_rng(3)
-    k, h = np.array([1e8, 2e8, 3e9, 3e9]), 1e-9
+    k, h = np.array([1e8, 2e8, 3e9, 3e9, 3e8]), 1e-9
     for _ in range(200):
-        x, v = rng.uniform(-1e-4, 1e-4, 4), rng.uniform(-0.2, 0.2, 4)
+        x, v = rng.uniform(-1e-4, 1e-4, 5), rng.uniform(-0.2, 0.2, 5)
         near = np.minimum(np.abs(x), np.abs(x + law["backlash"])) < 1e-6
         by_x, by_v = slopes(x, v, k, law)
         numeric = (force(x + h, v, k, law) - force(x - h, v, k, law)) / (2 * h)
@@ -46,8 +48,7 @@ def test_slopes_are_derivatives_of_the_force():
 @pytest.mark.parametrize("power", [1.0, 1.5, 1.2])
 def test_the_back_flank_pushes_as_the_front_flank_does(power):
     """Seen from the middle of the play both are alike; flanks that only push never pull."""
-    law = {name: np.array([value]) for name, value in (("power", power), ("damping", 200.0), ("beta", 0.0), ("per_depth", 1e4))}
-    law |= {"backlash": np.array([3e-5]), "film": np.array([0.0]), "push": np.array([True])}
+    law = law_of_meshes({"power": power, "damping": 200.0, "depth": 1e-4, "backlash": 3e-5, "film": 0.0, "push": True})
     rng = np.random.default_rng(4)
     for x, v in zip(rng.uniform(0, 1e-4, 50), rng.uniform(-2, 2, 50), strict=True):
         front, back = force(np.array([x]), v, 1e8, law), force(np.array([-3e-5 - x]), -v, 1e8, law)

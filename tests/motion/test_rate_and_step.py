@@ -12,7 +12,7 @@ from numba.core.caching import CacheImpl
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.motion.loop_parts import announced, compiled
+from gearfe.motion.loop_parts import announced, kept
 from gearfe.motion.simulate import simulate
 from gearfe.motion.step_control import difference
 
@@ -86,8 +86,8 @@ def test_what_is_compiled_is_told_of_once_and_what_is_kept_on_the_disk_is_not(tm
     """Each time in a process of its own, a function that is compiled as the loop is."""
     (tmp_path / "own.py").write_text("""
 import numpy as np
-from gearfe.motion.loop_parts import announced, compiled
-@compiled
+from gearfe.motion.loop_parts import announced, kept
+@kept
 def twice(x):
     return 2 * x
 told = []
@@ -116,4 +116,4 @@ def test_where_nothing_may_be_written_loops_are_compiled_all_the_same(monkeypatc
 
     with pytest.raises(RuntimeError, match="cannot cache"):
         njit(cache=True)(twice)
-    assert compiled(twice)(21) == 42
+    assert kept(twice)(21) == 42

@@ -64,7 +64,7 @@ def test_noise_makes_no_pulses():
 
 def test_refusals():
     tacho = shaft(chirp(10.0, 0.0))
-    with pytest.raises(ValueError, match="pulses = 0, but give how many"):
+    with pytest.raises(ValueError, match="pulses = 0, but it is a whole number"):
         tachometer_angle(tacho, 0)
     with pytest.raises(ValueError, match="0 pulses through 9 V, but an angle needs 4 or more"):
         tachometer_angle(tacho, level=9.0)

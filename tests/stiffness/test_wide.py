@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.flexibility.hertz import contact_modulus, peak_pressure
-from gearfe.stiffness import solid as wide
+from gearfe.stiffness import wide_curves as wide
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20)}
 FORCE = 1500.0
@@ -192,7 +192,7 @@ def test_pits_over_the_whole_contact_line_name_the_phase(steel):
     pits = [replace(PIT, axes=(8.0, 20.0), tooth=k) for k in range(-1, 4)]
     with (
         pytest.warns(UserWarning, match=r"semi-axes 8 x 20 mm takes the whole flank of z = \d+: nothing of it is left to carry"),
-        pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: pits cover it all"),
+        pytest.raises(RuntimeError, match=r"no contact at phase 0\.25: damage covers it all"),
     ):
         curve_of(steel, {"pinion": pits}, phases=np.array([0.25, 0.5]))
 

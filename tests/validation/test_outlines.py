@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gearfe as gf
-from gearfe.contact.plane import PairContact
+from gearfe.contact.pair_contact import PairContact
 from gearfe.energy.ritz.plane import flexibility
 from geometry.pair.flanks import flank_forms
 from validation.shared.arbiter.beside import beside

@@ -11,7 +11,7 @@ import warnings
 import numpy as np
 
 import gearfe as gf
-from gearfe.contact.solid import STEP
+from gearfe.contact.wide_contact import STEP
 from gearfe.energy.ritz.solid import axial_degree
 from geometry.damage.crack import crack_path
 
@@ -51,7 +51,7 @@ shares below are of harder pairs than random ones. When all forty were solved, b
 `fe3d` 38 of them.
 """
 SETTLED = """
-The constants of the estimates (`gearfe.stiffness.solid`) are published ones or 2. What they compare was settled on other seeds,
+The constants of the estimates (`wide_curves`) are published ones or 2. What they compare was settled on other seeds,
 which do not count here, with one exception: that cells at the corners of undercut mates have to begin where these touch was
 seen on narrow 95008 of this sample (0.62 % off, said 0.36 %). An earlier sample, before cells of modules below 2 mm were made
 shorter, covered 25 of 29 pairs.

@@ -20,7 +20,6 @@ import gearfe as gf
 from gearfe.case import by_gear, overlap
 from gearfe.flexibility.solved import SolvedGears
 from geometry.damage.pit import pit_row
-from geometry.pair.lines import bands_of
 from geometry.pair.pit_lines import in_both_halves, pit_line
 
 from . import herringbone_scan_nodes as nodes
@@ -86,8 +85,8 @@ def pits(pair, layout, count, radius):
     rows = rows if count == 14 else 1
     for middle in pair.pitch_radius_1 + (np.array([-0.4, 0.4]) if rows == 2 else np.zeros(1)):
         if touching:
-            pit, bands = gf.Pit(radius=float(middle), z=pair.gear_1.b / 4, **run), bands_of(pair, "herringbone", 0.0)
-            found = pit_line(pair, 0, pit, along, count // rows, 2 * radius, bands=bands, mirrored=mirrored)
+            options = {"middle": pair.gear_1.b / 4, "face": "herringbone", "mirrored": mirrored}
+            found = pit_line(pair, 0, along, count // rows, 2 * radius, radius=float(middle), **options, **run)
         else:
             found = pit_row(count // rows, 3.0, 27.0, radius=float(middle), **run)
         out += found + (in_both_halves(pair.gear_1, found, "herringbone") if both else [])

@@ -9,7 +9,8 @@ from scipy.interpolate import PchipInterpolator
 
 import gearfe as gf
 from gearfe.energy.closed import published, textbook
-from gearfe.energy.closed.slices import faces, stations
+from gearfe.energy.closed.section import ToothDamage
+from gearfe.energy.closed.slices import stations
 from gearfe.flexibility.hertz import linear_hertz
 
 from . import herringbone_scan_nodes as nodes
@@ -33,7 +34,7 @@ class Closed:
         self.bodies = lru_cache(maxsize=2)(self._bodies)
         self.pair = nodes.changed(chosen.pair, half=half)
         phase = nodes.cycle(self.pair, chosen.face)
-        self.at = stations(self.pair, phase, ((), ()), faces(self.pair, chosen.face, 0.0))
+        self.at = stations(gf.Case(self.pair, 1.0, self.materials, face=chosen.face), phase)
         contact = published.contact if formulas is published else linear_hertz
         self.rest = contact(self.materials) + self._beams(self.pair.gear_2, 1, self.at.roll_2, ())
         own = self.at.order[self.at.column] == 0
@@ -55,7 +56,7 @@ class Closed:
         self.tooth = PchipInterpolator(STEPS[: len(table)], np.array(table), extrapolate=False)
 
     def _beams(self, gear, which, roll, cracks):
-        return self.formulas.components(gear, self.materials[which], roll, cracks=cracks, foundation="none").total
+        return self.formulas.components(gear, self.materials[which], roll, damage=ToothDamage(cracks), foundation="none").total
 
     def _bodies(self, bores, foundation):
         gears = zip((self.pair.gear_1, self.pair.gear_2), (*bores, None), strict=False)

@@ -5,7 +5,6 @@ from functools import partial
 
 import numpy as np
 
-from gearfe.elements.fe_gear3d import PER_HAT, SIZES
 from gearfe.elements.section_error import plane_hats
 from gearfe.energy.ritz.solid import flexibility3d
 from gearfe.flexibility.solved import SolvedGears
@@ -38,7 +37,7 @@ def _body(kept, resolution, gear, material, cracks=(), **options):
         return found
 
     def lacking():
-        fine, coarse = (plane_hats(gear, material, (), each, PER_HAT, SIZES) for each in (FINEST, resolution))
+        fine, coarse = (plane_hats(gear, material, (), each) for each in (FINEST, resolution))
         return fine - coarse
 
     less = np.kron(kept.get(("section", gear, material, resolution), lacking), np.eye(found.degree + 1))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearfe.contact.plane import PairContact
+from gearfe.contact.pair_contact import PairContact
 from gearfe.energy.closed import coupled, textbook
 from gearfe.material import Material
 from gearfe.stiffness.solve import mesh_stiffness

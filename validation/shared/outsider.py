@@ -17,6 +17,7 @@ import gearfe as gf
 from gearfe.decks.contact_solid import SolidDeck
 from gearfe.energy.ritz import solid as ritz3d
 from gearfe.energy.ritz.join import join
+from gearfe.energy.ritz.panel3d import SolidModel
 from gearfe.flexibility import solid as flexibility3d
 
 from . import kept_rows
@@ -123,7 +124,7 @@ def line_deflection(name):
     """Deflection [nm/N] under a line load by `ritz3d`."""
     gear, cracks = lines()[name]
     axial = ritz3d.axial_degree(gear.b, gear.m_n)
-    panels = [ritz3d.solid_sector(gear, STEEL, own, width=gear.b, order=3, axial=axial, refine=1.0) for own in (cracks, ())]
+    panels = [ritz3d.solid_sector(SolidModel(gear, STEEL, axial=axial), own) for own in (cracks, ())]
     found, _ = join(gear, {0: panels[0], 1: panels[1]}, panels[1])
     at = line_hat(gear)[0] * (axial + 1)
     return 1e6 * found[0, 0][at, at] / gear.b

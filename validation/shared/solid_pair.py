@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import gearfe as gf
 from gearfe.contact.bodies import Bodies, energy_bodies
-from gearfe.contact.solid import pair_stiffness3d
+from gearfe.contact.wide_contact import pair_stiffness3d
 from gearfe.stiffness.provenance import SIDES
 
 STEPS = ("step", "extended", "error", "cache")  # of the contact

@@ -24,19 +24,7 @@ def harmonic_flexibility(orders, ratio, nu, state="plane strain"):
     - e**(2it) (conj(z) phi'' + psi')`` with the powers of z that give the harmonic n: ``phi = z**(1 + n), z**(1 - n)``,
     ``psi = z**(n - 1), z**(-n - 1)``; for n = 1 the second is ``phi = ln z, psi = -kappa ln z``, the net force.
 
-    Parameters
-    ----------
-    orders : ndarray of int, shape (n,)
-        From 0.
-    ratio : float
-        Inner over outer radius.
-    nu : float
-    state : {"plane strain", "plane stress"}
-
-    Returns
-    -------
-    ndarray, shape (n, 2, 2)
-        H_n, symmetric.
+    `orders` n are whole numbers from 0, `ratio` is the inner over the outer radius; H_n ``(n, 2, 2)`` are symmetric.
 
     References
     ----------
@@ -76,13 +64,6 @@ def arc_tractions(r, half_angle):
     The stresses of a beam's rectangular section of half width ``h = r sin(half_angle)``, projected along the tooth onto the
     arc: parabolic shear ``3 (1 - x**2 / h**2) / (4 h)`` along x, uniform ``1 / (2 h)`` and linear ``3 x / (2 h**3)`` along y.
 
-    Parameters
-    ----------
-    r : float
-        Radius of the circle [mm].
-    half_angle : float
-        [rad]
-
     Returns
     -------
     angle : ndarray, shape (m,)
@@ -114,16 +95,12 @@ def root_flexibility(r_bore, r, half_angle, apart, material, *, state="plane str
 
     Parameters
     ----------
-    r_bore : float
-        Radius of the held bore [mm].
-    r : float
-        Outer radius [mm].
+    r_bore, r : float
+        Radius of the held bore, and outer radius [mm].
     half_angle : float
         Half angle of the arc a tooth stands on [rad].
     apart : sequence of float
         Angles between tooth and tooth, clockwise [rad]; 0 for a tooth and itself.
-    material : Material
-    state : {"plane strain", "plane stress"}
     turns : float
         Harmonics reach ``turns / half_angle``.
 

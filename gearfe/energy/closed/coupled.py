@@ -3,7 +3,7 @@
 A tooth of an external, undamaged gear (transverse section) is
 
 1. a beam of varying section from the 30-degree tangents of the fillet to the load, with the shear stress that
-   equilibrium demands in a taper (`shear_stress`);
+   equilibrium demands in a taper (`shear_parts`);
 2. a body: the annulus between bore and root circle, loaded by the section forces of all its teeth
 (`gearfe.energy.closed.annulus`),
    through which every tooth moves the others;
@@ -35,7 +35,7 @@ from functools import partial
 import numpy as np
 from scipy.interpolate import CubicSpline, RectBivariateSpline
 
-from geometry.tooth.profile import arc_at, cartesian, fillet, flank, roll_at_arc, root_half_angle, tangent_point
+from geometry.tooth.profile import arc_at, cartesian, flank, roll_at_arc, root_half_angle, tangent_point
 
 from ...flexibility.hertz import half_plane
 from ...flexibility.plane import Flexibility
@@ -53,20 +53,8 @@ def section_loads(gear, roll, height):
 
         V = -cos(beta),   N = -sin(beta),   M = cos(beta) (y_F - y) - sin(beta) x_F
 
-    V along x, N along y (tension is positive), M = integral of x sigma_y.
-
-    Parameters
-    ----------
-    gear : Gear
-    roll : ndarray, shape (n,)
-        Roll lengths of the load [mm].
-    height : float or ndarray
-        y [mm], broadcast against `roll`.
-
-    Returns
-    -------
-    ndarray, shape (3, n)
-        V, N [-] and M [mm].
+    V along x, N along y (tension is positive), M = integral of x sigma_y: ``(3, n)`` of V, N [-] and M [mm], for roll lengths
+    ``(n,)`` and heights [mm] that are broadcast against them.
     """
     beta = load_angle(gear, roll)
     x_f, y_f = cartesian(*flank(gear, roll))
@@ -74,75 +62,41 @@ def section_loads(gear, roll, height):
     return np.array([np.broadcast_to(v, moment.shape) for v in (-np.cos(beta), -np.sin(beta), moment)])
 
 
-def _shear_parts(half, slope, shear, normal, moment):
-    """Coefficients (A, B, C) of ``tau = A (h**2 - x**2) + B + C x`` [1/mm**3, 1/mm, 1/mm**2 per unit load]."""
-    inertia = 2 * half**3 / 3
-    return (shear - 3 * moment * slope / half) / inertia / 2, moment * half / inertia * slope, normal * slope / (2 * half**2)
-
-
-def shear_stress(x, half, slope, shear, normal, moment):
-    """Shear stress across a beam whose half thickness h changes by `slope` = h' per height, unit width.
+def shear_parts(half, slope, shear, normal, moment):
+    """Shear stress ``tau = A (h**2 - x**2) + B + C x`` across a beam whose half thickness h changes by `slope` = h' per height.
 
     With ``sigma = M x / I + N / (2 h)``, equilibrium along the beam, ``d sigma / dy + d tau / dx = 0``, and faces free of load,
     ``tau = +-h' sigma`` at ``x = +-h``, leave::
 
         tau = (M / I)' (h**2 - x**2) / 2 + (M h / I) h' + N h' x / (2 h**2),    I = 2 h**3 / 3,   M' = V
 
-    Its integral is V; for h' = 0 it is the parabola. It agrees with the exact wedge to the square of the wedge's angle.
-
-    Parameters
-    ----------
-    x : ndarray
-        Distance from the centre-line [mm].
-    half, slope : float or ndarray
-        h [mm] and h' = dh / dy.
-    shear, normal, moment : float or ndarray
-        Section forces V, N [N/mm] and M [N mm/mm], as in `section_loads`.
+    Its integral is V; for h' = 0 it is the parabola. It agrees with the exact wedge to the square of the wedge's angle. Unit
+    width; V, N [N/mm] and M [N mm/mm] as in `section_loads`.
 
     References
     ----------
     S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed. (1970), section 38 (the wedge).
     """
-    a, b, c = _shear_parts(half, slope, shear, normal, moment)
-    return a * (half**2 - x**2) + b + c * x
+    inertia = 2 * half**3 / 3
+    return (shear - 3 * moment * slope / half) / inertia / 2, moment * half / inertia * slope, normal * slope / (2 * half**2)
 
 
 def shear_square(half, slope, shear, normal, moment):
-    """Integral of ``tau**2`` of `shear_stress` over the section, unit width; arguments as there."""
-    a, b, c = _shear_parts(half, slope, shear, normal, moment)
+    """Integral of ``tau**2`` of `shear_parts` over the section, unit width; arguments as there."""
+    a, b, c = shear_parts(half, slope, shear, normal, moment)
     return 16 / 15 * a**2 * half**5 + 8 / 3 * a * b * half**3 + 2 * b**2 * half + 2 / 3 * c**2 * half**3
 
 
-def root_section(gear):
-    """Rack tip angle [rad], half thickness x and height y [mm] of the section at the 30-degree tangents of the fillets."""
-    phi = tangent_point(gear)
-    x, y = cartesian(*fillet(gear, phi))
-    return phi, float(x), float(y)
-
-
 def beam(gear, material, roll, *, state="plane strain"):
-    """Bending, shear and axial flexibility of the tooth from its 30-degree section to the load.
+    """Bending, shear and axial flexibility ``(3, n)`` [mm per N/mm] of the tooth from its 30-degree section to loads at `roll`.
 
-    With the section forces of `section_loads`, the stress of `shear_stress` and ``E' = E / (1 - nu**2)`` in plane strain::
+    With the section forces of `section_loads`, the stress of `shear_parts` and ``E' = E / (1 - nu**2)`` in plane strain::
 
         bending = int M**2 / (E' I) dy,   axial = int N**2 / (E' 2 h) dy,   shear = int int tau**2 / G dx dy
-
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    roll : ndarray, shape (n,)
-        Roll lengths of the load [mm].
-    state : {"plane strain", "plane stress"}
-
-    Returns
-    -------
-    (bending, shear, axial) : ndarray, shape (3, n)
-        [mm per N/mm]
     """
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
     out = np.zeros((3, roll.size))
-    for part in (along_fillet(gear, root_section(gear)[0]), along_flank(gear, roll)):
+    for part in (along_fillet(gear, tangent_point(gear)), along_flank(gear, roll)):
         shear, normal, moment = section_loads(gear, roll[:, None], part.y)
         square = shear_square(part.x, part.slope, shear, normal, moment)
         out[0] += (part.step * moment**2 * 1.5 / part.x**3).sum(axis=1)
@@ -192,12 +146,7 @@ def local_remainder(gear, material, roll, *, state="plane strain"):
 
         c [ln h_L - 1/2 - nu / (2 (1 - nu))]
 
-    In plane stress nu / (1 - nu) is nu.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-        [mm per N/mm], for `roll` in mm: lengths inside logarithms are in mm, here as there.
+    In plane stress nu / (1 - nu) is nu. ``(n,)`` [mm per N/mm]; lengths inside logarithms are in mm, here as there.
 
     References
     ----------
@@ -224,21 +173,8 @@ def isolated(gear, material, formula, *, state="plane strain"):
 def flexibility(gear, material, *, neighbours=1, state="plane strain", cache=True):
     """Flexibility of a healthy external gear in closed form, to be used where `gearfe.elements.fe.flexibility` is.
 
-    It has no tip hats, so `gearfe.contact.plane.PairContact` takes it with ``extended=False`` only.
-
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    neighbours : int
-        How many following teeth may carry load at the same time.
-    state : {"plane strain", "plane stress"}
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
-
-    Returns
-    -------
-    Flexibility
+    It has no tip hats, so `gearfe.contact.pair_contact.PairContact` takes it with
+    ``extended=False`` only. The arguments are as there.
 
     Raises
     ------

@@ -13,14 +13,29 @@ from geometry.damage.hollow import breaks, check_hollows
 from geometry.tooth.profile import arc_at, cartesian, fillet, flank, form_point
 
 from .beam import load_angle
-from .section import limits, section
+from .section import ToothDamage, limits, section
 
 ROOTS = ("fillet", "base", "line", "prism")
 FLANK, FOOT = leggauss(24), leggauss(64)
 NODES = 40  # of a part of a damaged tooth
+HEALTHY = ToothDamage()
 
 
-def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="constant"):
+def beam_parts(gear, material, roll, root="fillet", damage=HEALTHY):
+    """Bending, shear and axial flexibility ``(3, n)`` [mm per N/mm] of a tooth as a beam, with the sections that damage leaves.
+
+    The integrals of `gearfe.energy.closed.textbook.components`, `root` and `damage` as of `integrals`.
+    """
+    beta = load_angle(gear, roll)
+    cos, sin = np.cos(beta), np.sin(beta)
+    radius, angle = flank(gear, roll)
+    i0, i1, i2, area, uncracked = integrals(gear, roll, root, damage)
+    arm = cos * (gear.outward * radius * np.cos(angle)) - sin * (radius * np.sin(angle))
+    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
+    return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E
+
+
+def integrals(gear, roll, root="fillet", damage=HEALTHY):
     """Integrals of ``1/I, y/I, y**2/I, 1/A`` and of 1/A without cracks, from the foot of the beam to the load.
 
     Parameters
@@ -29,13 +44,8 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
     roll : ndarray, shape (n,)
         Roll lengths of the load [mm].
     root : {"fillet", "base", "line", "prism"}
-        Where the beam begins. ``fillet``: the true fillet, from the root circle. The others extend the involute down to the
-        larger of base and root circle and, where the base circle is the larger, add nothing (``base``), a straight radial
-        flank down to the root circle (``line``), or a prism of constant thickness down to it (``prism``).
-    cracks, pits : sequences of Crack and Pit
-        Of this tooth, whatever their number.
-    crack_model : {"constant", "straight", "parabola"}
-        See `gearfe.energy.closed.section`.
+        Where the beam begins, see `gearfe.energy.closed.textbook.components`.
+    damage : ToothDamage
 
     Returns
     -------
@@ -44,12 +54,12 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
     """
     if root not in ROOTS:
         raise ValueError(f"root = {root!r}, but it must be one of {', '.join(ROOTS)}")
-    check_hollows(gear, pits)
-    if not (cracks or pits):
+    check_hollows(gear, damage.pits)
+    if not damage:
         low = _lowest(gear, root)
         foot = np.array(_healthy_foot(gear, root))
         return foot[:, None] + _panel(gear, _flank(gear), low, roll, FLANK)
-    found = _limits(gear, root, cracks, crack_model)
+    found, pits = _limits(gear, root, damage), damage.pits
     edges, start = _flank_edges(gear, root, found, pits), np.zeros(5)
     below = _foot(gear, root)
     if below:
@@ -58,9 +68,9 @@ def integrals(gear, roll, *, root="fillet", cracks=(), pits=(), crack_model="con
     return start[:, None] + _running(gear, _flank(gear), edges, found, pits)(roll)
 
 
-def flank_edges(gear, cracks, pits, *, root="fillet", crack_model="constant"):
+def flank_edges(gear, root, damage):
     """Roll lengths [mm], from the foot of the involute to the tip, between which the damaged section is smooth."""
-    return _flank_edges(gear, root, _limits(gear, root, cracks, crack_model), pits)
+    return _flank_edges(gear, root, _limits(gear, root, damage), damage.pits)
 
 
 def _flank_edges(gear, root, found, pits):
@@ -74,11 +84,11 @@ def _lowest(gear, root):
     return gear.roll_f if root == "fillet" else math.sqrt(max(gear.r_f**2 - gear.r_b**2, 0.0))
 
 
-def _limits(gear, root, cracks, crack_model):
+def _limits(gear, root, damage):
     if root == "fillet":
-        return limits(gear, cracks, crack_model)
+        return limits(gear, damage)
     curve, start, _ = _foot(gear, root) or (_flank(gear), _lowest(gear, root), None)
-    return limits(gear, cracks, crack_model, [float(v[0]) for v in curve(np.array([start]))[:2]])
+    return limits(gear, damage, [float(v[0]) for v in curve(np.array([start]))[:2]])
 
 
 def _edges(curve, found, pits, ends):

@@ -1,8 +1,10 @@
 """The plain sum: tooth pairs that ignore each other, each a chain of two teeth and a contact, side by side."""
 
+from functools import partial
+
 import numpy as np
 
-from geometry.damage.crack import check_apart, check_through
+from geometry.damage.crack import check_through
 from geometry.damage.hollow import check_hollows
 from geometry.tooth.profile import flank
 
@@ -11,26 +13,13 @@ from ...flexibility.section_contact import Solved
 from . import published
 from .beam import load_angle
 from .integrals import flank_edges
-from .slices import faces, stations
+from .section import ToothDamage
+from .slices import faces_of, stations
 
 CONTACTS = ("linear", "published", "weber", "palmgren")
 
 
-def plain_sum(
-    pair,
-    materials,
-    phase,
-    formulas,
-    *,
-    cracks=((), ()),
-    pits=((), ()),
-    contact=None,
-    face="spur",
-    groove=0.0,
-    lost="hertz",
-    flanks=None,
-    **variants,
-):
+def plain_sum(case, phase, formulas, *, contact=None, crack_model="constant", lost="hertz", **variants):
     """Sum of the pairs on the path of contact, with one approach common to all.
 
     Every slice of every pair carries the line load w with ``w (s_1 + s_2 + c(w / f) / f) = approach``: s the flexibilities of
@@ -39,30 +28,24 @@ def plain_sum(
 
     Parameters
     ----------
-    pair : GearPair
-    materials : (Material, Material)
+    case : Case
+        Axial components of force and elasticity are left out: a slice of a helical gear is a spur gear. A slice of modified
+        flanks whose gap is not closed carries nothing. Without `face` the teeth are taken for straight.
     phase : ndarray
     formulas : module
         Such as `textbook` or `published`: its ``components`` gives the flexibility of one tooth; its ``DEFAULTS``, if there are
         any, the `contact` of its source, and the ``root`` profile that its beams stand on if it is no variant.
-    cracks, pits : (sequence, sequence)
-        Of pinion and wheel, teeth numbered in each gear's own frame: the wheel's tooth of pair k is its tooth -k.
     contact : {"linear", "published", "weber", "palmgren"}, optional
         `gearfe.flexibility.hertz.linear_hertz`, `published.contact`, `weber_line`, `palmgren_line`; default: as the source of
         `formulas`, the second for `published` and the first otherwise. The last two depend on the load.
-    face : {"spur", "helical", "herringbone"}
-        How the phase runs along the width, see `gearfe.energy.closed.slices.faces`. Axial components of force and elasticity are
-        left out: a slice is a spur gear.
-    groove : float
-        Width of a herringbone gear's relief groove [mm], part of b.
+    crack_model : {"constant", "straight", "parabola"}
+        Limit line of the material a crack leaves alive, see `gearfe.energy.closed.section`.
     lost : {"hertz", "slices", "summed"}
         What pits take from their pair: ``hertz``, of the contact's stiffness the part of its line that lies in them (Liang et al.
         2016); ``slices``, the slices in them with all they carry (slices that know nothing of each other);
         ``summed``, the widths of all pits of the tooth, wherever along its flank the line is: article S4's ``k_h = E (L - sum dL)
         / 2 (1 - mu**2)``, "For multiple pits, I sum the reductions", dL the largest 2 p_d, L the width of the half they lie in.
         The material they take weakens the section of the whole tooth (the mean over all of b), not of single slices, in all.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications: a slice whose gap is not closed carries nothing.
     **variants
         Passed on to ``formulas.components``.
 
@@ -83,66 +66,61 @@ def plain_sum(
     if contact not in CONTACTS:
         raise ValueError(f"contact = {contact!r}, but it must be one of {', '.join(CONTACTS)}")
     phase = np.atleast_1d(np.asarray(phase, dtype=float))
+    pair, materials, damage = case.pair, case.materials, tuple(zip(case.cracks, case.pits, strict=True))
     gears = (pair.gear_1, pair.gear_2)
-    for gear, own_cracks, own_pits in zip(gears, cracks, pits, strict=True):
-        check_through(own_cracks, "a plain sum")
-        check_apart(gear, own_cracks)
-        check_hollows(gear, own_pits)
-    bands = faces(pair, face, groove)
-    options = {name: value for name, value in defaults.items() if name == "root"}
-    options |= {key: variants[key] for key in ("crack_model", "root") if key in variants}
-    at = stations(
-        pair, phase, pits, bands, lost=lost, edges=lambda order: _edges(pair, order, cracks, pits, options), flanks=flanks
-    )
+    for gear, (cracks, pits) in zip(gears, damage, strict=True):
+        check_through(cracks, "a plain sum")
+        check_hollows(gear, pits)
+    root = variants.get("root", defaults.get("root", "fillet"))
+    edges = partial(_edges, pair, damage=damage, crack_model=crack_model, root=root)
+    at = stations(case, phase, lost=lost, edges=edges)
     empty = np.setdiff1d(np.arange(phase.size), at.phase)
     if empty.size:
         raise ValueError(f"no contact is left at phase {phase[empty[0]]:.6g}: damage takes the whole width; make it smaller")
     teeth, outside = np.zeros(at.roll_1.shape), {}
-    for gear, material, roll, tooth, own_cracks, own_pits in (
-        (gears[0], materials[0], at.roll_1, at.order[at.column], cracks[0], pits[0]),
-        (gears[1], materials[1], at.roll_2, -at.order[at.column], cracks[1], pits[1]),
-    ):
-        for where, here in _by_tooth(gear, tooth, own_cracks, own_pits):
-            one = formulas.components(gear, material, roll[where], **here, **variants)
+    order = at.order[at.column]
+    places = zip(gears, materials, (at.roll_1, at.roll_2), (order, -order), damage, strict=True)
+    for gear, material, roll, tooth, own in places:
+        for where, here in _by_tooth(gear, tooth, own, crack_model):
+            one = formulas.components(gear, material, roll[where], damage=here, **variants)
             teeth[where] += one.total
             outside |= dict.fromkeys(one.outside)
-    law = _law(pair, materials, at, contact, bands)
-    return _solver(at, phase.size, teeth, law), {"outside": tuple(outside)}
+    return _solver(at, phase.size, teeth, _law(case, at, contact)), {"outside": tuple(outside)}
 
 
-def _by_tooth(gear, tooth, cracks, pits):
-    """Stations of the healthy teeth and of each damaged one, as (mask, damage)."""
-    damaged = {d.tooth % gear.z for d in (*cracks, *pits)}
+def _by_tooth(gear, tooth, damage, crack_model):
+    """Stations of the healthy teeth and of each damaged one, as (mask, `ToothDamage`)."""
+    damaged = {one.tooth % gear.z for found in damage for one in found}
     rest = ~np.isin(tooth % gear.z, list(damaged))
     if rest.any():
-        yield rest, {}
+        yield rest, ToothDamage()
     for number in sorted(damaged):
         where = tooth % gear.z == number
         if where.any():
-            own = [tuple(d for d in found if d.tooth % gear.z == number) for found in (cracks, pits)]
-            yield where, {"cracks": own[0], "pits": own[1]}
+            yield where, ToothDamage(*(tuple(d for d in found if d.tooth % gear.z == number) for found in damage), crack_model)
 
 
-def _edges(pair, order, cracks, pits, options):
+def _edges(pair, order, *, damage, crack_model, root):
     """Pinion rolls [mm] at which pairs with a damaged tooth are not smooth, by pair order."""
     out = {}
     for number in order:
         found = []
-        for gear, tooth, k in ((pair.gear_1, number, 0), (pair.gear_2, -number, 1)):
-            for _, here in _by_tooth(gear, np.array([tooth]), cracks[k], pits[k]):
-                rolls = flank_edges(gear, here["cracks"], here["pits"], **options) if here else np.zeros(0)
+        for k, (gear, tooth) in enumerate(((pair.gear_1, number), (pair.gear_2, -number))):
+            for _, here in _by_tooth(gear, np.array([tooth]), damage[k], crack_model):
+                rolls = flank_edges(gear, root, here) if here else np.zeros(0)
                 found += (rolls if k == 0 else pair.outward * (pair.length - rolls)).tolist()
         out[number] = found
     return out
 
 
-def _law(pair, materials, at, contact, bands):
+def _law(case, at, contact):
     """Contact law: from the line load on the touching length to secant and tangent flexibility [mm per N/mm]."""
+    pair, materials = case.pair, case.materials
     if contact in ("linear", "published"):
         constant = linear_hertz(materials) if contact == "linear" else published.contact(materials)
         return lambda line: (constant, constant)
     if contact == "palmgren":
-        width = sum(abs(last - first) for first, last, _ in bands)
+        width = sum(abs(last - first) for first, last, _ in faces_of(case))
         return lambda line: palmgren_line(line, materials, width * at.touching)
     radius = pair.relative_radius(at.roll_1, at.roll_2)
     depth = [_depth(gear, roll) for gear, roll in ((pair.gear_1, at.roll_1), (pair.gear_2, at.roll_2))]

@@ -5,19 +5,15 @@ import math
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from geometry.tooth.profile import flank
-
 from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sainsot_outside
-from .integrals import integrals
+from .integrals import HEALTHY, beam_parts
 
 GAUSS = leggauss(32)
 DEFAULTS = {"contact": "published", "root": "prism"}  # of `gearfe.energy.closed.plain_sum`
 ROOTS, FEET = ("prism", "base"), ("root", "base")
 
 
-def components(
-    gear, material, roll, *, cracks=(), pits=(), crack_model="constant", foundation="sainsot", root="prism", foot="root"
-):
+def components(gear, material, roll, *, damage=HEALTHY, foundation="sainsot", root="prism", foot="root"):
     """Flexibility of one tooth by article S4 ("Crack-Pitting Coupled Gear Dynamics").
 
     As printed: the foundation bracket ``L* u**2 + M* u + P* (1 + tan(a)**2) + Q* tan(a)`` with ``u = u_f / S_f``, the factor
@@ -63,15 +59,14 @@ def components(
     X. Liang, M. J. Zuo, T. H. Patel, J. Mech. Eng. Sci. 228(3) (2014) 535-547, eqs. 6-20 (the planetary form).
     """
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
-    force = load_angle(gear, roll)
     for name, value, known in (("foundation", foundation, FOUNDATIONS), ("root", root, ROOTS), ("foot", foot, FEET)):
         if value not in known:
             raise ValueError(f"{name} = {value!r}, but it must be one of {', '.join(known)}")
-    if cracks or pits or gear.internal:
-        bending, shear, axial = _damaged(gear, material, roll, cracks, pits, crack_model, root)
+    if damage or gear.internal:  # the same integrals over the height, with the sections that damage leaves
+        parts = beam_parts(gear, material, roll, root, damage)
     else:
-        bending, shear, axial = _healthy(gear, material, force, root)
-    return Components(bending, shear, axial, *body(gear, material, roll, foundation, foot))
+        parts = _healthy(gear, material, load_angle(gear, roll), root)
+    return Components(*parts, *body(gear, material, roll, foundation, foot))
 
 
 def body(gear, material, roll, foundation="sainsot", foot="root"):
@@ -113,17 +108,6 @@ def _healthy(gear, material, force, root):
         shear += 1.2 * (1 + material.nu) * cos**2 * depth / (material.E * math.sin(alpha_2))
         axial += sin**2 * depth / (2 * material.E * math.sin(alpha_2))
     return bending, shear, axial
-
-
-def _damaged(gear, material, roll, cracks, pits, crack_model, root):
-    """The same over the same profile with the sections that damage leaves."""
-    force = load_angle(gear, roll)
-    cos, sin = np.cos(force), np.sin(force)
-    radius, angle = flank(gear, roll)
-    i0, i1, i2, area, uncracked = integrals(gear, roll, root=root, cracks=cracks, pits=pits, crack_model=crack_model)
-    arm = cos * gear.outward * radius * np.cos(angle) - sin * radius * np.sin(angle)
-    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
-    return bending, 1.2 * cos**2 * area / material.shear_modulus, sin**2 * uncracked / material.E
 
 
 def contact(materials):

@@ -26,6 +26,7 @@ Choices where the literature is ambiguous, or its words do not define a section:
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,18 @@ from geometry.damage.hollow import intervals
 from geometry.tooth.profile import cartesian, flank
 
 CRACK_MODELS = ("constant", "straight", "parabola")
+
+
+@dataclass(frozen=True, slots=True)
+class ToothDamage:
+    """Damage of one tooth, whatever the numbers in it say, and `crack_model`, the limit line of what a crack leaves alive."""
+
+    cracks: tuple[Any, ...] = ()
+    pits: tuple[Any, ...] = ()
+    crack_model: str = "constant"
+
+    def __bool__(self):
+        return bool(self.cracks or self.pits)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,18 +79,18 @@ class Limit:
         return start[0] + (self.corner[0] - start[0]) * (np.sqrt(part) if self.model == "parabola" else part)
 
 
-def limits(gear, cracks, model, foot=None):
-    """Limit lines of `cracks`; `foot` is where the modelled beam begins if that is not the true fillet."""
-    if model not in CRACK_MODELS:
-        raise ValueError(f"crack_model = {model!r}, but it must be one of {', '.join(CRACK_MODELS)}")
+def limits(gear, damage, foot=None):
+    """Limit lines of the cracks of a `ToothDamage`; `foot` is where the modelled beam begins if that is not the true fillet."""
+    if damage.crack_model not in CRACK_MODELS:
+        raise ValueError(f"crack_model = {damage.crack_model!r}, but it must be one of {', '.join(CRACK_MODELS)}")
     x, y = cartesian(*flank(gear, gear.roll_a))
     corner = (float(x), float(gear.outward * y))
     out = []
-    for crack in cracks:
+    for crack in damage.cracks:
         path = crack_path(gear, crack)
         sign = 1 if crack.side == "loaded" else -1
         path = path * [[sign], [gear.outward]] if foot is None else _moved(crack, np.asarray(foot))
-        out.append(Limit(model, crack.side, tuple(path[:, -1].tolist()), tuple(path[:, 0].tolist()), corner))
+        out.append(Limit(damage.crack_model, crack.side, tuple(path[:, -1].tolist()), tuple(path[:, 0].tolist()), corner))
     return out
 
 
@@ -106,10 +119,9 @@ def section(gear, h, y, arc, found, pits):
 
     Returns
     -------
-    area, inertia : ndarray, shape (n,)
-        [mm] and [mm**3]: means over the face width; the inertia is about the centroid of what is left.
-    uncracked : ndarray, shape (n,)
-        Area without the cracks (for axial compression).
+    area, inertia, uncracked : ndarray, shape (n,)
+        [mm], [mm**3] about the centroid of what is left, and the area without the cracks, for axial compression [mm]: means
+        over the face width.
 
     Raises
     ------

@@ -48,32 +48,25 @@ def faces(pair, face, groove=0.0):
     return [(first, last, twist * abs(last - first)) for first, last in halves(pair, face, groove)]
 
 
-def stations(pair, phase, pits, bands, *, lost="hertz", edges=None, flanks=None):
-    """Quadrature stations over the contact lines of all pairs at some phases; exact for what is smooth between the breakpoints.
+def faces_of(case):
+    """`faces` of a `Case`; without `face` its teeth are taken for straight."""
+    return faces(case.pair, case.face or "spur", case.groove)
+
+
+def stations(case, phase, *, lost="hertz", edges=None):
+    """`Stations` over the contact lines of a `Case` at some phases; exact for what is smooth between the breakpoints.
 
     Each contact line is cut at the borders of pits and at `edges`; in between 24 Gauss points integrate along the width. No
     slice is a step: the sum is a smooth function of the phase wherever the exact integral is.
 
     Parameters
     ----------
-    pair : GearPair
-    phase : ndarray
-    pits : (sequence, sequence)
-        Pits of pinion and wheel, teeth numbered in each gear's own frame.
-    bands : list
-        From `faces`.
     lost : {"hertz", "slices", "summed"}
-        What pits take from a pair: part of its contact stiffness (the touching part of the line), the slices they cover with all
-        their stiffness, or of its contact stiffness their widths altogether, wherever the line is.
-    flanks : (FlankForm, FlankForm), optional
-        Modifications: each slice touches where its section first does.
+        What pits take from a pair, see `gearfe.energy.closed.plain_sum.plain_sum`.
     edges : callable, optional
         From the pair orders to a dict by order: roll lengths of the pinion [mm] at which that pair's stiffness is not smooth.
-
-    Returns
-    -------
-    Stations
     """
+    pair, pits, flanks, bands = case.pair, case.pits, case.forms, faces_of(case)
     if lost not in LOST:
         raise ValueError(f"lost = {lost!r}, but it must be one of {', '.join(LOST)}")
     lag = max(band[2] for band in bands)
@@ -130,7 +123,7 @@ def _summed(pair, order, pits, bands):
             out[(order - sense * pit.tooth) % gear.z == 0] += width if pit.side == "loaded" else 0.0
     if (out >= 1).any():
         raise ValueError(
-            f"the pits' widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
+            f"the damage's widths summed are {out.max():.3g} times the width they lie in and leave no contact: give fewer or "
             "smaller ones, or lost = 'hertz'"
         )
     return out

@@ -5,22 +5,10 @@ import numpy as np
 from geometry.tooth.profile import flank, root_half_angle
 
 from .beam import FOUNDATIONS, Components, body_ratio, load_angle, sainsot, sainsot_outside
-from .integrals import integrals
+from .integrals import HEALTHY, beam_parts
 
 
-def components(
-    gear,
-    material,
-    roll,
-    *,
-    cracks=(),
-    pits=(),
-    crack_model="constant",
-    root="fillet",
-    foundation="sainsot",
-    lever="crossing",
-    theta_f=None,
-):
+def components(gear, material, roll, *, damage=HEALTHY, root="fillet", foundation="sainsot", lever="crossing", theta_f=None):
     """Flexibility of one tooth by beam theory over its real profile, from the root circle to the load.
 
     With force F at (x_F, y_F), turned by beta from the normal of the centre-line (y along it), and the half thickness
@@ -40,10 +28,8 @@ def components(
     material : Material
     roll : ndarray
         Roll lengths of the contact [mm].
-    cracks, pits : sequences of Crack and Pit
-        Of this tooth (their numbers are not looked at). Pits also shorten the contact: see `gearfe.energy.closed.plain_sum`.
-    crack_model : {"constant", "straight", "parabola"}
-        Limit line of the material a crack leaves alive.
+    damage : ToothDamage
+        Of this tooth. Pits also shorten the contact: see `gearfe.energy.closed.plain_sum`.
     root : {"fillet", "base", "line", "prism"}
         Where the beam begins: on the root circle over the true fillet; or where the involute, extended downwards, meets the
         larger of base and root circle, ``base`` with nothing below it, ``line`` with a straight radial flank and ``prism``
@@ -72,16 +58,8 @@ def components(
     if lever not in ("crossing", "contact"):
         raise ValueError(f"lever = {lever!r}, but it must be 'crossing' or 'contact'")
     roll = np.atleast_1d(np.asarray(roll, dtype=float))
-    beta = load_angle(gear, roll)
-    cos, sin = np.cos(beta), np.sin(beta)
-    radius, angle = flank(gear, roll)
-    i0, i1, i2, area, uncracked = integrals(gear, roll, root=root, cracks=cracks, pits=pits, crack_model=crack_model)
-    x_f, y_f = radius * np.sin(angle), gear.outward * radius * np.cos(angle)
-    arm = cos * y_f - sin * x_f
-    bending = (arm**2 * i0 - 2 * arm * cos * i1 + cos**2 * i2) / material.E
-    shear = 1.2 * cos**2 * area / material.shear_modulus
-    axial = sin**2 * uncracked / material.E
-    return Components(bending, shear, axial, *body(gear, material, roll, foundation=foundation, lever=lever, theta_f=theta_f))
+    parts = beam_parts(gear, material, roll, root, damage)
+    return Components(*parts, *body(gear, material, roll, foundation=foundation, lever=lever, theta_f=theta_f))
 
 
 def body(gear, material, roll, *, foundation="sainsot", lever="crossing", theta_f=None):

@@ -51,10 +51,8 @@ def axial(width, degree, parts=(), m_n=1.0, fronts=()):
 
     Parameters
     ----------
-    width : float
-        [mm].
-    degree : int
-        Of the polynomials over the whole width.
+    width, degree
+        Of the gear [mm], and of the polynomials over all of it.
     parts : tuple of (None or tuple of (float, float))
         Of each crack: None if it is open over the whole width, or the parts of the width where it is, apart from each other [mm].
     m_n : float

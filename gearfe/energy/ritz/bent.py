@@ -22,7 +22,7 @@ DEPTHS = 7  # at which the section's matrices are computed, or more in proportio
 CHECKED = 6  # order at whose quadrature points the triangles are checked
 
 
-def bent(gear, sector, number, crack, width):
+def bent(gear, sector, number, crack):
     """How a sector follows its crack `number`: the shift ``(2, n)`` [mm] of its vertices, and the `Front`.
 
     Raises
@@ -36,7 +36,7 @@ def bent(gear, sector, number, crack, width):
 
     bulges, outline = sector.edge_bulges, np.unique(np.array(list(sector.bulge)))
     line = np.array(sector.faces[number])
-    return follow(gear, crack, width, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
+    return follow(gear, crack, gear.b, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +66,8 @@ class BentTriangles:
 def bent_triangles(sector, shift, front, along, section):
     """`BentTriangles` of a sector.
 
-    Parameters
-    ----------
-    sector : Sector
-    shift : ndarray, shape (2, n)
-    front : Front
-        Of `bent`.
-    along : Axial
-    section : callable
-        ``section(triangles, points, shift)`` gives A_0, A_1, A_2, B_0, B_1, C of the triangles ``(6, m, 3 n, 3 n)``.
+    `shift` and `front` are of `bent`, `along` is an `Axial`; ``section(triangles, points, shift)`` gives A_0, A_1, A_2, B_0, B_1,
+    C of the triangles ``(6, m, 3 n, 3 n)``.
     """
     moved = np.flatnonzero((np.abs(shift) > 0).any(axis=0)[sector.triangles].any(axis=0))
     index = np.full(sector.triangles.shape[1], -1)
@@ -108,22 +101,9 @@ def bent_triangles(sector, shift, front, along, section):
 
 
 def moved_products(bent, own, at, size):
-    """Terms of the matrix of a few triangles: those that move add these, times `moved_factors`.
+    """Terms ``(t, 3 size, 3 size)`` of the matrix of a few triangles: those that move add these, times `moved_factors`.
 
-    Parameters
-    ----------
-    bent : BentTriangles
-    own : ndarray, shape (k,)
-        Triangles.
-    at : ndarray, shape (k, n)
-        Places of their nodes.
-    size : int
-        How many nodes there are.
-
-    Returns
-    -------
-    ndarray, shape (t, 3 size, 3 size)
-        t = 0 if none of them moves.
+    The nodes of the triangles `own` ``(k,)`` are at the places `at` ``(k, n)`` among `size`; t = 0 if none of them moves.
     """
     moved = np.flatnonzero(bent.index[own] >= 0)
     if not moved.size:

@@ -16,24 +16,13 @@ SAMPLES = 60  # of a loaded flank
 SAME = 1e-6  # distances that differ by less have one degree [m_n]
 
 
-def degrees(gear, sector, numbers, sides, width, degree, order):
+def degrees(gear, sector, numbers, sides, degree, order):
     """Degree along the width of every node ``(n,)``, even and at most `degree`.
 
-    A node has the degree of its place in the section; the two sides get the same, whatever is in the sector.
-
-    Parameters
-    ----------
-    gear : Gear
-    sector : geometry.mesh.sector.Sector
-    numbers : ndarray, shape (k, m)
-        Of all nodes of the triangles.
-    sides : ndarray
-        Nodes of both sides, left ones first.
-    width : float
-        [mm].
-    degree, order : int
-        Highest degree along the width, and that in the section.
+    A node has the degree of its place in the section; the two sides get the same, whatever is in the sector. `numbers` ``(k, m)``
+    are all nodes of the triangles, `sides` those of both sides, left ones first, `order` is that in the section.
     """
+    width = gear.b
     place = np.einsum("cn,dcm->dnm", table(order).nodes, sector.points[:, sector.triangles])
     away = np.zeros(int(numbers.max()) + 1)
     away[numbers.ravel()] = _distance(gear, place.reshape(2, -1))

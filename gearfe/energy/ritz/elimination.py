@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg.blas import dsyrk
@@ -76,30 +77,34 @@ def all_nodes(numbers, count, order):
     return every, count + triangles * inside
 
 
-def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None, bent=None):
-    """`SectorBody` of the triangles.
+class Section(NamedTuple):
+    """The section of a sector with its loads.
 
-    Parameters
-    ----------
-    numbers : ndarray, shape (n, m)
-        Of `all_nodes`.
-    load : ndarray, shape (count, 3, loads)
-        Forces on the nodes that triangles share.
-    section : ndarray
-    axial : gearfe.energy.ritz.axial.Axial
-    sides, held : ndarray
-        Nodes that stay, and nodes that do not move.
-    seams : sequence of (ndarray, ndarray)
-    kinds : ndarray, shape (nodes + loads,), optional
-        Default: all have the polynomials over the whole width.
-    bent : BentTriangles, optional
+    `numbers` (n, m): nodes of the triangles, of `all_nodes`; `stiffness` (3, m, 3 n, 3 n): their ``K00, K01, K11``; `load`
+    (count, 3, loads): forces on the nodes that triangles share; `sides`: nodes of both sides, left ones first, which stay;
+    `held`: nodes that do not move; `chain`: of `panel.numbering`.
     """
+
+    numbers: np.ndarray
+    stiffness: np.ndarray
+    load: np.ndarray
+    sides: np.ndarray
+    held: np.ndarray
+    chain: Any = None
+
+
+def body_of(section, axial, *, seams=(), kinds=None, bent=None):
+    """`SectorBody` of a `Section` and the functions along its width.
+
+    `seams` and `bent` are as of `SectorBody`, and `kinds` is its `kind`, by default that all have the polynomials over the width.
+    """
+    numbers, load = section.numbers, section.load
     nodes, loads = max(load.shape[0], int(numbers.max()) + 1), load.shape[2]
     owner = np.full(nodes, numbers.shape[1])
     np.minimum.at(owner, numbers.ravel(), np.broadcast_to(np.arange(numbers.shape[1]), numbers.shape).ravel())
     stays, there = np.zeros(nodes + loads, dtype=bool), np.ones(nodes + loads, dtype=bool)
-    stays[sides] = stays[nodes:] = True
-    there[held] = False
+    stays[section.sides] = stays[nodes:] = True
+    there[section.held] = False
     partner = np.arange(nodes)
     for left, right in seams:
         partner[left], partner[right] = right, left
@@ -117,7 +122,7 @@ def body_of(numbers, load, section, axial, *, sides, held, seams=(), kinds=None,
         uses=np.bincount(np.concatenate(touch), minlength=nodes + loads),
         stays=stays,
         there=there,
-        section=section,
+        section=section.stiffness,
         factors={(a, b): _factors(axial, axial.sets[a], axial.sets[b]) for a in used for b in used},
         kind=kind,
         size=each * np.array([own.size for own in axial.sets])[kind],

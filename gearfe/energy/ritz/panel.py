@@ -10,17 +10,20 @@ over the whole boundary of the sector, crack faces included.
 
 import math
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 from scipy.sparse import coo_array
 
 from geometry.kept import keeping
 from geometry.mesh.triangle import BULGE, ENDS, GAUSS, jacobians, lagrange, lobatto, table
+from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, cartesian, flank, flank_normal
 
 from ...flexibility import flamant
 from ...flexibility.condense import condense
 from ...flexibility.plane_elements import bent_stiffness, stiffness
+from ...material import Material
 
 STRAIGHT = 1e-12  # edges that depart less from their chord, by the size of the sector
 GROUP = 10  # triangles eliminated together, and up to twice as many
@@ -44,26 +47,37 @@ class Panel:
     unknowns: int
 
 
-def panel(gear, sector, material, roll, *, order, state="plane strain", tilt=0.0):
-    """Reduce a sector to its sides.
+@dataclass(frozen=True, slots=True)
+class SectionModel:
+    """A gear's section as it is solved for, held at its bore or rim.
+
+    `order` is that of the polynomials, 2 to 8; `refine` divides the edge lengths of the triangles, and the hats at corners.
+    """
+
+    gear: Gear
+    material: Material
+    state: str = "plane strain"
+    order: int = 4
+    refine: float = 1.0
+
+
+def check_order(order):
+    """ValueError unless it is an order of polynomials that the triangles have."""
+    if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
+        raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
+
+
+def panel(model, sector, roll, tilt=0.0):
+    """The `Panel` of a `geometry.mesh.sector.Sector` of a `SectionModel`.
 
     Parameters
     ----------
-    gear : Gear
-    sector : geometry.mesh.sector.Sector
-    material : Material
     roll : ndarray, shape (n,)
         Roll lengths of unit line loads on the loaded flank [mm]; none for a sector that only supports others.
-    order : int
-        Polynomial order of the displacements.
-    state : {"plane strain", "plane stress"}
     tilt : float or ndarray, shape (n,)
         By what angle the loads lean from the flank's normal towards the outside of the gear [rad]; small.
-
-    Returns
-    -------
-    Panel
     """
+    gear, material, state, order = model.gear, model.material, model.state, model.order
     modulus = material.plane_modulus(state)
     ratio = material.nu / (1 - material.nu) if state == "plane strain" else material.nu
     numbers, count, chain = numbering(sector, order)

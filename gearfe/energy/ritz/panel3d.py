@@ -12,19 +12,22 @@ nodes, the distance those of the opening.
 """
 
 import math
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from geometry.mesh.triangle import GAUSS, jacobians, lagrange, table
+from geometry.tooth.gear import Gear
 from geometry.tooth.profile import arc_at, flank_normal, roll_at_arc
 
+from ...material import Material
 from .axial import axial
 from .bent import bent_triangles
 from .depth import degrees
 from .dissection import dissect
-from .elimination import all_nodes, body_of, front, places
+from .elimination import Section, all_nodes, body_of, front, places
 from .panel import Panel, numbering
 from .parity import front_by_parity
 from .short_edges import ORDER, bind, quadratic_edges
@@ -33,22 +36,36 @@ CLOSE = 0.5  # how near a crack [m_n] nodes have the functions that its ends alo
 NEAR_TIP = 0.1  # faces closer to a crack's tip than this part of its length cannot be seen to touch
 
 
-def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), bends=(), tree=None):
-    """Reduce a sector to its two helicoidal sides.
+@dataclass(frozen=True, slots=True)
+class SolidModel:
+    """A gear of finite width as it is solved for, held at its bore or rim, both end faces free.
 
-    Parameters
+    Attributes
     ----------
     gear : Gear
         Its helix angle turns the section clockwise by ``tan(beta) / r`` per height z (negative: the other way).
-    sector : geometry.mesh.sector.Sector
     material : Material
+    order, axial : int
+        Of the polynomials in the section and along the width.
+    refine : float
+        Divides the edge lengths of the triangles.
+    """
+
+    gear: Gear
+    material: Material
+    order: int = 3
+    axial: int = 0
+    refine: float = 1.0
+
+
+def panel3d(model, sector, knots, *, parts=(), bends=(), tree=None):
+    """Reduce a `geometry.mesh.sector.Sector` of a `SolidModel` to its two helicoidal sides.
+
+    Parameters
+    ----------
     knots : ndarray, shape (3, n)
         Start, top and end of hats of unit area along the arc of the loaded flank [mm]: unit loads per width along the inward
         normal of the helicoid, times each axial mode of `halfspace.modes`.
-    width : float
-        [mm]; both end faces are free.
-    order, degree : int
-        Of the polynomials in the section and along the width.
     parts : tuple
         Where the cracks of the sector are open, see `axial.axial`; default over the whole width.
     bends : tuple of None or (ndarray, Front)
@@ -63,24 +80,25 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
         innermost. Its `own` is the full displacement with the sides held, nothing taken out. Faces of cracks are pushed apart
         at the points of `axial.Axial`, pair of nodes by pair; the opening is that in the section.
     """
+    gear, degree = model.gear, model.axial
     parts = parts or (None,) * len(sector.faces)
     bends = tuple(bends) or (None,) * len(parts)
-    along = axial(width, degree, parts, gear.m_n, [bend and bend[1] for bend in bends])
+    along = axial(gear.b, degree, parts, gear.m_n, [bend and bend[1] for bend in bends])
     bent = None
     for bend in filter(None, bends):
-        bent = bent_triangles(sector, *bend, along, partial(_moved_section, sector, order, material, gear.twist_rate))
-    cubic = bent is not None
-    every, section, load, sides, held, chain = section_of(gear, sector, material, knots, order, bent=bent, cubic=cubic)
-    apart, owner = _apart(sector, chain, load.shape[0])
+        bent = bent_triangles(sector, *bend, along, partial(_moved_section, model, sector))
+    section = section_of(model, sector, knots, bent=bent, cubic=bent is not None)
+    every, sides, chain = section.numbers, section.sides, section.chain
+    apart, owner = _apart(sector, chain, section.load.shape[0])
     seams = [chain(face)[:-1] for i, pair in enumerate(sector.faces) if parts[i] for face in pair]
     seams = list(zip(seams[::2], seams[1::2], strict=True))
-    load = np.concatenate([load, apart], axis=2)
+    load = np.concatenate([section.load, apart], axis=2)
     nodes = int(every.max()) + 1
-    own_degrees = degrees(gear, sector, every, sides, width, degree, order)
+    own_degrees = degrees(gear, sector, every, sides, degree, model.order)
     kinds = np.zeros(nodes + load.shape[2], dtype=int)  # which functions along the width
     kinds[:nodes] = _kinds(gear, sector, every, own_degrees, sides, parts, bends, [right for _, right in seams])
     kinds[nodes + knots.shape[1] :] = [2 + 4 * i for i in owner]
-    body = body_of(every, load, section, along, sides=sides, held=held, seams=seams, kinds=kinds, bent=bent)
+    body = body_of(section._replace(load=load), along, seams=seams, kinds=kinds, bent=bent)
     even = gear.twist_rate == 0 and degree > 0 and not any(parts) and bent is None
     ids, matrix = (front_by_parity if even else front)(body, dissect(sector) if tree is None else tree)
     at = places(body, ids, np.concatenate([sides, np.arange(body.first_load, body.size.size)]))
@@ -103,45 +121,31 @@ def panel3d(gear, sector, material, knots, width, *, order, degree, parts=(), be
     )
 
 
-def section_of(gear, sector, material, knots, order, *, plane=False, bent=None, cubic=False):
-    """The section of a sector with its loads, short edges bound.
+def section_of(model, sector, knots, *, plane=False, bent=None, cubic=False):
+    """The `Section` of a sector, short edges bound.
 
     Parameters
     ----------
-    gear, sector, material, knots, order
-        As in `panel3d`.
     plane : bool
         As if it were a spur gear's.
     bent : BentTriangles, optional
-        The triangles that move with a front: left out of `section`.
+        The triangles that move with a front: left out of the stiffness.
     cubic : bool
         Leave short edges cubic. Of a front that slopes they would lack up to a hundredth of what it adds: what cubics give at
         its tip is not known from plane strain, as it is of cracks that are straight.
-
-    Returns
-    -------
-    every : ndarray, shape (n, m)
-        Nodes of the triangles, inside ones too.
-    section : ndarray, shape (3, m, 3 n, 3 n)
-        ``K00, K01, K11`` of the triangles.
-    load : ndarray, shape (count, 3, loads)
-        Forces of the hats on the nodes that triangles share.
-    sides, held : ndarray
-        Nodes of both sides, left ones first, and those that do not move.
-    chain : callable
-        Of `panel.numbering`.
     """
+    gear, order = model.gear, model.order
     numbers, count, chain = numbering(sector, order)
     load = _hats(gear, sector, chain, count, knots, order, 0.0 if plane else gear.beta_b)
     sides = np.concatenate([chain(side)[1:] for side in (sector.left, sector.right)])
     every, _ = all_nodes(numbers, count, order)
-    section = _section(sector, order, material, 0.0 if plane else gear.twist_rate)
+    stiffness = _section(model, sector, 0.0 if plane else gear.twist_rate)
     if bent is not None:
-        section[:, bent.index >= 0] = 0.0
+        stiffness[:, bent.index >= 0] = 0.0
     held = chain(sector.held)
     if order == ORDER and not cubic:
-        held = np.append(held, bind(section, load, every, quadratic_edges(gear, sector)))
-    return every, section, load, sides, held, chain
+        held = np.append(held, bind(stiffness, load, every, quadratic_edges(gear, sector)))
+    return Section(every, stiffness, load, sides, held, chain)
 
 
 def _kinds(gear, sector, numbers, degree, sides, parts, bends, right):
@@ -208,16 +212,16 @@ def polar(gear, sizes, matrix, components=3):
     return out
 
 
-def _section(sector, order, material, twist):
+def _section(model, sector, twist):
     """``K00, K01, K11`` of all triangles ``(3, m, 3 nodes, 3 nodes)``."""
-    gram = _gram(sector, order, slice(None), sector.points)
-    return _energies(gram, _between(material, twist)[:3, ..., :4, :4])
+    gram = _gram(sector, model.order, slice(None), sector.points)
+    return _energies(gram, _between(model.material, twist)[:3, ..., :4, :4])
 
 
-def _moved_section(sector, order, material, twist, triangles, points, shift):
+def _moved_section(model, sector, triangles, points, shift):
     """A_0, A_1, A_2, B_0, B_1, C of `bent` of some triangles with their vertices at `points`: ``(6, m, 3 nodes, 3 nodes)``."""
-    gram = _gram(sector, order, triangles, points, shift)
-    return _energies(gram, _between(material, twist)[[0, 3, 4, 1, 5, 2]])
+    gram = _gram(sector, model.order, triangles, points, shift)
+    return _energies(gram, _between(model.material, model.gear.twist_rate)[[0, 3, 4, 1, 5, 2]])
 
 
 def _gram(sector, order, triangles, points, shift=None):

@@ -6,7 +6,6 @@ one tooth.
 """
 
 from functools import partial
-from numbers import Integral
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -20,7 +19,7 @@ from geometry.tooth.profile import arc_at, roll_at_arc
 from ...flexibility.plane import BELOW, NEAREST, TILT, Flexibility, SeamFaces, leaning
 from ...flexibility.solved import solved_gears
 from .join import join
-from .panel import panel
+from .panel import SectionModel, check_order, panel
 
 PLACES = 16  # loads on each flank
 FOOT = 20 * NEAREST  # of them to the form point; to the tip corner it is `NEAREST` [m_n]
@@ -29,7 +28,7 @@ KNOTS = 48  # of the splines that carry their polynomial
 
 
 def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain", order=4, refine=1.0, cache=True):
-    """Flexibility of a gear by the energy model.
+    """`Flexibility` of a gear by the energy model.
 
     Parameters
     ----------
@@ -47,45 +46,40 @@ def flexibility(gear, material, cracks=(), *, neighbours=1, state="plane strain"
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
-    Returns
-    -------
-    Flexibility
-
     Raises
     ------
     ValueError
         If `order` is out of range or a crack changes along the width.
     """
-    if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
-        raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
-    options = (state, int(order), float(refine))
+    check_order(order)
     check_through(cracks, "the energy model of the section")
-    case = (gear, material, tuple(cracks), neighbours, *options)
-    kept = solved_gears(cache)
-    return kept.get(("ritz", *case), partial(_cracked if cracks else _healthy, *case, kept))
+    model = SectionModel(gear, material, state, int(order), float(refine))
+    return _flexibility(model, tuple(cracks), neighbours, solved_gears(cache))
 
 
-def _healthy(gear, material, _, neighbours, state, order, refine, cache):
-    one = loaded_sector(gear, material, (), state=state, order=order, refine=refine, cache=cache)
+def _flexibility(model, cracks, neighbours, cache):
+    solve = _cracked if cracks else _healthy
+    return cache.get(("ritz", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
+
+
+def _healthy(model, _, neighbours, cache):
+    gear, one = model.gear, loaded_sector(model, (), cache)
     teeth = range(min(neighbours + 1, gear.z))
     influence, _ = join(gear, dict.fromkeys(teeth, one), one)
     far = {(0, k): _spline(gear, influence[0, k]) for k in teeth if k}
     near, own, leans = _own_tooth(gear, influence[0, 0])
-    return Flexibility(
-        gear, {0: near}, far, {0: own}, _limits(gear), HATS * refine, one.unknowns, basis=_basis(gear), leans={0: leans}
-    )
+    fine = HATS * model.refine
+    return Flexibility(gear, {0: near}, far, {0: own}, _limits(gear), fine, one.unknowns, basis=_basis(gear), leans={0: leans})
 
 
-def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
+def _cracked(model, cracks, neighbours, cache):
     """Flexibility with cracks; that without serves the teeth too far away to share load with a cracked one."""
-    options = {"state": state, "order": order, "refine": refine, "cache": cache}
-    healthy = flexibility(gear, material, neighbours=neighbours, **options)
-    reach = max(1, neighbours - 1)
+    gear, reach = model.gear, max(1, neighbours - 1)
+    healthy = _flexibility(model, (), neighbours, cache)
     teeth = sorted({(crack.tooth + k) % gear.z for crack in cracks for k in range(-reach, reach + 1)})
-    one = loaded_sector(gear, material, (), **options)
     hurt = {tooth: tuple(crack for crack in cracks if crack.tooth % gear.z == tooth) for tooth in teeth}
-    panels = {tooth: loaded_sector(gear, material, found, **options) if found else one for tooth, found in hurt.items()}
-    influence, opening = join(gear, panels, one)
+    panels = {tooth: loaded_sector(model, found, cache) for tooth, found in hurt.items()}
+    influence, opening = join(gear, panels, loaded_sector(model, (), cache))
     between = opening["influence"]
     stiffness = np.linalg.inv(between)
     near, own, far, leans = {}, {}, {}, {}
@@ -98,22 +92,20 @@ def _cracked(gear, material, cracks, neighbours, state, order, refine, cache):
                 far[i, j] = _spline(gear, glued)
     arcs, matrix = _knots(gear)
     seam = SeamFaces({t: CubicSpline(arcs, matrix @ opening[t][:, :PLACES].T) for t in teeth}, between, stiffness)
-    unknowns = sum(p.unknowns for p in panels.values())
-    return Flexibility(gear, near, far, own, _limits(gear), HATS * refine, unknowns, healthy, seam, _basis(gear), leans)
+    unknowns, fine = sum(p.unknowns for p in panels.values()), HATS * model.refine
+    return Flexibility(gear, near, far, own, _limits(gear), fine, unknowns, healthy, seam, _basis(gear), leans)
 
 
-def loaded_sector(gear, material, cracks, *, state="plane strain", order=4, refine=1.0, cache=True):
-    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways.
-
-    The other arguments are as of `flexibility`.
-    """
+def loaded_sector(model, cracks, cache=True):
+    """`Panel` of a sector with `cracks` under the loads at `_places`, and under eight tilted ones: at `_leans`, both ways."""
+    gear = model.gear
 
     def solve():
         rolls = np.append(_places(gear), np.repeat(roll_at_arc(gear, _leans(gear)), 2))
         tilt = np.append(np.zeros(PLACES), [TILT, -TILT] * 4)
-        return panel(gear, sector(gear, cracks, refine=refine), material, rolls, order=order, state=state, tilt=tilt)
+        return panel(model, sector(gear, cracks, refine=model.refine), rolls, tilt)
 
-    return solved_gears(cache).get(("ritz sector", gear, material, cracks, state, order, refine), solve)
+    return solved_gears(cache).get(("ritz sector", model, cracks), solve)
 
 
 def _limits(gear):

@@ -13,42 +13,31 @@ from ...flexibility.hertz import half_plane, hat_logarithm
 from ...flexibility.solid import hats
 from ...flexibility.solved import solved_gears
 from .join import join
-from .panel import Panel
+from .panel import Panel, SectionModel
 from .panel3d import polar, section_of
 from .plane import PLACES as LOADS
 from .plane import carry, loaded_sector
 
 
-def missing(gear, material, cracks, order, sections, *, cubic=False, cache=True):
+def missing(model, cracks, sections, *, cubic=False, cache=True):
     """What the section's polynomials miss between the hats ``(PLACES, PLACES)`` [mm per N/mm].
 
-    Parameters
-    ----------
-    gear : Gear
-    material : Material
-    cracks : tuple of Crack
-        On tooth 0.
-    order : int
-        Of the polynomials in the section.
-    sections : tuple of Sector
-        With `cracks`, and without.
-    cubic : bool
-        Whether short edges are cubic, see `panel3d.section_of`.
-    cache : bool or SolvedGears
-        Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
+    `cracks` are on tooth 0, `sections` the `Sector` with them and that without; `cubic` as of `panel3d.section_of`.
     """
-    one = plane_panel(gear, sections[1], material, order, cubic)
-    found = join(gear, {0: plane_panel(gear, sections[0], material, order, cubic) if cracks else one, 1: one}, one)[0][0, 0]
+    gear, material = model.gear, model.material
+    one = plane_panel(model, sections[1], cubic)
+    found = join(gear, {0: plane_panel(model, sections[0], cubic) if cracks else one, 1: one}, one)[0][0, 0]
     local = half_plane(material) * hat_logarithm(hats(gear), hats(gear))
     return plane_hats(gear, material, cracks, cache=cache) + local - found
 
 
-def plane_panel(gear, sector, material, order, cubic=False):
+def plane_panel(model, sector, cubic=False):
     """`Panel` of a sector in plane strain on the triangles of `panel3d`, loaded by the hats; faces of cracks are free."""
-    every, section, load, sides, held, _ = section_of(gear, sector, material, hats(gear), order, plane=True, cubic=cubic)
+    gear = model.gear
+    every, stiffness, load, sides, held, _ = section_of(model, sector, hats(gear), plane=True, cubic=cubic)
     nodes, local = int(every.max()) + 1, np.arange(3 * every.shape[0]).reshape(-1, 3)[:, :2].ravel()  # the third is zero
     at = (2 * every.T[:, :, None] + np.arange(2)).reshape(every.shape[1], -1)
-    block = section[0][:, local[:, None], local]
+    block = stiffness[0][:, local[:, None], local]
     rows, columns = np.broadcast_to(at[:, :, None], block.shape), np.broadcast_to(at[:, None], block.shape)
     matrix = coo_matrix((block.ravel(), (rows.ravel(), columns.ravel())), shape=(2 * nodes,) * 2).tocsr()
     force = np.zeros((2 * nodes, load.shape[2]))
@@ -77,7 +66,7 @@ def plane_hats(gear, material, cracks=(), *, cache=True):
     kept = solved_gears(cache)
 
     def solve():
-        panels = {k: loaded_sector(gear, material, own, cache=kept) for k, own in enumerate((cracks, ()))}
+        panels = {k: loaded_sector(SectionModel(gear, material), own, kept) for k, own in enumerate((cracks, ()))}
         influence = join(gear, panels, panels[1])[0][0, 0][:LOADS, :LOADS]
         points, weight = hat_points(hats(gear), 12)
         mean = np.einsum("hg,hgk->hk", weight, carry(gear, points.ravel()).reshape(*points.shape, -1))

@@ -33,18 +33,9 @@ def quadratic_edges(gear, sector):
 
 
 def bind(section, load, numbers, edges):
-    """Bind the inner nodes of quadratic `edges`, in place, and return the nodes that are left out.
+    """Bind the inner nodes of the `edges` of `quadratic_edges`, in place, and return the nodes that are left out.
 
-    Parameters
-    ----------
-    section : ndarray, shape (3, m, 3 n, 3 n)
-        Of the triangles.
-    load : ndarray, shape (count, 3, loads)
-        Forces on the nodes.
-    numbers : ndarray, shape (n, m)
-        Nodes of the triangles.
-    edges : ndarray of bool, shape (3, m)
-        Of `quadratic_edges`.
+    `section` ``(3, m, 3 n, 3 n)``, `load` and `numbers` are as of `elimination.Section`.
     """
     s = (1 + lobatto(ORDER)[1]) / 2
     bound = np.tile(np.eye(numbers.shape[0]), (edges.shape[1], 1, 1))

@@ -20,7 +20,8 @@ from ...flexibility.solved import solved_gears
 from .bent import bent
 from .dissection import dissect
 from .join import join
-from .panel3d import panel3d
+from .panel import check_order
+from .panel3d import SolidModel, panel3d
 from .plane_strain import missing
 
 LOST = 2  # axial modes too poor to be kept
@@ -39,8 +40,8 @@ SIZES = {
 }
 
 
-def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
-    """Flexibility of a gear of finite width by the energy model.
+def flexibility3d(gear, material, cracks=(), *, neighbours=1, order=3, axial=None, refine=1.0, cache=True):
+    """`Flexibility3D` of a gear of finite width by the energy model.
 
     Parameters
     ----------
@@ -51,8 +52,6 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     cracks : tuple of Crack
         Of any depth along the width, but one that changes follows a straight crack. Their `tooth` counts to the loaded side of
         this gear.
-    width : float, optional
-        [mm], default ``gear.b``.
     neighbours : int
         How many following teeth may carry load at the same time.
     order : int
@@ -64,27 +63,22 @@ def flexibility3d(gear, material, cracks=(), *, width=None, neighbours=1, order=
     cache : bool or SolvedGears
         Where to look for what was solved before, see `gearfe.flexibility.solved.solved_gears`.
 
-    Returns
-    -------
-    Flexibility3D
-
     Raises
     ------
     ValueError
         If an option is out of range, or a tooth has cracks that the model has not.
     """
-    width = float(gear.b if width is None else width)
-    if not (math.isfinite(width) and width > 0):
-        raise ValueError(f"width = {width} mm, but a gear needs a positive face width")
-    axial = axial_degree(width, gear.m_n) if axial is None else axial
-    if isinstance(order, bool) or not isinstance(order, Integral) or not 2 <= order <= 8:
-        raise ValueError(f"order = {order!r}, but it is the polynomial order: a whole number from 2 to 8")
+    axial = axial_degree(gear.b, gear.m_n) if axial is None else axial
+    check_order(order)
     if isinstance(axial, bool) or not isinstance(axial, Integral) or not (axial == 0 or axial > LOST):
         raise ValueError(f"axial = {axial!r}, but it is the degree along the width: 0, or a whole number from {LOST + 1}")
-    options = (width, int(order), int(axial), float(refine))
-    case = (gear, material, tuple(cracks), min(neighbours, gear.z - 1), *options)
-    kept = solved_gears(cache)
-    return kept.get(("ritz3d", *case), partial(_mirrored if gear.beta < 0 else _solved, *case, kept))
+    model = SolidModel(gear, material, int(order), int(axial), float(refine))
+    return _flexibility(model, tuple(cracks), min(neighbours, gear.z - 1), solved_gears(cache))
+
+
+def _flexibility(model, cracks, neighbours, cache):
+    solve = _mirrored if model.gear.beta < 0 else _solved
+    return cache.get(("ritz3d", model, cracks, neighbours), partial(solve, model, cracks, neighbours, cache))
 
 
 def axial_degree(width, m_n):
@@ -92,30 +86,48 @@ def axial_degree(width, m_n):
     return max(8, math.ceil(0.8 * width / m_n) + LOST)
 
 
-def _mirrored(gear, material, cracks, neighbours, width, order, axial, refine, cache):
+def _mirrored(model, cracks, neighbours, cache):
     """The gear of the other hand, seen from its other end: odd polynomials along the width change their sign."""
-    cracks = tuple(crack_in_band(crack, width, width, 0.0) for crack in cracks)
-    options = {"width": width, "neighbours": neighbours, "order": order, "axial": axial, "refine": refine, "cache": cache}
-    other = flexibility3d(replace(gear, beta=-gear.beta), material, cracks, **options)
+    gear = model.gear
+    cracks = tuple(crack_in_band(crack, gear.b, gear.b, 0.0) for crack in cracks)
+    other = _flexibility(replace(model, gear=replace(gear, beta=-gear.beta)), cracks, neighbours, cache)
     sign = np.tile((-1.0) ** np.arange(other.degree + 1), PLACES)
     near, far = ({key: sign[:, None] * found * sign for key, found in own.items()} for own in (other.near, other.far))
-    healthy = None
-    if other.healthy is not None:
-        healthy = flexibility3d(gear, material, **options)
-    seam = other.seam
-    if seam is not None:
-        seam = replace(seam, opening={tooth: found * sign for tooth, found in seam.opening.items()})
+    healthy = other.healthy and _flexibility(model, (), neighbours, cache)
+    seam = other.seam and replace(other.seam, opening={tooth: found * sign for tooth, found in other.seam.opening.items()})
     return replace(other, gear=gear, near=near, far=far, healthy=healthy, seam=seam)
 
 
-def _solved(gear, material, cracks, neighbours, width, order, axial, refine, cache):
-    options = {"width": width, "order": order, "axial": axial, "refine": refine, "cache": cache}
-    one = solid_sector(gear, material, (), **options)
-    own = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
+def _solved(model, cracks, neighbours, cache):
+    gear, degree = model.gear, max(model.axial - LOST, 0)
+    one = solid_sector(model, (), cache)
+    hurt = {t: tuple(c for c in cracks if c.tooth % gear.z == t) for t in {crack.tooth % gear.z for crack in cracks}}
     panels = dict.fromkeys(solved_teeth(gear, cracks, neighbours), one)
-    panels |= {t: solid_sector(gear, material, found, **options) for t, found in own.items()}
-    healthy = flexibility3d(gear, material, neighbours=neighbours, **options) if cracks else None
-    return _joined(gear, material, panels, one, own, healthy, **options)
+    panels |= {t: solid_sector(model, found, cache) for t, found in hurt.items()}
+    healthy = _flexibility(model, (), neighbours, cache) if cracks else None
+    influence, opening = join(gear, panels, one)
+    kept = (np.arange(PLACES)[:, None] * (model.axial + 1) + np.arange(degree + 1)).ravel()
+    influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
+    for tooth in panels:
+        _complete(model, hurt.get(tooth, ()), influence[tooth, tooth], cache)
+    unknowns = sum(p.unknowns for p in panels.values())
+    made = parted(gear, model.material, degree, influence, unknowns, healthy, cache=cache)
+    if not cracks:
+        return made
+    faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
+    return replace(made, seam=faces)
+
+
+def _complete(model, cracks, influence, cache):
+    """Add to the influence between the hats of a tooth with `cracks`, in place, what the section's polynomials miss."""
+    slopes, degree = not all(crack.even for crack in cracks), len(influence) // PLACES - 1
+    healthy = _missing(model, (), cache)
+    influence += np.kron(_missing(model, (), cache, cubic=True) if slopes else healthy, np.eye(degree + 1))
+    even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
+    if cracks and all(crack.even and crack.width is None for crack in cracks):
+        influence[even] += _missing(model, tuple(whole(crack) for crack in cracks), cache) - healthy
+    elif len(cracks) == 1 and slopes:
+        influence[even] += _missing_along(model, cracks[0], cache)
 
 
 def _seams(cracks):
@@ -147,23 +159,22 @@ def _seams(cracks):
     return tuple(found), [None if None in own else tuple(own) for own in parts], fronts
 
 
-def solid_sector(gear, material, cracks, *, width, order, axial, refine, cache=True):
-    """`Panel` of a sector with `cracks`, loaded by the hats times all modes; the arguments as of `flexibility3d`."""
-    kept = solved_gears(cache)
+def solid_sector(model, cracks, cache=True):
+    """`Panel` of a sector with `cracks`, loaded by the hats times all modes."""
+    kept, gear = solved_gears(cache), model.gear
 
     def solve():
         shapes, parts, fronts = _seams(cracks)
-        section, tree = _sector(gear, shapes, refine, kept)
+        section, tree = _sector(gear, shapes, model.refine, kept)
         bends = [None] * len(fronts)
         for i, crack in enumerate(fronts):
             if crack:
-                bends[i] = bent(gear, section, i, crack, width)
+                bends[i] = bent(gear, section, i, crack)
                 parts[i] = bends[i][1].open()
-                parts[i] = None if parts[i] == ((0.0, width),) else parts[i]
-        options = {"order": order, "degree": axial, "parts": tuple(parts), "bends": tuple(bends), "tree": tree}
-        return panel3d(gear, section, material, hats(gear), width, **options)
+                parts[i] = None if parts[i] == ((0.0, gear.b),) else parts[i]
+        return panel3d(model, section, hats(gear), parts=tuple(parts), bends=tuple(bends), tree=tree)
 
-    return kept.get(("ritz3d sector", gear, material, cracks, width, order, axial, refine), solve)
+    return kept.get(("ritz3d sector", model, cracks), solve)
 
 
 def _sector(gear, cracks, refine, cache):
@@ -176,32 +187,7 @@ def _sector(gear, cracks, refine, cache):
     return cache.get(("ritz3d section", gear, cracks, refine), solve)
 
 
-def _joined(gear, material, panels, one, cracks, healthy, *, width, order, axial, refine, cache):
-    influence, opening = join(gear, panels, one)
-    degree = max(axial - LOST, 0)
-    kept = (np.arange(PLACES)[:, None] * (axial + 1) + np.arange(degree + 1)).ravel()
-    influence = {key: value[np.ix_(kept, kept)] for key, value in influence.items()}
-    missing = _missing(gear, material, (), order, refine, cache)
-    for tooth in panels:
-        slopes = not all(crack.even for crack in cracks.get(tooth, ()))
-        own = _missing(gear, material, (), order, refine, cache, cubic=True) if slopes else missing
-        influence[tooth, tooth] = influence[tooth, tooth] + np.kron(own, np.eye(degree + 1))
-    even = np.ix_(*[np.arange(PLACES) * (degree + 1)] * 2)
-    for tooth, own in cracks.items():
-        if all(crack.even and crack.width is None for crack in own):
-            shapes = tuple(whole(crack) for crack in own)
-            influence[tooth, tooth][even] += _missing(gear, material, shapes, order, refine, cache) - missing
-        elif len(own) == 1 and not own[0].even:
-            influence[tooth, tooth][even] += _missing_along(gear, material, own[0], width, order, refine, cache)
-    unknowns = sum(p.unknowns for p in panels.values())
-    made = parted(gear, material, width, degree, influence, unknowns, healthy, cache=cache)
-    if not cracks:
-        return made
-    faces = Faces({tooth: opening[tooth][:, kept] for tooth in panels}, opening["influence"])
-    return replace(made, seam=faces)
-
-
-def _missing_along(gear, material, crack, width, order, refine, cache):
+def _missing_along(model, crack, cache):
     """What a crack of changing depth adds to `_missing`: the mean over the width of what straight ones of those depths add.
 
     Of the section as it follows the front; known at `DEPTHS` depths, by a polynomial between them.
@@ -209,32 +195,32 @@ def _missing_along(gear, material, crack, width, order, refine, cache):
 
     def solve():
         shape = whole(crack)
-        section, sound = (_sector(gear, own, refine, cache)[0] for own in ((shape,), ()))
-        shift, front = bent(gear, section, 0, crack, width)
+        section, sound = (_sector(model.gear, own, model.refine, cache)[0] for own in ((shape,), ()))
+        shift, front = bent(model.gear, section, 0, crack)
         x, weight = legendre.leggauss(ALONG)
         parts = np.array(front.open())
         half = np.diff(parts, axis=1) / 2
-        depth, weight = front.depth((parts[:, :1] + half * (1 + x)).ravel())[0], (half * weight).ravel() / width
+        depth, weight = front.depth((parts[:, :1] + half * (1 + x)).ravel())[0], (half * weight).ravel() / model.gear.b
         low, high, nodes = depth.min(), depth.max(), chebyshev.chebpts1(DEPTHS)
         at = np.clip((2 * depth - low - high) / max(high - low, 1e-9), -1, 1)
         carry = chebyshev.chebvander(at, DEPTHS - 1) @ np.linalg.inv(chebyshev.chebvander(nodes, DEPTHS - 1))
-        out = -weight.sum() * _missing(gear, material, (), order, refine, cache, cubic=True)
+        out = -weight.sum() * _missing(model, (), cache, cubic=True)
         for own, share in zip(((low + high + (high - low) * nodes) / 2).tolist(), weight @ carry, strict=True):
             sections = replace(section, points=section.points + (own - 1) * shift), sound
-            out = out + share * missing(gear, material, (shallower(shape, own),), order, sections, cubic=True, cache=cache)
+            out = out + share * missing(model, (shallower(shape, own),), sections, cubic=True, cache=cache)
         return out
 
-    return cache.get(("ritz3d missing along", gear, material, crack, width, order, refine), solve)
+    return cache.get(("ritz3d missing along", model, crack), solve)
 
 
-def _missing(gear, material, cracks, order, refine, cache, cubic=False):
+def _missing(model, cracks, cache, cubic=False):
     """`plane_strain.missing` with the sections solved for: of all modes along the width, or what a crack adds, of the even one.
 
     Near the tip corner the difference in plane strain is that of all modes along the width, to a thousandth.
     """
 
     def solve():
-        sections = tuple(_sector(gear, own, refine, cache)[0] for own in (cracks, ()))
-        return missing(gear, material, cracks, order, sections, cubic=cubic, cache=cache)
+        sections = tuple(_sector(model.gear, own, model.refine, cache)[0] for own in (cracks, ()))
+        return missing(model, cracks, sections, cubic=cubic, cache=cache)
 
-    return cache.get(("ritz3d missing", gear, material, cracks, order, refine, cubic), solve)
+    return cache.get(("ritz3d missing", model, cracks, cubic), solve)

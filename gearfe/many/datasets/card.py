@@ -7,34 +7,12 @@ from ...markdown import table_row
 from .conditions import Condition
 from .faults import FAULTS, HEALTHY
 from .plan import SIDES, Plan
-from .windows import LABELS, samples_of
+from .windows import COLUMNS, LABELS, samples_of
 
 if TYPE_CHECKING:
     from .opened import Dataset
 
 SILENT = 1e-4  # of the level of a fault: below, a healthy machine is silent
-MEANING = {
-    "condition": "number of the simulation",
-    "window": "number within the condition",
-    "side": "of the split",
-    "fault": "kind, or healthy",
-    "gear": "whose tooth is damaged",
-    "severity": "see the faults above; 0: healthy",
-    "loss_max": "largest loss of mesh stiffness",
-    "loss_mean": "mean over the engagement of the damaged tooth",
-    "machine": "scene",
-    "unit": "of signal, rms and noise",
-    "rms": "of the signal before noise, without its mean, over the condition",
-    "noise": "rms of the white noise added",
-    "snr_dB": "signal over noise; none without noise",
-    "mesh_Hz": "mesh frequency",
-    "turning_Hz": "of the driving gear, against the carrier if there is one",
-    "fault_Hz": "how often a faulty tooth meshes",
-    "start_s": "of the window, in the simulation",
-    "error": "of the motion, relative to its range",
-    "free": "what is left of the free vibrations of the start",
-    "notes": "warnings",
-}
 FILTERED = """\
 filter: simulated at a whole multiple of this rate, as fine as the machine asks for, then brought down by a linear-phase filter
   without delay, half of the amplitude at {half:g} Hz, 53 dB less from 1.16 times that on; where the rate itself is as fine, one
@@ -43,6 +21,15 @@ ERRORS = """\
 The loss is that of the mesh stiffness while the damaged tooth is in contact; errors of the machine take none. The error of the
 motion is that of the integration, relative to its range; that of the stiffness (`gearfe stiffness --error`) comes on top, and
 what the model leaves out, below."""
+READING = """\
+```python
+import gearfe as gf
+
+made = gf.open_dataset(".")
+signals, labels = made.windows({"side": "train"})
+```
+
+or without gearfe `pandas.read_parquet("windows")`."""
 LIMITS = """\
 - Simulated, not measured: a classifier trained on it has shown nothing about a real gearbox until it was tried on one.
 - Speed and torque are constant within a condition; masses, bearings, supports and damping are those of the scene and its model.
@@ -57,17 +44,9 @@ def card(made: "Dataset", plan: Plan, every: Sequence[Condition]) -> str:
     labels = made.labels() if len(made) else None
     parts = [f"# {plan.title}", _what(plan, every), "## Windows by class and side", _classes(labels)]
     parts += ["## Split", _split(plan)]
-    parts += [
-        "## Error and loss",
-        _errors(labels),
-        "## Levels",
-        _levels(labels),
-        "## What it does not model",
-        LIMITS,
-        "## Columns",
-        _columns(plan),
-    ]
-    parts += ["## Reading it", _reading(), _failed(made, every), _made(made)]
+    parts += ["## Error and loss", _errors(labels), "## Levels", _levels(labels)]
+    parts += ["## What it does not model", LIMITS, "## Columns", _columns(plan)]
+    parts += ["## Reading it", READING, _failed(made, every), _made(made)]
     return "\n\n".join(part.strip() for part in parts if part) + "\n"
 
 
@@ -91,10 +70,6 @@ def _what(plan, every):
     return "\n".join(lines)
 
 
-def _heard(sensor):
-    return sensor["channel"] or f"forces of {sensor['housing']} on the housing, at {sensor['angle_deg']:g} degrees"
-
-
 def _listed(values):
     return ", ".join(f"{value:g}" for value in values)
 
@@ -102,10 +77,18 @@ def _listed(values):
 def _classes(labels):
     if labels is None:
         return "None yet."
-    rows = [["fault", "severity", *SIDES, "conditions"], ["---"] * 6]
+
+    def counts(part):
+        return [*(str(int((part["side"] == side).sum())) for side in SIDES), str(part["condition"].nunique())]
+
+    return _by_class(labels, [*SIDES, "conditions"], counts)
+
+
+def _by_class(labels, head, cells):
+    """Table with a row for each class: the `cells` of its part of the labels."""
+    rows = [["fault", "severity", *head], ["---"] * (2 + len(head))]
     for (fault, severity), part in labels.groupby(["fault", "severity"]):
-        counts = [str(int((part["side"] == side).sum())) for side in SIDES]
-        rows.append([fault, "" if fault == HEALTHY else f"{severity:g}", *counts, str(part["condition"].nunique())])
+        rows.append([fault, "" if fault == HEALTHY else f"{severity:g}", *cells(part)])
     return _table(rows)
 
 
@@ -122,11 +105,11 @@ def _split(plan):
 def _errors(labels):
     if labels is None:
         return ""
-    rows = [["fault", "severity", "largest loss of stiffness", "mean loss", "error of the motion, worst"], ["---"] * 5]
-    for (fault, severity), part in labels.groupby(["fault", "severity"]):
-        told = [f"{100 * part[name].mean():.2f} %" for name in ("loss_max", "loss_mean")]
-        rows.append([fault, "" if fault == HEALTHY else f"{severity:g}", *told, f"{100 * part['error'].max():.2g} %"])
-    return f"{_table(rows)}\n\n{ERRORS}"
+
+    def cells(part):
+        return [*(f"{100 * part[name].mean():.2f} %" for name in ("loss_max", "loss_mean")), f"{100 * part['error'].max():.2g} %"]
+
+    return f"{_by_class(labels, ['largest loss of stiffness', 'mean loss', 'error of the motion, worst'], cells)}\n\n{ERRORS}"
 
 
 def _levels(labels):
@@ -137,12 +120,13 @@ def _levels(labels):
     level = labels.groupby(["fault", "severity", "sensor"])["rms"].median()
     classes = list(dict.fromkeys(level.index.droplevel("sensor")))
     units = labels.groupby("sensor")["unit"].first()
-    rows = [["fault", "severity", *(f"{one} [{units[one]}]" for one in sensors)], ["---"] * (2 + len(sensors))]
-    for fault, severity in classes:
-        told = [f"{level[fault, severity, one]:.3g}" for one in sensors]
-        rows.append([fault, "" if fault == HEALTHY else f"{severity:g}", *told])
+
+    def cells(part):
+        return [f"{part.loc[part['sensor'] == sensor, 'rms'].median():.3g}" for sensor in sensors]
+
+    table = _by_class(labels, [f"{sensor} [{units[sensor]}]" for sensor in sensors], cells)
     silent = [one for one in sensors if any(level[HEALTHY, 0.0, one] < SILENT * level[(*two, one)] for two in classes)]
-    out = f"Median rms before noise, without the mean.\n\n{_table(rows)}"
+    out = f"Median rms before noise, without the mean.\n\n{table}"
     if silent:
         out += f"\n\n**Of the healthy machine {', '.join(silent)} hears nothing**: it is perfectly equal all round, so that any "
         out += "fault is told by its mere presence. Let `[scatter]` make machines differ, for instance in `machine.runout_um`."
@@ -152,13 +136,8 @@ def _levels(labels):
 def _columns(plan):
     fields = LABELS | {key: LABELS["error"]._replace(unit="as in the scene") for key in plan.scatter}
     rows = [["column", "unit", "meaning"], ["---"] * 3]
-    rows += [[f"`{name}`", field.unit, MEANING.get(name, "")] for name, field in fields.items()]
+    rows += [[f"`{name}`", field.unit, COLUMNS[name][1] if name in COLUMNS else ""] for name, field in fields.items()]
     return _table([*rows, ["`signal`", "see `unit`", f"{samples_of(plan)} numbers of 4 bytes"]])
-
-
-def _reading():
-    code = 'import gearfe as gf\n\nmade = gf.open_dataset(".")\nsignals, labels = made.windows({"side": "train"})'
-    return f'```python\n{code}\n```\n\nor without gearfe `pandas.read_parquet("windows")`.'
 
 
 def _failed(made, every):

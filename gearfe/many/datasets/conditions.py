@@ -49,10 +49,7 @@ class Condition:
 def conditions(plan: Plan) -> list[Condition]:
     """All conditions, always the same ones for the same plan.
 
-    Raises
-    ------
-    ValueError
-        If there are too few for the sides of the split.
+    ValueError if there are too few for the sides of the split.
     """
     made, points = [], operations(plan)
     rows = [

@@ -1,25 +1,21 @@
 """`dataset`: all conditions of a data set into a folder, going on where it was stopped."""
 
-import json
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ...steps import reached
 from ...stiffness.cache import program
-from ...studies.batches import check_workers, processes
-from ..store.folder import begin, durable, locked
-from ..store.shards import arrow, check_shards, encoded, shard_names, write_shard
+from ..runner import Tally, check_workers, results
+from ..store.folder import begin, check_same, durable, locked
+from ..store.shards import arrow, encoded, unfinished, write_shard
 from .card import card
 from .conditions import Condition, conditions
 from .opened import FAILED, FORMAT, WINDOWS, Dataset, open_dataset
 from .plan import Plan, read_plan
 from .windows import check_machine, rows_of, table_of
 
-AHEAD = 2  # conditions handed out for each process
 EXPORTS = ("mat", "hdf5")
 
 
@@ -50,11 +46,6 @@ def dataset(
     progress : callable, optional
         Called with (conditions done, conditions in all).
 
-    Returns
-    -------
-    Dataset
-        As of `gearfe.open_dataset`.
-
     Raises
     ------
     ValueError
@@ -62,7 +53,8 @@ def dataset(
         window too short to hold the fault, too few conditions for the split...; or the folder holds anything else, was begun by
         another version, or cannot be written.
     RuntimeError
-        If pyarrow is missing, or a process ended before its condition was done: what is finished stays, call it again.
+        If pyarrow is missing, or a process ended with a condition, also when it was tried again alone: what is finished stays,
+        call it again.
     """
     check_workers(workers)
     unknown = [one for one in also if one not in EXPORTS]
@@ -76,11 +68,11 @@ def dataset(
     stored = begin(folder, about)
     place = Path(folder)
     with locked(place):
-        _compare(place, stored, about)
+        check_same(place, stored, about, "plan")
         for name in (WINDOWS, FAILED):
             (place / name).mkdir(exist_ok=True)
         with locked(place / WINDOWS):
-            _fill(place, checked, every, workers or os.cpu_count() or 1, progress)
+            _fill(place, checked, every, workers, progress)
         made = open_dataset(folder)
         with durable(place / "card.md") as file:
             file.write(card(made, checked, every).encode())
@@ -101,72 +93,26 @@ def _about(plan, count, told):
     }
 
 
-def _compare(folder, stored, about):
-    """Refuse to mix two data sets, or two versions, in one folder."""
-    mine, there = (json.loads(json.dumps(one)) for one in (about, stored))
-    changed = [name for name in mine["plan"] if mine["plan"][name] != there["plan"].get(name)]
-    if changed:
-        raise ValueError(
-            f"{folder} holds another data set: its {', '.join(changed)} differ; give a new folder, or the plan as it was "
-            f"({folder}/about.json has all of it)"
-        )
-    versions = [
-        f"{name} = {there['made'].get(name)}, not {value}"
-        for name, value in mine["made"].items()
-        if there["made"].get(name) != value
-    ]
-    if versions:
-        raise ValueError(
-            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder"
-        )
-
-
 def _fill(place, plan, every, workers, progress):
     """Simulate the conditions that are not there yet."""
-    check_shards(place / WINDOWS)
-    there = set(shard_names(place / WINDOWS)) | {one.stem for one in (place / FAILED).glob("condition-*.txt")}
-    unknown = there - {one.name for one in every}
-    if unknown:
-        raise ValueError(f"{place / WINDOWS} holds {min(unknown)}, which is none of this data set's: take it out")
-    todo = [one for one in every if one.name not in there]
-    done = len(every) - len(todo)
-    _say(done, len(every), progress)
-    for name, content, error in _made(plan, todo, min(workers, max(1, len(todo)))):
+    failed = [one.stem for one in (place / FAILED).glob("condition-*.txt")]
+    left = unfinished(place / WINDOWS, [one.name for one in every], "data set", failed)
+    tally = Tally("conditions", len(every), progress)
+    tally.add(len(every) - len(left))
+    todo = [one for one in every if one.name in left]
+    for _, found in results(partial(simulate_condition, plan), todo, workers):
+        if found is None:
+            raise RuntimeError(
+                "a process ended before its condition was done, alone too: killed, or out of memory; what is finished stays, so "
+                "call it again, with fewer workers if memory was short"
+            )
+        name, content, error = found
         if error:
             with durable(place / FAILED / f"{name}.txt") as file:
                 file.write(error.encode())
         else:
             write_shard(place / WINDOWS, name, content)
-        done += 1
-        _say(done, len(every), progress)
-
-
-def _say(done, total, progress):
-    """Say how far it is to whoever listens."""
-    reached(f"{done} of {total} conditions", done / total)
-    if progress is not None:
-        progress(done, total)
-
-
-def _made(plan, todo, workers) -> Iterator[tuple[str, bytes, str]]:
-    """What `simulate_condition` gives of each, as they end."""
-    if workers == 1:
-        yield from (simulate_condition(plan, one) for one in todo)
-        return
-    waiting = list(reversed(todo))
-    running: set[Any] = set()
-    try:
-        with processes(workers) as pool:
-            while waiting or running:
-                while waiting and len(running) < AHEAD * workers:
-                    running.add(pool.submit(simulate_condition, plan, waiting.pop()))
-                ended, running = wait(running, return_when=FIRST_COMPLETED)
-                yield from (one.result() for one in ended)
-    except BrokenProcessPool as error:
-        raise RuntimeError(
-            "a process ended before its condition was done: killed, or out of memory; what is finished stays, so call it again, "
-            "with fewer workers if memory was short"
-        ) from error
+        tally.add(1)
 
 
 def simulate_condition(plan: Plan, condition: Condition) -> tuple[str, bytes, str]:

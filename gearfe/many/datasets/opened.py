@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...extras import missing
+from ...extras import needing
 from ...files import written
 from ..store.folder import read_about
-from ..store.shards import arrow, fields_of, opened, read, shard_names, where_of
+from ..store.shards import arrow, fields_of, frame, opened, read, shard_names, where_of
 
 if TYPE_CHECKING:
     import pandas
@@ -26,14 +26,7 @@ MOST_MAT = 2**31 - 2**20  # bytes of an array in a MATLAB 5 file
 
 @dataclass(frozen=True, slots=True)
 class Dataset:
-    """A data set in a folder.
-
-    Attributes
-    ----------
-    folder : Path
-    about : dict
-        Title, plan, number of conditions, units of the sensors, versions.
-    """
+    """A data set in a folder; `about` has title, plan, number of conditions, units of the sensors and versions."""
 
     folder: Path
     about: dict[str, Any]
@@ -67,10 +60,6 @@ class Dataset:
         RuntimeError
             If pandas is missing; the message names what to install.
         """
-        try:
-            import pandas  # noqa: F401
-        except ImportError as error:
-            raise missing("pandas", error) from error
         return self._read(where, signal=False)[0]
 
     def windows(self, where: Mapping[str, Any] | None = None) -> tuple[NDArray[np.float32], "pandas.DataFrame"]:
@@ -86,11 +75,6 @@ class Dataset:
         signals : ndarray of float32, shape (n, samples)
             In the unit of the column ``unit``, `rate_Hz` samples a second.
         labels : pandas.DataFrame
-
-        Raises
-        ------
-        ValueError
-            As `labels`.
         """
         labels, signals = self._read(where, signal=True)
         return signals, labels
@@ -104,8 +88,7 @@ class Dataset:
         fields = fields_of(found.schema)
         names = [name for name in fields if name != "signal"]
         got = read(self.folder / WINDOWS, [*names, *(["signal"] if signal else [])], where_of(where, names))
-        labels = got.select(names).to_pandas()
-        labels.attrs["units"] = {name: fields[name].unit for name in names}
+        labels = frame(got.select(names), fields)
         if not signal:
             return labels, None
         size = found.schema.field("signal").type.list_size
@@ -119,10 +102,6 @@ class Dataset:
         ----------
         form : {"mat", "hdf5"}
             MATLAB 5 (texts are cell arrays), or HDF5.
-
-        Returns
-        -------
-        list of Path
 
         Raises
         ------
@@ -157,10 +136,8 @@ def _mat(name, signals, labels, about):
 
 
 def _hdf5(name, signals, labels, about):
-    try:
+    with needing("h5py"):
         import h5py
-    except ImportError as error:
-        raise missing("h5py", error) from error
     with h5py.File(name, "w") as file:
         file.attrs["about"] = json.dumps(about)
         file.create_dataset("signals", data=signals, chunks=(1, signals.shape[1]), compression="gzip", shuffle=True)
@@ -182,14 +159,6 @@ WRITERS = {"mat": (".mat", _mat), "hdf5": (".h5", _hdf5)}
 
 def open_dataset(folder: str | os.PathLike[str]) -> Dataset:
     """Open a data set, finished or not.
-
-    Parameters
-    ----------
-    folder : str or path
-
-    Returns
-    -------
-    Dataset
 
     Raises
     ------

@@ -49,10 +49,10 @@ from typing import Any
 
 from ...machine.of_scene import MACHINES
 from ...scene.damage_tables import DAMAGE
-from ...scene.load import Scene, read_tables, scene_of
+from ...scene.load import Scene, scene_of
 from ...scene.strict import NUMBER, NUMBERS, REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
 from ...scene.toml_file import given_tables
-from ..sweeps.keys import check_key, placed
+from ..sweeps.keys import check_key, placed, tables_near
 from ..sweeps.samples import check_shape
 from .faults import FAULTS
 
@@ -132,7 +132,8 @@ def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
         top[name] = checked(file, name, top[name], table)
     top["fault"] = tuple(_fault(file, i, one) for i, one in enumerate(top["fault"]))
     top["sensor"] = tuple(_sensor(file, i, one) for i, one in enumerate(top["sensor"]))
-    scene, tables = _scene(place, top.pop("scene"))
+    scene, tables = tables_near(place, top.pop("scene"))
+    tables = {kind: one for kind, one in tables.items() if kind not in DAMAGE}  # of its own it has none
     top["healthy"] = top["repeats"] if top["healthy"] is None else top["healthy"]
     top["curves"] = top["curves"] or ("ritz3d" if any(one["kind"] == "pits" for one in top["fault"]) else "auto")
     plan = Plan(**top, scene=scene, tables=tables)
@@ -141,15 +142,6 @@ def read_plan(given: str | os.PathLike[str] | Mapping[str, Any]) -> Plan:
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
     return plan
-
-
-def _scene(place, name):
-    """Name and tables of the scene, without what its sources print and without its own damage."""
-    near = place / name
-    found, tables = read_tables(near if near.is_file() else name)
-    for told in ("reference", "assumption", "given", "later", *DAMAGE):
-        tables.pop(told, None)
-    return found, tables
 
 
 def _fault(file, i, table):

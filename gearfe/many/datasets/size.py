@@ -34,10 +34,7 @@ class Size:
 def size_of(plan: str | os.PathLike[str] | Mapping[str, Any]) -> Size:
     """Say what a data set will take, without writing anything: its last condition is simulated.
 
-    Raises
-    ------
-    ValueError
-        If the plan cannot be, as `gearfe.dataset`.
+    ValueError if the plan cannot be, as `gearfe.dataset`.
     """
     checked = read_plan(plan)
     every = conditions(checked)

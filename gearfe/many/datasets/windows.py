@@ -19,35 +19,36 @@ from .faults import CASE, FAULTS
 from .plan import Plan
 
 EDGE = 64  # samples simulated before and after what is kept: the filter of `decimate` sees no end
-LABELS = {  # columns beside the signal: kind and unit
-    "condition": Field("whole"),
-    "window": Field("whole"),
-    "side": Field("text"),
-    "fault": Field("text"),
-    "gear": Field("text"),
-    "severity": Field("number", "see severity_unit"),
-    "severity_unit": Field("text"),
-    "loss_max": Field("number"),
-    "loss_mean": Field("number"),
-    "machine": Field("text"),
-    "sensor": Field("text"),
-    "unit": Field("text"),
-    "rms": Field("number", "see unit"),
-    "noise": Field("number", "see unit"),
-    "snr_dB": Field("number", "dB"),
-    "speed_rpm": Field("number", "rpm"),
-    "torque_Nm": Field("number", "N m"),
-    "mesh_Hz": Field("number", "Hz"),
-    "turning_Hz": Field("number", "Hz"),
-    "fault_Hz": Field("number", "Hz"),
-    "carrier_Hz": Field("number", "Hz"),
-    "rate_Hz": Field("number", "Hz"),
-    "start_s": Field("number", "s"),
-    "error": Field("number"),
-    "free": Field("number"),
-    "seed": Field("whole"),
-    "notes": Field("text"),
+COLUMNS = {  # beside the signal: kind and unit, and, where the name does not say it, what it is
+    "condition": (Field("whole"), "number of the simulation"),
+    "window": (Field("whole"), "number within the condition"),
+    "side": (Field("text"), "of the split"),
+    "fault": (Field("text"), "kind, or healthy"),
+    "gear": (Field("text"), "whose tooth is damaged"),
+    "severity": (Field("number", "see severity_unit"), "see the faults above; 0: healthy"),
+    "severity_unit": (Field("text"), ""),
+    "loss_max": (Field("number"), "largest loss of mesh stiffness"),
+    "loss_mean": (Field("number"), "mean over the engagement of the damaged tooth"),
+    "machine": (Field("text"), "scene"),
+    "sensor": (Field("text"), ""),
+    "unit": (Field("text"), "of signal, rms and noise"),
+    "rms": (Field("number", "see unit"), "of the signal before noise, without its mean, over the condition"),
+    "noise": (Field("number", "see unit"), "rms of the white noise added"),
+    "snr_dB": (Field("number", "dB"), "signal over noise; none without noise"),
+    "speed_rpm": (Field("number", "rpm"), ""),
+    "torque_Nm": (Field("number", "N m"), ""),
+    "mesh_Hz": (Field("number", "Hz"), "mesh frequency"),
+    "turning_Hz": (Field("number", "Hz"), "of the driving gear, against the carrier if there is one"),
+    "fault_Hz": (Field("number", "Hz"), "how often a faulty tooth meshes"),
+    "carrier_Hz": (Field("number", "Hz"), ""),
+    "rate_Hz": (Field("number", "Hz"), ""),
+    "start_s": (Field("number", "s"), "of the window, in the simulation"),
+    "error": (Field("number"), "of the motion, relative to its range"),
+    "free": (Field("number"), "what is left of the free vibrations of the start"),
+    "seed": (Field("whole"), ""),
+    "notes": (Field("text"), "warnings"),
 }
+LABELS = {name: field for name, (field, _) in COLUMNS.items()}
 
 
 def fields_of(plan: Plan) -> dict[str, Field]:
@@ -81,7 +82,7 @@ def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]
     rate = plan.window["rate_Hz"]
     finer = max(1, math.ceil(1 / (default_step(machine) * rate)))
     count = samples_of(plan) * plan.window["count"] + 2 * EDGE
-    start = condition.start * max(one.teeth[0] / abs(one.frequency) for one in machine.meshes)  # of the slowest turn
+    start = condition.start * max(mesh.teeth[0] / abs(mesh.frequency) for mesh in machine.meshes)  # of the slowest turn
     return machine, recorded(machine, count / rate, rate * finer, start=start), finer
 
 
@@ -121,16 +122,11 @@ def rows_of(plan: Plan, condition: Condition) -> list[dict[str, Any]]:
             rng = np.random.default_rng([plan.seed, condition.number, place, level])
             values = (signal + noise * rng.standard_normal(signal.size)).astype(np.float32).reshape(count, size)
             own = {"sensor": sensor["name"], "unit": fine.unit, "rms": float(np.std(signal)), "noise": noise}
-            own["snr_dB"] = _ratio(own["rms"], noise)
+            own["snr_dB"] = 20 * math.log10(own["rms"] / noise) if noise and own["rms"] else None
             for i, window in enumerate(values):
                 at = {"window": i, "start_s": first + i * size / plan.window["rate_Hz"], "signal": window}
                 out.append(same | own | at)
     return out
-
-
-def _ratio(rms: float, noise: float) -> float | None:
-    """Power of a signal without its mean over that of the noise [dB]; none without noise."""
-    return 20 * math.log10(rms / noise) if noise and rms else None
 
 
 def _labels(plan, condition, machine, response):

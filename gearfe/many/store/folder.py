@@ -20,10 +20,7 @@ ABOUT, LOCK, PART = "about.json", ".lock", ".part-"
 def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """File to write into that becomes `path` when the block ends without an error, and is on the disk then.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
+    ValueError if it cannot be written: no such folder, no permission, no space left. What stood at `path` is untouched.
     """
     path = Path(path)
     name = None
@@ -34,7 +31,11 @@ def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
             file.flush()
             os.fsync(file.fileno())
         os.replace(name, path)
-        _sync(path.parent)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)  # its list of names
+        finally:
+            os.close(folder)
     except OSError as error:
         raise ValueError(f"cannot write {path}: {error.strerror or error}; nothing written before is lost") from error
     finally:
@@ -43,23 +44,11 @@ def durable(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
                 os.unlink(name)
 
 
-def _sync(folder):
-    """Flush a folder's list of names to the disk."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
-
-
 @contextlib.contextmanager
 def locked(folder: str | os.PathLike[str]) -> Iterator[None]:
     """Be the only one who writes into a folder, until the block ends or the process does; leftovers of killed ones are removed.
 
-    Raises
-    ------
-    ValueError
-        If another process writes into it, or the folder cannot be written.
+    ValueError if another process writes into it, or the folder cannot be written.
     """
     folder = Path(folder)
     try:
@@ -90,23 +79,10 @@ def _take(handle, folder):
 
 
 def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
-    """What an existing folder says of its shards; a new or empty one is made and says what `about` holds.
+    """What an existing folder says of its shards, to be compared; a new or empty one is made and says what `about` holds.
 
-    Parameters
-    ----------
-    folder : str or path
-    about : dict
-        JSON; its ``"format"`` is a name such as ``"gearfe sweep 1"``.
-
-    Returns
-    -------
-    dict
-        What stands in the folder, for the caller to compare with `about`.
-
-    Raises
-    ------
-    ValueError
-        If the folder cannot be made or written, or holds anything else.
+    `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. ValueError if the folder cannot be made or written,
+    or holds anything else.
     """
     if not os.fspath(folder):
         raise ValueError("an empty name of a folder: give one")
@@ -126,10 +102,7 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
 def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
     """What a folder of shards of the format `form` says of itself.
 
-    Raises
-    ------
-    ValueError
-        If it is no such folder; nothing in it is touched.
+    ValueError if it is no such folder; nothing in it is touched.
     """
     file = Path(folder) / ABOUT
     if not Path(folder).is_dir():
@@ -146,3 +119,41 @@ def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
         found = about.get("format") if isinstance(about, dict) else about
         raise ValueError(f"{file} says format = {found!r}, not {form!r}: another program's or version's folder; give a new one")
     return about
+
+
+def check_same(folder: Any, stored: Mapping[str, Any], about: Mapping[str, Any], what: str, *, mixed: bool | None = None) -> None:
+    """Refuse to go on with a folder that was begun with other inputs, or by another version of the program (unless `mixed`).
+
+    `stored` stands in the folder, `about` would be written now; ``[what]``, such as ``["study"]``, are their inputs, ``["made"]``
+    their versions. `mixed` is None where it cannot be asked for. ValueError with the values that differ.
+    """
+    changed = list(_differences(stored[what], about[what]))
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        raise ValueError(
+            f"{folder} holds another {what}, begun with {changed[0]}{more}: give a new folder, or the {what} as it was "
+            f"({folder}/{ABOUT} has all of it)"
+        )
+    versions = list(_differences(stored["made"], about["made"]))
+    if versions and not mixed:
+        told = "" if mixed is None else ", or go on with mixed = True (--mixed): each row says which made it"
+        raise ValueError(
+            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, or give a new folder{told}"
+        )
+
+
+def _differences(there, here, path=""):
+    """Texts that say which values differ."""
+    if isinstance(there, dict) and isinstance(here, dict):
+        for name in dict.fromkeys((*there, *here)):
+            yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
+    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
+        for i, (one, other) in enumerate(zip(there, here, strict=True)):
+            yield from _differences(one, other, f"{path}.{i}")
+    elif there != here and not (there != there and here != here):  # nan is equal to nan
+        yield f"{path} = {_short(there)}, not {_short(here)}"
+
+
+def _short(value):
+    text = repr(value)
+    return text if len(text) < 60 else f"{text[:50]}...{text[-5:]}"

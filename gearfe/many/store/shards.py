@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ...extras import missing
+from ...extras import needing
 from .folder import durable
 
 if TYPE_CHECKING:
+    import pandas
     import pyarrow
     from pyarrow import dataset
 
@@ -33,34 +34,20 @@ KINDS = ("number", "whole", "truth", "text", "list", "json")  # list: of numbers
 def arrow() -> Any:
     """Return the package ``pyarrow`` with its parts that read and write Parquet.
 
-    Raises
-    ------
-    RuntimeError
-        If it is not installed; the message names what to install.
+    RuntimeError if it is not installed; the message names what to install.
     """
-    try:
+    with needing("pyarrow"):
         import pyarrow
         import pyarrow.dataset
         import pyarrow.parquet
-    except ImportError as error:
-        raise missing("pyarrow", error) from error
     return pyarrow
 
 
 def where_of(where: Any, names: Sequence[str]) -> Any:
-    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column.
+    """Which rows, as an expression of pyarrow: all if None, an expression as it is, or by column, of those called `names`.
 
-    Parameters
-    ----------
-    where : dict, pyarrow expression or None
-        ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
-    names : sequence of str
-        Columns that there are.
-
-    Raises
-    ------
-    ValueError
-        If there is no such column, or it holds no such values.
+    ``{"status": "done", "level": (0.1, 0.3), "case": ["a", "b"]}``: a value, a range as a tuple of two, or a list of values.
+    ValueError if there is no such column, or it holds no such values.
     """
     if not isinstance(where, Mapping):
         return where
@@ -85,11 +72,8 @@ def where_of(where: Any, names: Sequence[str]) -> Any:
 def table(rows: Sequence[Mapping[str, Any]], fields: Mapping[str, Field]) -> "pyarrow.Table":
     """Rows as a table with exactly the columns `fields`; what a row lacks is null.
 
-    Raises
-    ------
-    ValueError
-        If a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among whole
-        numbers.
+    ValueError if a row has a value that `fields` does not name, or that its column cannot hold: text among numbers, 1.5 among
+    whole numbers.
     """
     pa = arrow()
     extra = sorted({name for row in rows for name in row} - set(fields))
@@ -159,10 +143,7 @@ def encoded(table: "pyarrow.Table") -> bytes:
 def write_shard(folder: str | os.PathLike[str], name: str, content: bytes) -> None:
     """Put an `encoded` table into a folder; one of the same name is replaced.
 
-    Raises
-    ------
-    ValueError
-        If it cannot be written; all other shards stay as they are.
+    ValueError if it cannot be written; all other shards stay as they are.
     """
     with durable(Path(folder) / f"{name}{SUFFIX}") as file:
         file.write(content)
@@ -183,19 +164,30 @@ def check_shards(folder: str | os.PathLike[str]) -> None:
         try:
             schema = pa.parquet.read_schema(file)
         except (OSError, pa.ArrowInvalid) as error:
-            raise ValueError(f"{file} is damaged: {_line(error)}; delete this file, and what it held is computed anew") from error
+            raise _damaged(file, error) from error
         first = first or schema
         if schema != first:
             raise ValueError(f"{file} has other columns than the shards before it: it does not belong here; take it out")
 
 
+def unfinished(folder: str | os.PathLike[str], names: Sequence[str], what: str, failed: Sequence[str] = ()) -> list[str]:
+    """Names, of all that the shards of a folder are to have, that are neither there nor among the `failed`.
+
+    ValueError if a shard is damaged, or there is one that is none of this `what`.
+    """
+    check_shards(folder)
+    there = {*shard_names(folder), *failed}
+    unknown = sorted(there - set(names))
+    if unknown:
+        name = unknown[0] if unknown[0] in failed else f"{unknown[0]}{SUFFIX}"
+        raise ValueError(f"{folder} holds {name}, which is none of this {what}'s: take it out")
+    return [name for name in names if name not in there]
+
+
 def _alike(folder):
     """Whether all shards say in the same words which columns they have.
 
-    Raises
-    ------
-    ValueError
-        If a shard is another one, byte for byte: its rows would count twice.
+    ValueError if a shard is another one, byte for byte: its rows would count twice.
     """
     first: dict[tuple[int, bytes], Path] = {}
     columns = set()
@@ -222,40 +214,28 @@ def _end(file):
 def opened(folder: str | os.PathLike[str]) -> "dataset.Dataset":
     """All shards as one pyarrow dataset, which reads the columns and rows that are asked for.
 
-    Raises
-    ------
-    ValueError
-        If there is no shard, one is damaged, has other columns than the first, or is a copy of another.
+    ValueError if there is no shard, one is damaged, has other columns than the first, or is a copy of another.
     """
     pa = arrow()
     files = [str(Path(folder) / f"{name}{SUFFIX}") for name in shard_names(folder)]
     if not files:
         raise ValueError(f"{folder} holds no results yet")
     try:
-        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked_scan())
+        checked = pa.dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
+        form = pa.dataset.ParquetFileFormat(default_fragment_scan_options=checked)
         found = pa.dataset.dataset(files, format=form, schema=pa.parquet.read_schema(files[0]))
         alike = _alike(folder)
     except (OSError, pa.ArrowException) as error:
-        raise ValueError(
-            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
-        ) from error
+        raise _damaged(_first_damaged(folder), error) from error
     if not alike:
         check_shards(folder)
     return found
 
 
-def checked_scan() -> Any:
-    """Return options of a scan that verify the checksums of all pages read."""
-    return arrow().dataset.ParquetFragmentScanOptions(page_checksum_verification=True)
-
-
 def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, where: Any = None) -> "pyarrow.Table":
     """Columns (None: all) of the rows of all shards that fulfil `where`, a pyarrow expression.
 
-    Raises
-    ------
-    ValueError
-        If a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
+    ValueError if a shard is damaged or a copy, there is no such column, or `where` compares numbers with text.
     """
     pa = arrow()
     found = opened(folder)
@@ -267,9 +247,16 @@ def read(folder: str | os.PathLike[str], columns: Sequence[str] | None = None, w
     except (pa.ArrowNotImplementedError, pa.ArrowTypeError) as error:
         raise ValueError(f"where = {where}: {_line(error)}; a column is compared with values of its own kind") from error
     except (OSError, pa.ArrowInvalid) as error:
-        raise ValueError(
-            f"{_damaged(folder)} is damaged: {_line(error)}; delete it, and what it held is computed anew"
-        ) from error
+        raise _damaged(_first_damaged(folder), error) from error
+
+
+def frame(found: "pyarrow.Table", fields: Mapping[str, Field], index: str | None = None) -> "pandas.DataFrame":
+    """A table that was read as pandas has it, by `index`; ``attrs["units"]`` has the units by column. Needs pandas."""
+    with needing("pandas"):
+        made = found.to_pandas()
+    made = made if index is None else made.set_index(index).sort_index()
+    made.attrs["units"] = {name: fields[name].unit for name in made}
+    return made
 
 
 def _line(error):
@@ -277,7 +264,11 @@ def _line(error):
     return " ".join(str(error).split())
 
 
-def _damaged(folder):
+def _damaged(file, error):
+    return ValueError(f"{file} is damaged: {_line(error)}; delete it, and what it held is computed anew")
+
+
+def _first_damaged(folder):
     """First shard in a folder that cannot be read as a whole."""
     pa = arrow()
     for name in shard_names(folder):

@@ -15,8 +15,8 @@ from geometry.pair.gear_pair import GearPair
 from ...case import two_materials
 from ...checks import is_number
 from ...material import Material
-from ...stiffness.solve import mesh_stiffness
-from ...studies.batches import batch
+from ...stiffness.solve import Solve, solve
+from ..batches import batch
 from .space import Space, space_of
 from .surrogate import Surrogate
 from .zoned import DEGREE, breaks_of, phases_of, piece_of, series_of
@@ -61,10 +61,6 @@ def fit_surrogate(
     workers, progress
         As of `gearfe.batch`.
 
-    Returns
-    -------
-    Surrogate
-
     Raises
     ------
     ValueError
@@ -82,7 +78,7 @@ def fit_surrogate(
     for name, count, least in (("cases", cases, FEWEST), ("held_back", held_back, 8)):
         if not is_number(count) or count != int(count) or not least <= count <= MOST:
             raise ValueError(f"{name} = {count!r}, but give a whole number from {least} to {MOST}")
-    _check_corners(space)
+    _check_corners(space, materials)
     made, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
     jobs = [
         {"space": space, "materials": materials, "point": point, "check": i >= len(made)} for i, point in enumerate(made + fresh)
@@ -110,21 +106,21 @@ def fit_surrogate(
 
 def solved(space: Space, materials: tuple[Material, Material], point: dict[str, float], check: bool) -> dict[str, Any]:
     """Curve of one case by `ritz`: breaks, Chebyshev coefficients of ln k, or with `check` k at phases to compare with."""
-    case = space.case(point)
-    eps_alpha = case["pair"].eps_alpha
+    case = space.case(point, materials)
+    eps_alpha = case.pair.eps_alpha
 
-    def solve(phase):
-        return mesh_stiffness(**case, material=materials, method="ritz", phases=phase)
+    def curve(phase):
+        return solve(case, Solve("ritz", phases=phase))
 
     if check:
         low = int(eps_alpha)
         half = (1 - (eps_alpha - low)) / 2
         span = np.array([-half, eps_alpha + half if space.cracked else 1 - half])
         phase = np.arange(np.ceil(span[0] * CHECKED), np.floor(span[1] * CHECKED)) / CHECKED + 0.37 / CHECKED
-        found = solve(phase[(phase > span[0]) & (phase < span[1])])
+        found = curve(phase[(phase > span[0]) & (phase < span[1])])
         return {"pairs": low, "phase": found.phase, "k": found.k}
-    breaks = breaks_of(eps_alpha, solve, cracked=space.cracked)
-    found = solve(phases_of(breaks))
+    breaks = breaks_of(eps_alpha, curve, cracked=space.cracked)
+    found = curve(phases_of(breaks))
     meta = {name: found.meta[name] for name in ("materials", "state", "order", "refine", "versions", "stiffness", "pose")}
     return {"pairs": int(eps_alpha), "breaks": breaks, "series": series_of(np.log(found.k)), "meta": meta}
 
@@ -153,12 +149,12 @@ def _sample(space, count, seed):
     return [space.at(one) for one in unit]
 
 
-def _check_corners(space):
+def _check_corners(space, materials):
     """Build the gears at all ends of the ranges: what is wrong there is said before anything is solved."""
     for ends in itertools.product(*space.ranges.values()):
         point = dict(zip(space.ranges, ends, strict=True))
         try:
-            space.case(point)
+            space.case(point, materials)
         except ValueError as error:
             raise ValueError(f"the ranges have a gap at their corner {_told(point)}: {error}; narrow them") from error
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geometry.damage.crack import Crack
 from geometry.pair.gear_pair import GearPair, free_centre_distance
 
+from ...case import Case
 from ...checks import is_number
 
 INPUTS = {  # name: what it is
@@ -30,21 +31,11 @@ SHAPE = ("z_1", "z_2", "x_1", "x_2")  # they move the contact ratio and the cent
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """Ranges of some `INPUTS` about a pair of spur gears; the others are held.
+    """Ranges of some `INPUTS` about a pair of spur gears; the others are held."""
 
-    Attributes
-    ----------
-    pair : GearPair
-        What is not given is taken from it.
-    ranges : dict of str to (float, float)
-        Ends of what varies.
-    held : dict of str to float
-        What is given as one number.
-    """
-
-    pair: GearPair
-    ranges: dict[str, tuple[float, float]]
-    held: dict[str, float]
+    pair: GearPair  # what is not given is taken from it
+    ranges: dict[str, tuple[float, float]]  # ends of what varies
+    held: dict[str, float]  # what is given as one number
     logarithmic: int | None = field(init=False, repr=False)  # the place of the force
     middle: NDArray[np.float64] = field(init=False, repr=False, compare=False)
     half: NDArray[np.float64] = field(init=False, repr=False, compare=False)
@@ -106,13 +97,10 @@ class Space:
                 out[name] = low * (high / low) ** share if name == "force" else low + share * (high - low)
         return out
 
-    def case(self, point: Mapping[str, float]) -> dict[str, Any]:
-        """Arguments ``pair``, ``force`` and ``damage`` of `mesh_stiffness` at a point of the ranges.
+    def case(self, point: Mapping[str, float], material: Any) -> Case:
+        """`Case` at a point of the ranges, of this material (or pair of them).
 
-        Raises
-        ------
-        ValueError
-            If such gears or such a crack cannot be.
+        ValueError if such gears or such a crack cannot be.
         """
         values = self.held | dict(point)
         gears = []
@@ -124,21 +112,14 @@ class Space:
             gears.append(replace(gear, **new))
         one, two = gears
         pair = GearPair(one, two) if any(name in values for name in SHAPE) else GearPair(one, two, self.pair.a)
-        out: dict[str, Any] = {"pair": pair, "force": values["force"]}
-        if self.cracked:
-            crack = Crack(level=values["level"])
-            crack = replace(crack, angle=values["angle"]) if "angle" in values else crack
-            out["damage"] = {"pinion": [crack]}
-        return out
+        crack: dict[str, Any] = {name: values[name] for name in ("level", "angle") if name in values}
+        return Case(pair, values["force"], material, damage={"pinion": [Crack(**crack)]} if crack else None)
 
 
 def space_of(pair: GearPair, inputs: Mapping[str, Any]) -> Space:
     """`Space` of a pair from ranges ``name=(low, high)`` and single numbers.
 
-    Raises
-    ------
-    ValueError
-        If an input is unknown, no range, or does not go with this pair.
+    ValueError if an input is unknown, no range, or does not go with this pair.
     """
     if not isinstance(pair, GearPair):
         raise ValueError(f"pair = {pair!r}, but give a GearPair")

@@ -65,7 +65,7 @@ class Surrogate:
         return f"<Surrogate of ritz: {ranges}; {told}>"
 
     def k(self, phase: ArrayLike, **point: float) -> NDArray[np.float64]:
-        """Secant stiffness [N/m] at phases, a few microseconds each; for models of dynamics.
+        """Secant stiffness [N/m] at phases, of their shape, in a few microseconds each; for models of dynamics.
 
         Parameters
         ----------
@@ -74,11 +74,6 @@ class Surrogate:
             and after it.
         **point : float
             A value for each of the ranges, in their units (N, rad).
-
-        Returns
-        -------
-        ndarray
-            Of the shape of `phase`.
 
         Raises
         ------
@@ -104,11 +99,6 @@ class Surrogate:
         StiffnessCurve
             ``k``, ``lte`` and ``error``, the worst difference found in that zone of the mesh cycle; its `zones` give mean and
             zone values. Load shares, pressures and tangent are not fitted: nan.
-
-        Raises
-        ------
-        ValueError
-            As `k`.
         """
         values = self.space.point(point)
         breaks, series = self._parts(values)

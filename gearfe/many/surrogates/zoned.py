@@ -27,25 +27,10 @@ _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, DEGREE))
 
 
 def breaks_of(eps_alpha: float, solve: Solve, *, cracked: bool) -> NDArray[np.float64]:
-    """Rising phases between which k is smooth, both ends included.
+    """Rising phases ``(m,)`` between which k is smooth, both ends included; `solve` gives the curve at phases.
 
-    Parameters
-    ----------
-    eps_alpha : float
-        Contact ratio.
-    solve : callable
-        From phases to the curve.
-    cracked : bool
-        Over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to that behind; else over a cycle.
-
-    Returns
-    -------
-    ndarray, shape (m,)
-
-    Raises
-    ------
-    ValueError
-        If a zone is too short to be told from its neighbours, without load or with it.
+    Over a cycle, or, of `cracked` gears, over the engagement of tooth 0, from the middle of the zone of fewer pairs before it to
+    that behind. ValueError if a zone is too short to be told from its neighbours, without load or with it.
     """
     low = math.floor(eps_alpha)
     more = eps_alpha - low
@@ -111,11 +96,7 @@ def at(phase: NDArray[np.float64], breaks: NDArray[np.float64], series: NDArray[
     piece = piece_of(phase, breaks)
     low, high = breaks[piece], breaks[piece + 1]
     u = np.clip((2 * phase - low - high) / (high - low), -1.0, 1.0)
-    own = series[piece].T
-    before, out = own[DEGREE], own[DEGREE - 1] + 2 * u * own[DEGREE]  # Clenshaw's recurrence
-    for k in range(DEGREE - 2, 0, -1):
-        before, out = out, own[k] + 2 * u * out - before
-    return own[0] + u * out - before
+    return np.asarray(chebyshev.chebval(u, series[piece].T, tensor=False), dtype=float)
 
 
 def piece_of(phase: NDArray[np.float64], breaks: NDArray[np.float64]) -> NDArray[np.int64]:

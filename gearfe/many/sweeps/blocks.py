@@ -17,7 +17,7 @@ from ...threads import own_warnings
 from ..store.shards import Field, encoded, table
 from .keys import placed, rank, trimmed
 from .kinds import KINDS
-from .study import Study, of_case, slim, values
+from .study import Study, of_case, values
 
 FAILURES = (ValueError, RuntimeError, ArithmeticError, LookupError, TypeError, AssertionError, MemoryError)
 DONE, FAILED, LOST = "done", "failed", "lost"
@@ -29,27 +29,15 @@ _ONE = threading.Lock()  # processor time is counted for a process, not for a th
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Cases of one shard `name`: their numbers in the study, combination, draw and values by key."""
+    """Cases of one shard `name`: values by key, and of each its ``number`` in the study, ``point`` (combination) and ``draw``."""
 
     name: str
-    numbers: tuple[int, ...]
-    points: tuple[int, ...]
-    draws: tuple[int, ...]
     cases: tuple[dict[str, Any], ...]
+    told: tuple[dict[str, int], ...]
 
-    def part(self, start: int, stop: int) -> "Block":
-        """Some of its cases."""
-        own = slice(start, stop)
-        return Block(self.name, self.numbers[own], self.points[own], self.draws[own], self.cases[own])
-
-
-@dataclass(frozen=True, slots=True)
-class Job:
-    """A block with all it takes to compute it in another process."""
-
-    study: Study
-    fields: dict[str, Field]
-    block: Block
+    def single(self, i: int) -> "Block":
+        """Its i-th case alone."""
+        return Block(self.name, self.cases[i : i + 1], self.told[i : i + 1])
 
 
 def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
@@ -64,7 +52,8 @@ def blocks(study: Study) -> tuple[list[Block], dict[str, Field]]:
     for i, part in enumerate(_parts(group, study.block)):
         own = order[part]
         cases = tuple({key: column[j] for key, column in columns.items()} for j in own)
-        made.append(Block(f"block-{i:06d}", tuple(own.tolist()), tuple(point[own].tolist()), tuple(draw[own].tolist()), cases))
+        told = tuple({"number": int(j), "point": int(point[j]), "draw": int(draw[j])} for j in own)
+        made.append(Block(f"block-{i:06d}", cases, told))
     inputs = {key: Field(_kind(column)) for key, column in columns.items()}
     return made, FIRST | inputs | KINDS[study.kind].fields | LAST
 
@@ -107,40 +96,34 @@ def _kind(column):
     return "text" if all(isinstance(value, str) for value in column) else "json"
 
 
-def jobs(study: Study, todo: Sequence[Block], fields: Mapping[str, Field]) -> list[Job]:
-    """Blocks ready to be sent away."""
-    small = slim(study)
-    return [Job(small, dict(fields), block) for block in todo]
+def compute(study: Study, fields: Mapping[str, Field], block: Block) -> tuple[bytes, str]:
+    """Encoded shard of a block, and the source code that made it."""
+    return shard(fields, rows(study, block))
 
 
-def compute(job: Job) -> tuple[str, bytes, str]:
-    """Name and encoded shard of a block, and the source code that made it."""
-    return shard(job, rows(job))
+def shard(fields: Mapping[str, Field], made: Sequence[Mapping[str, Any]]) -> tuple[bytes, str]:
+    """Encoded shard, from the rows of a block, and the source code that made them."""
+    return encoded(table(made, fields)), _program()["source"]
 
 
-def shard(job: Job, made: Sequence[Mapping[str, Any]]) -> tuple[str, bytes, str]:
-    """Name and encoded shard, from the rows of a block, and the source code that made them."""
-    return job.block.name, encoded(table(made, job.fields)), _program()["source"]
-
-
-def rows(job: Job) -> list[dict[str, Any]]:
+def rows(study: Study, block: Block) -> list[dict[str, Any]]:
     """Rows of a block's cases; a case that cannot be has its error in its row.
 
     Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
     alone, so that the row says it to which it belongs.
     """
-    cases, out = job.block.cases, []
+    cases, out = block.cases, []
     built: dict[str, Scene] = {}
-    keys = [_key(job.study, case) for case in cases]
+    keys = [_key(study, case) for case in cases]
     with _ONE, listening(lambda text, share: None):  # how far one case is says nothing here
         for _, same in groupby(range(len(cases)), keys.__getitem__):
             numbers = list(same)
-            found = _tried(job.study, [cases[i] for i in numbers], built)
+            found = _tried(study, [cases[i] for i in numbers], built)
             if len(numbers) > 1 and any(row["status"] != DONE or row["notes"] for row in found):
                 spent = found[0]["seconds"]
-                found = [row for i in numbers for row in _tried(job.study, [cases[i]], built)]
+                found = [row for i in numbers for row in _tried(study, [cases[i]], built)]
                 found = [row | {"seconds": row["seconds"] + spent} for row in found]
-            out += [_told(job.block, i) | row for i, row in zip(numbers, found, strict=True)]
+            out += [_told(block, i) | row for i, row in zip(numbers, found, strict=True)]
     return out
 
 
@@ -157,21 +140,15 @@ def _tried(study, cases, built):
     return [row | each for row in found]
 
 
-def lost(job: Job) -> list[dict[str, Any]]:
+def lost(block: Block) -> list[dict[str, Any]]:
     """Rows of a block whose worker ended with it, each time it was tried."""
     error = "the process that computed it ended: killed, or out of memory"
-    return [_told(job.block, i) | {"status": LOST, "error": error} for i in range(len(job.block.cases))]
-
-
-def single(job: Job) -> list[Job]:
-    """One job for each case of a job."""
-    return [replace(job, block=job.block.part(i, i + 1)) for i in range(len(job.block.cases))]
+    return [_told(block, i) | {"status": LOST, "error": error} for i in range(len(block.cases))]
 
 
 def _told(block, i):
     """What a row says of its case and of the program."""
-    numbers = {"number": block.numbers[i], "point": block.points[i], "draw": block.draws[i]}
-    return numbers | block.cases[i] | _program()
+    return block.told[i] | block.cases[i] | _program()
 
 
 @cache
@@ -189,9 +166,11 @@ def _computed(study, cases, built):
         built.clear()
         tables = placed(study.tables, {name: value for name, value in case.items() if kind.whole or not _is_force(name)})
         built[key] = scene_of("scene", tables if kind.whole else trimmed(tables, pair, damage))
-    scene = built[key]
-    forces = [one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases]
-    return kind.work(scene, pair, None if damage == "healthy" else damage, options, forces)
+    scene, hurt = built[key], None if damage == "healthy" else damage
+    if kind.whole:
+        return kind.work(scene, hurt, options)
+    forces = tuple(one.get(f"pair.{pair}.force_N", scene.pair(pair).force) for one in cases)
+    return kind.work(replace(scene.case(pair, hurt), force=forces), options)
 
 
 def _key(study, case):

@@ -92,17 +92,11 @@ def sobol_indices(runs: Runs, output: str, where: Any = None) -> "pandas.DataFra
     parts = table[output].to_numpy().reshape(len(names) + 2, 1, count)
     found = stats.sobol_indices(func={"f_A": parts[0], "f_B": parts[1], "f_AB": parts[2:]}, n=count)
     spread = found.bootstrap(confidence_level=0.95, n_resamples=RESAMPLES)
-    return pandas.DataFrame(
-        {
-            "first": found.first_order.ravel(),
-            "first_low": spread.first_order.confidence_interval.low.ravel(),
-            "first_high": spread.first_order.confidence_interval.high.ravel(),
-            "total": found.total_order.ravel(),
-            "total_low": spread.total_order.confidence_interval.low.ravel(),
-            "total_high": spread.total_order.confidence_interval.high.ravel(),
-        },
-        index=pandas.Index(names, name="input"),
-    )
+    columns: dict[str, Any] = {}
+    for name, order in (("first", "first_order"), ("total", "total_order")):
+        ends = getattr(spread, order).confidence_interval
+        columns |= {name: getattr(found, order).ravel(), f"{name}_low": ends.low.ravel(), f"{name}_high": ends.high.ravel()}
+    return pandas.DataFrame(columns, index=pandas.Index(names, name="input"))
 
 
 def curve_bands(
@@ -141,14 +135,6 @@ def told_apart(healthy: Any, damaged: Any) -> float:
     """Chance that a damaged gear drawn at random has the larger value than a healthy one: the area under the ROC curve.
 
     0.5: not at all told apart, 1: always; below 0.5 damage makes the value smaller. Mann and Whitney's U over all pairs.
-
-    Parameters
-    ----------
-    healthy, damaged : array_like, shape (n,) and (m,)
-
-    Returns
-    -------
-    float
 
     Examples
     --------

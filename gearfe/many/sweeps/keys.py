@@ -3,10 +3,17 @@
 import copy
 
 from ...scene import machine_table
-from ...scene.load import DAMAGE, TABLES
+from ...scene.load import DAMAGE, TABLES, read_tables
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
 BEFORE_LOAD = ("gear", "material")  # what the healthy gears depend on; then damage; the rest shares the gears
+
+
+def tables_near(place, scene):
+    """Name and tables of a scene, a file in the folder `place` or a built-in one, without what its sources print."""
+    near = place / scene
+    name, tables = read_tables(near if near.is_file() else scene)
+    return name, {kind: one for kind, one in tables.items() if kind not in ("reference", "assumption", "given", "later")}
 
 
 def check_key(key, tables, options):

@@ -1,12 +1,12 @@
 """What is computed of a case: a kind of study is a row of `KINDS`, its options, its columns and one function."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable
 from typing import Any, NamedTuple, cast
 
 import numpy as np
 
+from ...case import Case
 from ...flexibility.solved import SolvedGears
 from ...machine.of_scene import build_machine
 from ...motion.step_control import default_step
@@ -47,10 +47,9 @@ INDICATORS = ("crest factor", "kurtosis", "shape factor", "impulse factor", "sid
 class Kind(NamedTuple):
     """A kind of study.
 
-    `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with the scene, the names of
-    pair and case (None: healthy), the options and loads [N], and gives a row for each load (vibration: one, its loads are those
-    of the scene); `whole`: it needs all pairs of the scene; `block`: cases in a
-    shard, so many that one takes seconds.
+    `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
+    options, and gives a row for each of its loads; `block`: cases in a shard, so many that one takes seconds. `whole`: it needs
+    all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
     options: dict[str, Any]
@@ -60,20 +59,15 @@ class Kind(NamedTuple):
     whole: bool = False
 
 
-def curves_of(
-    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
-) -> list[StiffnessCurve]:
+def curves_of(case: Case, options: dict[str, Any]) -> list[StiffnessCurve]:
     """Stiffness curves of a case by load; gears are solved once for all cases of this process that share them."""
-    loaded = replace(scene.case(pair, case), force=tuple(forces))
-    span = options["span"] or ("tooth" if case else "cycle")
-    return cast(list[StiffnessCurve], solve(loaded, Solve(**options | {"span": span, "cache": KEPT})))
+    span = options["span"] or ("tooth" if case.damaged else "cycle")
+    return cast(list[StiffnessCurve], solve(case, Solve(**options | {"span": span, "cache": KEPT})))
 
 
-def stiffness(
-    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
-) -> list[dict[str, Any]]:
+def stiffness(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
     """Rows of stiffness curves by load: zones, the largest relative error estimate if asked for, phase and k."""
-    return [_stiffness_row(curve) for curve in curves_of(scene, pair, case, options, forces)]
+    return [_stiffness_row(curve) for curve in curves_of(case, options)]
 
 
 def _stiffness_row(curve):
@@ -84,12 +78,10 @@ def _stiffness_row(curve):
     return row | {"phase": curve.phase, "k": curve.k}
 
 
-def transmission_error(
-    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
-) -> list[dict[str, Any]]:
+def transmission_error(case: Case, options: dict[str, Any]) -> list[dict[str, Any]]:
     """Rows of loaded transmission errors by load: mean, peak-to-peak, mesh harmonics (of a whole cycle), phase and te."""
-    whole = case is None and options["span"] in (None, "cycle")
-    return [_te_row(curve, whole) for curve in curves_of(scene, pair, case, options, forces)]
+    whole = not case.damaged and options["span"] in (None, "cycle")
+    return [_te_row(curve, whole) for curve in curves_of(case, options)]
 
 
 def _te_row(curve, whole):
@@ -101,9 +93,7 @@ def _te_row(curve, whole):
     return row | {"phase": curve.phase, "te": te}
 
 
-def vibration(
-    scene: Scene, pair: str, case: str | None, options: dict[str, Any], forces: Sequence[float]
-) -> list[dict[str, Any]]:
+def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[dict[str, Any]]:
     """Row of a machine's vibration: indicators of one channel (default: force of the driven mesh), and the signal if asked for.
 
     Method and resolution of the curves are the same for all cases only if ``curves`` names one: ``"auto"`` takes three dimensions

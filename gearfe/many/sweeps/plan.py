@@ -11,43 +11,25 @@ from pathlib import Path
 from typing import Any
 
 from ..store.shards import encoded, table
-from .blocks import DONE, jobs, rows
+from .blocks import DONE, rows
 from .blocks import blocks as blocks_of
-from .study import read_study
+from .study import read_study, slim
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What a sweep will take.
+    """What a sweep will take."""
 
-    Attributes
-    ----------
-    cases, blocks : int
-        Cases in all, and shards they make.
-    seconds : float
-        Processor time of all cases together [s].
-    workers : int
-        Processes that share it.
-    memory : float
-        Of each process [bytes]: the largest of this one so far.
-    disk, free : float
-        Of the whole folder, and what is free there [bytes].
-    tried, failed : int
-        Cases that were computed for this, and those of them that cannot be.
-    error : str
-        Of the first that cannot be; empty if there is none.
-    """
-
-    cases: int
-    blocks: int
-    seconds: float
-    workers: int
-    memory: float
-    disk: float
-    free: float
-    tried: int
-    failed: int
-    error: str
+    cases: int  # in all
+    blocks: int  # shards they make
+    seconds: float  # of processor, all cases together
+    workers: int  # processes that share it
+    memory: float  # of each process [bytes]: the largest of this one so far
+    disk: float  # the whole folder [bytes]
+    free: float  # there [bytes]
+    tried: int  # cases that were computed for this
+    failed: int  # of these
+    error: str  # of the first that cannot be; empty if there is none
 
     def text(self) -> str:
         """Lines for people."""
@@ -75,10 +57,6 @@ def plan_sweep(
     workers : int, optional
         Processes; default one per core.
 
-    Returns
-    -------
-    Plan
-
     Raises
     ------
     ValueError
@@ -94,28 +72,24 @@ def plan_sweep(
     """
     checked = read_study(study)
     every, fields = blocks_of(checked)
+    checked = slim(checked)
     chosen = every[len(every) // 2]
-    warm, job = jobs(checked, [chosen.part(0, 1), chosen], fields)
-    rows(warm)  # imports and tables that are made once
+    rows(checked, chosen.single(0))  # imports and tables that are made once
     started = time.process_time()
-    made = rows(job)
+    made = rows(checked, chosen)
     tried = len(made)
     content = encoded(table(made, fields))
     each = (time.process_time() - started) / tried
-    cases = sum(len(one.numbers) for one in every)
+    cases = sum(len(one.cases) for one in every)
     wrong = [row["error"] for row in made if row["status"] != DONE]
     unit = 1 if sys.platform == "darwin" else 1024
+    place = Path(folder).absolute()
+    there = next(one for one in (place, *place.parents) if one.exists())
     return Plan(
         cases, len(every), each * cases, workers or os.cpu_count() or 1,
         float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit), len(content) / tried * cases,
-        float(shutil.disk_usage(_there(Path(folder))).free), tried, len(wrong), wrong[0] if wrong else "",
+        float(shutil.disk_usage(there).free), tried, len(wrong), wrong[0] if wrong else "",
     )  # fmt: skip
-
-
-def _there(folder):
-    """The folder, or the nearest one above it that exists."""
-    folder = folder.absolute()
-    return next(one for one in (folder, *folder.parents) if one.exists())
 
 
 def _time(seconds):

@@ -1,21 +1,18 @@
 """`sweep`: all cases of a study into a folder, going on where it was stopped."""
 
-import math
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
-from ...steps import reached
 from ...stiffness.cache import program
-from ...studies.batches import check_workers
-from ..store.folder import begin, locked
-from ..store.shards import check_shards, shard_names, write_shard
-from .blocks import blocks, jobs
-from .cluster import cluster
-from .local import local
+from ..runner import Tally, alone, check_workers, results
+from ..store.folder import begin, check_same, locked
+from ..store.shards import unfinished, write_shard
+from .blocks import blocks, compute, lost, rows, shard
 from .runs import FORMAT, Runs, open_runs
-from .study import Study, read_study
+from .study import Study, read_study, slim
 
 
 def sweep(
@@ -48,11 +45,6 @@ def sweep(
     progress : callable, optional
         Called with (cases done, cases in all).
 
-    Returns
-    -------
-    Runs
-        As of `gearfe.open_runs`.
-
     Raises
     ------
     ValueError
@@ -68,88 +60,39 @@ def sweep(
         raise ValueError("workers are processes of this machine, a scheduler has its own: give one of them")
     checked = read_study(study)
     every, fields = blocks(checked)
-    about = _about(checked, sum(len(one.numbers) for one in every))
-    stored = begin(folder, about)
+    stored = begin(folder, _about(checked, sum(len(one.cases) for one in every)))
     with locked(folder):
-        checked = _compared(folder, stored, about, checked, mixed)
-        if checked.block != about["study"]["block"]:
+        if stored["study"]["block"] != checked.block:  # how it is cut is no other study
+            checked = replace(checked, block=stored["study"]["block"])
             every, fields = blocks(checked)
-        todo = _todo(folder, every)
-        total = stored["cases"]
-        sizes = {one.name: len(one.numbers) for one in every}
-        done = total - sum(sizes[one.name] for one in todo)
-        _say(done, total, progress)
-        work = jobs(checked, todo, fields)
-        count = min(workers or os.cpu_count() or 1, max(1, len(todo)))
-        for name, content, source in local(work, count) if scheduler is None else cluster(work, scheduler):
+        about = _about(checked, stored["cases"])
+        check_same(folder, stored, about, "study", mixed=mixed)
+        left = unfinished(folder, [one.name for one in every], "study")
+        todo = [one for one in every if one.name in left]
+        tally = Tally("cases", stored["cases"], progress)
+        tally.add(tally.total - sum(len(one.cases) for one in todo))
+        small = slim(checked)
+        for block, found in results(partial(compute, small, fields), todo, workers, scheduler=scheduler):
+            content, source = found or shard(fields, lost(block) if scheduler else _case_by_case(small, block))
             if source != about["made"]["source"]:
                 raise RuntimeError(
                     f"a worker has gearfe of source {source}, this process {about['made']['source']}: install the same there"
                 )
-            write_shard(folder, name, content)
-            done += sizes[name]
-            _say(done, total, progress)
-    if done != total:
-        raise RuntimeError(f"{total - done} of {total} cases were handed out and never came back: start the sweep again")
+            write_shard(folder, block.name, content)
+            tally.add(len(block.cases))
+    if tally.done != tally.total:
+        raise RuntimeError(
+            f"{tally.total - tally.done} of {tally.total} cases were handed out and never came back: start the sweep again"
+        )
     return open_runs(folder)
 
 
-def _say(done, total, progress):
-    """How far it is."""
-    reached(f"{done} of {total} cases", done / total)
-    if progress is not None:
-        progress(done, total)
+def _case_by_case(study, block):
+    """Rows of a block that ended its process: only cases that end theirs once more, computed alone, are recorded as lost."""
+    each = [block.single(i) for i in range(len(block.cases))]
+    return [row for one, found in alone(partial(rows, study), each) for row in found or lost(one)]
 
 
 def _about(study: Study, cases: int) -> dict[str, Any]:
     """Note of a folder of results."""
     return {"format": FORMAT, "title": study.title, "cases": cases, "study": study.content(), "made": program()}
-
-
-def _compared(folder, stored, about, study, mixed):
-    """The study as it is to go on, if the folder holds it; its blocks are those of the folder."""
-    mine, there = about["study"], stored["study"]
-    changed = list(_differences(there | {"block": 0}, mine | {"block": 0}))
-    if changed:
-        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
-        raise ValueError(
-            f"{folder} holds another study, begun with {changed[0]}{more}: give a new folder, or the study as it was "
-            f"({folder}/about.json has all of it)"
-        )
-    versions = list(_differences(stored["made"], about["made"]))
-    if versions and not mixed:
-        raise ValueError(
-            f"{folder} was begun by another program, with {'; '.join(versions)}: finish it with that, give a new folder, or go "
-            "on with mixed = True (--mixed): each row says which made it"
-        )
-    return replace(study, block=there["block"])
-
-
-def _differences(there, here, path=""):
-    """Texts that say which values differ."""
-    if isinstance(there, dict) and isinstance(here, dict):
-        for name in dict.fromkeys((*there, *here)):
-            yield from _differences(there.get(name), here.get(name), f"{path}.{name}" if path else name)
-    elif isinstance(there, list) and isinstance(here, list) and len(there) == len(here):
-        for i, (one, other) in enumerate(zip(there, here, strict=True)):
-            yield from _differences(one, other, f"{path}.{i}")
-    elif there != here and not (_is_nan(there) and _is_nan(here)):
-        yield f"{path} = {_short(there)}, not {_short(here)}"
-
-
-def _is_nan(value):
-    return isinstance(value, float) and math.isnan(value)
-
-
-def _short(value):
-    text = repr(value)
-    return text if len(text) < 60 else f"{text[:50]}...{text[-5:]}"
-
-
-def _todo(folder, every):
-    """Blocks that are not in the folder yet; refuses shards that are of no block."""
-    check_shards(folder)
-    there, known = set(shard_names(folder)), {one.name for one in every}
-    if there - known:
-        raise ValueError(f"{folder} holds {min(there - known)}.parquet, which is none of this study's: take it out")
-    return [one for one in every if one.name not in there]

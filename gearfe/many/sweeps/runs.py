@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...extras import missing
+from ...extras import needing
 from ..store.folder import read_about
-from ..store.shards import Field, fields_of, opened, read, shard_names, where_of
+from ..store.shards import Field, fields_of, frame, opened, read, shard_names, where_of
 
 if TYPE_CHECKING:
     import pandas
@@ -23,13 +23,7 @@ FORMAT = "gearfe sweep 1"
 class Runs:
     """Results of a sweep, in a folder.
 
-    Attributes
-    ----------
-    folder : Path
-    about : dict
-        Title, study, number of cases, versions.
-    fields : dict of str to (kind, unit)
-        Columns; those of kind ``list`` are curves and signals.
+    `about` has title, study, number of cases and versions; `fields` kind and unit by column, of kind ``list`` curves and signals.
     """
 
     folder: Path
@@ -83,16 +77,10 @@ class Runs:
         RuntimeError
             If pandas is missing; the message names what to install.
         """
-        try:
-            import pandas  # noqa: F401
-        except ImportError as error:
-            raise missing("pandas", error) from error
         if columns is None:
             columns = [name for name, field in self.fields.items() if field.kind != "list"]
         wanted = ["number", *(name for name in columns if name != "number")]
-        found = read(self.folder, wanted, where_of(where, list(self.fields))).to_pandas().set_index("number").sort_index()
-        found.attrs["units"] = {name: self.fields[name].unit for name in columns}
-        return found
+        return frame(read(self.folder, wanted, where_of(where, list(self.fields))), self.fields, "number")
 
     def curves(self, names: Sequence[str] | None = None, where: Any = None) -> "xarray.Dataset":
         """Curves and signals as arrays with named axes.
@@ -117,10 +105,8 @@ class Runs:
         RuntimeError
             If xarray is missing; the message names what to install.
         """
-        try:
+        with needing("xarray"):
             import xarray
-        except ImportError as error:
-            raise missing("xarray", error) from error
         known = [name for name, field in self.fields.items() if field.kind == "list"]
         names = known if names is None else list(names)
         for name in names:
@@ -159,14 +145,6 @@ def _longest(phase):
 
 def open_runs(folder: str | os.PathLike[str]) -> Runs:
     """Open the folder of a sweep, finished or not.
-
-    Parameters
-    ----------
-    folder : str or path
-
-    Returns
-    -------
-    Runs
 
     Raises
     ------

@@ -77,12 +77,9 @@ def check_shape(where, spec):
         raise ValueError(f"{where}: {name} = {values!r}, but the values must rise: {said}")
     if name in ("normal", "lognormal") and not values[1] > 0:
         raise ValueError(f"{where}: {name} = {values!r}, but a standard deviation is > 0")
-    if name == "lognormal" and values[1] > WIDEST:
-        raise ValueError(
-            f"{where}: lognormal = {values!r}, but a standard deviation of the logarithm above {WIDEST:g} is none of gears"
-        )
-    if name == "lognormal" and not values[0] > 0:
-        raise ValueError(f"{where}: lognormal = {values!r}, but a median is > 0")
+    if name == "lognormal" and not (values[0] > 0 and values[1] <= WIDEST):
+        told = f"a median is > 0, and a standard deviation of the logarithm above {WIDEST:g} is none of gears"
+        raise ValueError(f"{where}: lognormal = {values!r}, but {told}")
     if "within" in spec:
         _check_within(where, name, spec)
 

@@ -38,17 +38,17 @@ import json
 import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ...scene.load import DAMAGE, read_tables, scene_of
+from ...scene.load import DAMAGE, scene_of
 from ...scene.strict import REQUIRED, TABLES, TEXT, VALUES, WHOLE, checked
 from ...scene.toml_file import given_tables
 from . import samples
 from .axes import MOST, axes, checked_sample
-from .keys import check_key, trimmed
+from .keys import check_key, tables_near, trimmed
 from .kinds import KINDS
 
 TOP = {
@@ -69,38 +69,20 @@ ADDED = (*DAMAGE, "flank")
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A study, checked.
-
-    Attributes
-    ----------
-    title, kind, pair, case : str
-        ``case`` is ``"healthy"`` where there is no damage.
-    name : str
-        Of the scene's file.
-    tables : dict
-        The scene's tables with those the study adds.
-    options : dict
-        Of the kind, defaults filled in.
-    axes : tuple of dict
-        Each holds lists of the same length by key: one axis of the grid.
-    sample : dict
-        As ``[sample]``; empty: none.
-    seed, block : int
-        Of the sample; cases in a shard.
-    """
+    """A study, checked."""
 
     title: str
     kind: str
     pair: str
-    case: str
-    name: str
-    tables: dict[str, Any]
-    options: dict[str, Any]
-    axes: tuple[dict[str, list], ...]
-    sample: dict[str, Any]
-    seed: int
-    block: int
-    keys: tuple[str, ...] = field(default=())
+    case: str  # "healthy" where there is no damage
+    name: str  # of the scene's file
+    tables: dict[str, Any]  # of the scene, with those the study adds
+    options: dict[str, Any]  # of the kind, defaults filled in
+    axes: tuple[dict[str, list], ...]  # each holds lists of the same length by key: one axis of the grid
+    sample: dict[str, Any]  # as ``[sample]``; empty: none
+    seed: int  # of the sample
+    block: int  # cases in a shard
+    keys: tuple[str, ...] = ()  # all that vary
 
     def content(self) -> dict[str, Any]:
         """All that decides the results, as JSON: two studies are the same if this is."""
@@ -139,7 +121,10 @@ def _study(file, place, data):
         raise ValueError(f"{file} seed = {top['seed']}: give a whole number >= 0")
     keys = tuple(key for axis in grid for key in axis) + tuple(_with_also(sample.get("of", {})))
     for key in keys:
-        _checked_key(file, key, tables, options)
+        try:
+            check_key(key, tables, options)
+        except ValueError as error:
+            raise ValueError(f"{file}: {error}") from error
         if keys.count(key) > 1:
             raise ValueError(f"{file}: {key!r} varies twice; leave one out")
     _check_names(file, tables, pair if "pair" not in keys else None, top["case"] if "case" not in keys else None)
@@ -152,10 +137,7 @@ def _study(file, place, data):
 
 def _scene(file, place, scene, added):
     """Name and tables of the scene with those that the study adds, tried as a whole."""
-    near = place / scene
-    name, tables = read_tables(near if near.is_file() else scene)
-    for told in ("reference", "assumption", "given", "later"):
-        tables.pop(told, None)
+    name, tables = tables_near(place, scene)
     for kind, one in added.items():
         here = tables.get(kind, {} if kind == "flank" else [])
         if not isinstance(one, type(here)):
@@ -173,27 +155,15 @@ def _check_names(file, tables, pair, case):
         raise ValueError(f"{file} case = {case!r}: no such case; there is healthy, {', '.join(sorted(cases))}")
 
 
-def _checked_key(file, key, tables, options):
-    try:
-        check_key(key, tables, options)
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from error
-
-
 def _with_also(of):
     """Keys of a sample with those that take the same value."""
     return [key for name, spec in of.items() for key in (name, *spec.get("also", []))]
 
 
 def values(study: Study) -> tuple[dict[str, list], np.ndarray, np.ndarray]:
-    """All cases of a study.
+    """All n cases of a study: their values by key, and numbers ``(n,)`` of their combination and of their draw of the sample.
 
-    Returns
-    -------
-    columns : dict of str to list
-        Value of every case by key.
-    point, draw : ndarray, shape (n,)
-        Number of the combination and of the sample's draw: each draw meets each combination.
+    Each draw meets each combination.
     """
     of = study.sample.get("of", {})
     drawn: dict[str, list] = {}

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import gearfe as gf
-from geometry.damage.hollow import centre_arc, check_hollows, crossing, intervals, lost_width, rolls, takes_all, union_length
+from geometry.damage.hollow import centre_arc, check_hollows, intervals, lost_width, rolls, takes_all, union_length
 from geometry.damage.pit import pit_row
 from geometry.tooth.profile import arc_at
 
@@ -77,7 +77,7 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
     t = (np.arange(200_000) + 0.5) / 200_000
     at, z = arc_at(gear, roll[0] + (roll[1] - roll[0]) * t), 20.0 * t
     low, high = intervals(gear, [pit], at)
-    found = crossing(gear, pit, roll, (0.0, 20.0))
+    found = pit.crossing(gear, roll, (0.0, 20.0))
     assert_allclose(sum(b - a for a, b in found), ((low < z) & (z < high)).mean(), atol=2e-5)
 
 
@@ -85,9 +85,9 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
 def test_crossing_of_upright_lines_is_the_lost_width(lean):
     pit = gf.Pit(**GOOD | {"angle": 0.4})
     roll = rolls(GEAR, pit).mean()
-    found = crossing(GEAR, pit, (roll - lean, roll + lean), (0.0, GEAR.b))
+    found = pit.crossing(GEAR, (roll - lean, roll + lean), (0.0, GEAR.b))
     assert_allclose(sum(b - a for a, b in found) * GEAR.b, lost_width(GEAR, [pit], arc_at(GEAR, roll)), rtol=1e-7)
-    assert crossing(GEAR, pit, (GEAR.roll_a, GEAR.roll_a), (0.0, GEAR.b)) == []
+    assert pit.crossing(GEAR, (GEAR.roll_a, GEAR.roll_a), (0.0, GEAR.b)) == []
 
 
 @pytest.mark.parametrize(

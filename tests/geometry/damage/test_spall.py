@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 import gearfe as gf
 from gearfe.energy.closed.section import section
-from geometry.damage.hollow import centre_arc, check_hollows, crossing, flank_edge, intervals, lost_width, takes_all
+from geometry.damage.hollow import centre_arc, check_hollows, flank_edge, intervals, lost_width, takes_all
 from geometry.damage.hollow_volume import removed_volume
 from geometry.mesh.holes import holed_sector
 from geometry.pair.gear_pair import GearPair
@@ -53,7 +53,7 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
     t = (np.arange(200_000) + 0.5) / 200_000
     low, high = intervals(gear, [found], arc_at(gear, roll[0] + (roll[1] - roll[0]) * t))
     inside = (low[0] < 20.0 * t) & (20.0 * t < high[0])
-    parts = crossing(gear, found, roll, (0.0, 20.0))
+    parts = found.crossing(gear, roll, (0.0, 20.0))
     assert_allclose(sum(b - a for a, b in parts), inside.mean(), atol=2e-5)
     assert all(inside[(t > a + 1e-5) & (t < b - 1e-5)].all() for a, b in parts)
 
@@ -61,9 +61,9 @@ def test_crossing_of_oblique_lines_against_points_along_them(gear, seed):
 def test_lines_along_the_axis_meet_the_whole_side_or_nothing():
     found = spall(corner=0.0)
     at = math.sqrt(21.0**2 - GEAR.r_b**2)
-    assert_allclose(crossing(GEAR, found, (at, at), (0.0, 20.0)), [(0.35, 0.65)], rtol=1e-12)
-    assert_allclose(crossing(GEAR, found, (at, at), (20.0, 0.0)), [(0.35, 0.65)], rtol=1e-12)
-    assert crossing(GEAR, found, (GEAR.roll_a, GEAR.roll_a), (0.0, 20.0)) == []
+    assert_allclose(found.crossing(GEAR, (at, at), (0.0, 20.0)), [(0.35, 0.65)], rtol=1e-12)
+    assert_allclose(found.crossing(GEAR, (at, at), (20.0, 0.0)), [(0.35, 0.65)], rtol=1e-12)
+    assert found.crossing(GEAR, (GEAR.roll_a, GEAR.roll_a), (0.0, 20.0)) == []
 
 
 @pytest.mark.parametrize("gear", [GEAR, HELICAL, RING], ids=["gear", "helical", "ring"])
@@ -75,7 +75,7 @@ def test_a_fully_rounded_square_is_a_round_pit(gear):
     assert_allclose(intervals(gear, [round_], arc), intervals(gear, [pit], arc), atol=1e-12)
     at = math.sqrt(gear.r**2 - gear.r_b**2)
     for roll in ((at - 0.3, at + 0.4), (at, at), (at - 2.0, at + 2.0)):
-        assert_allclose(crossing(gear, round_, roll, (0.0, 20.0)), crossing(gear, pit, roll, (0.0, 20.0)), atol=1e-9)
+        assert_allclose(round_.crossing(gear, roll, (0.0, 20.0)), pit.crossing(gear, roll, (0.0, 20.0)), atol=1e-9)
     assert_allclose(removed_volume(gear, [round_]), removed_volume(gear, [pit]), rtol=3e-4)  # of sums over 400 x 400 places
 
 
@@ -118,7 +118,7 @@ def test_spalls_over_the_tip_and_the_end_face_and_of_a_ring_are_cut():
 
 
 @pytest.mark.parametrize("corner", [0.0, 0.4])
-def test_section_has_the_area_and_inertia_that_the_literature_prints(corner):
+def test_section_has_the_area_and_inertia_of_the_parallel_axis_theorem(corner):
     """``dI = l s**3 / 12 + A dA (h - s / 2)**2 / (A - dA)``, l the length and s the depth: of a section 2 h x b."""
     found, h, b, s = spall(corner=corner), 1.7, GEAR.b, 0.2
     for u in (0.0, 0.6):

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import gearfe as gf
-from gearfe.energy.closed.slices import faces, stations
+from gearfe.energy.closed.slices import stations
 from geometry.damage.hollow import lost_width
 from geometry.pair.contacts import contacts
 from geometry.pair.lines import contact_lines, face_bands, lost_length, removed, total_length
@@ -114,7 +114,8 @@ def test_agrees_with_the_slices_of_the_closed_forms():
     pair = helical(-15.0)
     for face in ("helical", "herringbone"):
         pits = ([gf.Pit(radius=21.5, z=9.0, axes=(0.8, 1.2), depth=0.1)], [])
-        found = stations(pair, PHASES[::400], pits, faces(pair, face), lost="slices")
+        case = gf.Case(pair, 1.0, gf.Material(), face=face, damage={"pinion": pits[0]})
+        found = stations(case, PHASES[::400], lost="slices")
         slices = np.bincount(found.phase, found.weight, minlength=10) * 30.0 / math.cos(pair.gear_1.beta_b)
         assert_allclose(total_length(pair, PHASES[::400], face=face, pits=pits), slices, rtol=1e-12)
 

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 import gearfe as gf
 from geometry.damage.hollow import centre_arc
 from geometry.pair.lines import bands_of, covered
-from geometry.pair.pit_lines import in_both_halves, pit_line
+from geometry.pair.pit_lines import pit_line
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 40.0}
 SIZE = {"axes": (0.4, 0.4), "depth": 0.2}
@@ -31,38 +31,36 @@ def test_a_row_along_a_contact_line_lies_on_one(beta, kind, which, face):
     pair = pairs(beta)[kind]
     gear = (pair.gear_1, pair.gear_2)[which]
     radius = (pair.pitch_radius_1, pair.pitch_radius_1 * pair.gear_2.z / pair.gear_1.z)[which]
-    start = gf.Pit(radius=radius, z=gear.b / 2 - 9.0, axes=(0.1, 0.1), depth=0.2)
+    run = {"radius": radius, "middle": gear.b / 2 - 9.0, "face": face, "axes": (0.1, 0.1), "depth": 0.2}
     shift = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     z = np.array(bands_of(pair, face, 0.0))
     rolls, counts = pair.curvature_radii(pair.pitch_phase), []
     # lines through the pitch point at the height of the middle pit; the pinion's roll falls from the end that touches first
     slope = -np.sign(z[:, 1] - z[:, 0]) * math.tan(abs(gear.beta_b))
-    middle = np.array([start.z - shift, gear.b - start.z - shift][: len(z)])
+    middle = np.array([run["middle"] - shift, gear.b - run["middle"] - shift][: len(z)])
     line = rolls[0] + slope[:, None] * (z - middle[:, None])
     for both, mirrored in ((False, False), (face == "herringbone", False), (False, True)):
         pits = [(), ()]
-        pits[which] = pit_line(pair, which, start, "contact_line", 5, 1.5, bands=z, mirrored=mirrored)
-        pits[which] += in_both_halves(gear, pits[which], face) if both else []
+        pits[which] = pit_line(pair, which, "contact_line", 5, 1.5, both=both, mirrored=mirrored, **run)
         piece = covered(pair, pits, np.zeros(len(z), dtype=int), (line, pair.mate_roll(line)), z)[0]
         counts.append(np.bincount(piece, minlength=2).tolist()[: len(z)])
     assert counts == ([[5, 0], [5, 5], [1, 0]] if face == "herringbone" else [[5], [5], [1]])
-    row = pit_line(pair, which, start, "contact_line", 5, 1.5, bands=z)
+    row = pit_line(pair, which, "contact_line", 5, 1.5, **run)
     own = np.array([(pit.z, math.sqrt(pit.radius**2 - gear.r_b**2)) for pit in row])
     assert_allclose(np.hypot(*np.diff(own, axis=0).T), 1.5, rtol=1e-12, err_msg="the pitch is counted along the line")
 
 
 def test_rows_along_the_axis_and_up_the_profile():
     pair = pairs(0.28)["external"]
-    middle = gf.Pit(radius=18.7, z=10.0, angle=0.3, **SIZE)
-    row = pit_line(pair, 0, middle, "axis", 3, 2.0)
+    run = {"radius": 18.7, "middle": 10.0, **SIZE}
+    row = pit_line(pair, 0, "axis", 3, 2.0, **run)
     assert [pit.z for pit in row] == [8.0, 10.0, 12.0]
     assert {pit.radius for pit in row} == {18.7}
-    row = pit_line(pair, 0, middle, "profile", 4, 0.3)
+    row = pit_line(pair, 0, "profile", 4, 0.3, **run)
     assert_allclose(np.diff([centre_arc(pair.gear_1, pit) for pit in row]), 0.3, rtol=1e-12)
     assert {pit.z for pit in row} == {10.0}
-    row = pit_line(pair, 0, middle, "axis", 1, 0.0)
-    row += in_both_halves(pair.gear_1, row, "herringbone")
-    assert [(pit.z, pit.angle) for pit in row] == [(10.0, 0.3), (30.0, -0.3)]
+    one = pit_line(pair, 0, "axis", 1, 0.0, both=True, face="herringbone", angle=0.3, **run)
+    assert [(pit.z, pit.angle) for pit in one] == [(10.0, 0.3), (30.0, -0.3)]
 
 
 @pytest.mark.parametrize(
@@ -71,21 +69,16 @@ def test_rows_along_the_axis_and_up_the_profile():
         ({"along": "tooth"}, "along = 'tooth', but pits lie along one of axis, contact_line, profile"),
         ({"count": 0}, "whole number from 1"),
         ({"pitch": 0.0}, "pitch = 0.0 mm"),
+        ({"both": True}, "pits in both halves, but teeth of face = 'helical' have none"),
         ({"mirrored": True}, "only a row along a contact line can be inclined"),
         ({"along": "contact_line", "pitch": 11.0}, "a row of 3 pits over 22 mm along the contact line leaves the flank"),
-        ({"along": "contact_line", "z": 21.0, "face": "herringbone"}, "or its half of the width"),
+        ({"along": "contact_line", "middle": 21.0, "face": "herringbone"}, "or its half of the width"),
         ({"along": "contact_line", "radius": 10.0}, "contact lines of z = 18 lie beyond"),
-        ({"along": "contact_line", "z": 47.0}, "there the teeth of z = 18 touch nothing"),
+        ({"along": "contact_line", "middle": 47.0}, "there the teeth of z = 18 touch nothing"),
     ],
 )
 def test_rows_that_cannot_be_are_refused(change, message):
-    run = {"along": "axis", "count": 3, "pitch": 2.0, "radius": 18.7, "z": 10.0, "face": "helical", **SIZE} | change
-    along, count, pitch, face = (run.pop(name) for name in ("along", "count", "pitch", "face"))
-    pair, mirrored = pairs(0.28)["external"], run.pop("mirrored", False)
+    run = {"along": "axis", "count": 3, "pitch": 2.0, "radius": 18.7, "middle": 10.0, **SIZE} | change
+    along, count, pitch = (run.pop(name) for name in ("along", "count", "pitch"))
     with pytest.raises(ValueError, match=message):
-        pit_line(pair, 0, gf.Pit(**run), along, count, pitch, bands=bands_of(pair, face, 0.0), mirrored=mirrored)
-
-
-def test_spur_teeth_have_no_halves():
-    with pytest.raises(ValueError, match="pits in both halves, but teeth of face = 'helical' have none"):
-        in_both_halves(pairs(0.28)["external"].gear_1, [], "helical")
+        pit_line(pairs(0.28)["external"], 0, along, count, pitch, **run)

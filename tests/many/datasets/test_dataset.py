@@ -142,7 +142,7 @@ def test_stopped_and_continued_is_the_same(made, plan, tmp_path, monkeypatch):
 
 
 def test_other_folders_are_refused_and_left_alone(made, plan, tmp_path):
-    with pytest.raises(ValueError, match="another data set: its seed differ"):
+    with pytest.raises(ValueError, match="another plan, begun with seed = 3, not 4"):
         gf.dataset(plan | {"seed": 4}, made.folder, workers=1)
     (tmp_path / "letter.txt").write_text("dear")
     with pytest.raises(ValueError, match="holds other files"):

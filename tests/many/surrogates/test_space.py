@@ -12,7 +12,7 @@ from gearfe.many.surrogates.space import space_of
 
 def test_a_point_is_gears_force_and_crack(pair):
     space = space_of(pair, {"force": (500.0, 4000.0), "z_1": (20, 24), "x_1": (-0.1, 0.3), "bore_1": 0.5, "level": (0.1, 0.6)})
-    case = space.case({"force": 800.0, "z_1": 23.0, "x_1": 0.2, "level": 0.25})
+    case = space.case({"force": 800.0, "z_1": 23.0, "x_1": 0.2, "level": 0.25}, gf.Material())
     made = case["pair"]
     assert (made.gear_1.z, made.gear_1.x, case["force"]) == (23, 0.2, 800.0)
     assert_allclose(made.gear_1.r_bore, 0.5 * made.gear_1.r_f)
@@ -55,4 +55,4 @@ def test_pairs_without_a_section_of_their_own_are_refused():
     wide = gf.GearPair(gf.Gear(z=21, r_bore=7.4, **rack), gf.Gear(z=31, r_bore=11.4, **rack), 52.1)
     with pytest.raises(ValueError, match="centre distance"):
         space_of(wide, {"force": (500.0, 4000.0), "x_1": (0.0, 0.2)})
-    assert space_of(wide, {"force": (500.0, 4000.0)}).case({"force": 900.0})["pair"].a == 52.1
+    assert space_of(wide, {"force": (500.0, 4000.0)}).case({"force": 900.0}, gf.Material()).pair.a == 52.1

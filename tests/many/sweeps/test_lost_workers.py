@@ -66,10 +66,10 @@ def test_a_case_that_ends_its_process_is_recorded_as_lost(tmp_path, monkeypatch)
         "if 'multiprocessing.spawn' in ' '.join(sys.orig_argv):\n"
         "    from gearfe.many.sweeps import kinds\n"
         "    work = kinds.KINDS['stiffness'].work\n"
-        "    def bad(scene, pair, case, *more):\n"
-        "        if scene.pair(pair).damage[case]['pinion'][0].level == 0.3:\n"
+        "    def bad(case, options):\n"
+        "        if case.damage['pinion'][0].level == 0.3:\n"
         "            os._exit(9)\n"
-        "        return work(scene, pair, case, *more)\n"
+        "        return work(case, options)\n"
         "    kinds.KINDS['stiffness'] = kinds.KINDS['stiffness']._replace(work=bad)\n"
     )
     study = STUDY | {"options": {"method": "textbook", "phases": 8}, "vary": {"crack.cracked.level": [0.1, 0.2, 0.3, 0.4, 0.5]}}
@@ -149,9 +149,9 @@ def _address(file, workers):
 
 
 def test_no_scheduler_is_said(tmp_path, monkeypatch):
-    from gearfe.many.sweeps import cluster
+    from gearfe.many import runner
 
-    monkeypatch.setattr(cluster, "TIMEOUT", "1s")
+    monkeypatch.setattr(runner, "TIMEOUT", "1s")
     with pytest.raises(ValueError, match="no Dask scheduler answers"):
         gf.sweep(STUDY, tmp_path / "runs", scheduler="tcp://127.0.0.1:9")
     assert len(gf.open_runs(tmp_path / "runs")) == 0

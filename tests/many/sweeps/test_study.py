@@ -88,7 +88,7 @@ def test_keys_set_the_tables_of_a_case():
 def test_blocks_hold_every_case_once_and_keep_groups_together():
     study = read_study(STUDY | {"block": 5})
     made, fields = blocks(study)
-    assert sorted(n for one in made for n in one.numbers) == list(range(12))
+    assert sorted(told["number"] for one in made for told in one.told) == list(range(12))
     for key in ("crack.cracked.level", "gear.sun.r_bore_mm"):
         assert fields[key].kind == "number"
     homes = {}
@@ -98,7 +98,7 @@ def test_blocks_hold_every_case_once_and_keep_groups_together():
     assert all(len(names) == 1 for names in homes.values())  # groups of three loads in blocks of about five
     assert [one.name for one in made] == sorted(one.name for one in made)
     alone, _ = blocks(read_study(BASE | {"block": 2, "vary": {"pair.sun_planet.force_N": [float(n) for n in range(1, 8)]}}))
-    assert [len(one.numbers) for one in alone] == [2, 2, 3]
+    assert [len(one.cases) for one in alone] == [2, 2, 3]
 
 
 CORRELATED = {"count": 4, "of": {key: {"uniform": [0, 1]} for key in ("gear.sun.x", "gear.planet.x")}}

@@ -10,7 +10,7 @@ import numpy as np
 from geometry.pair.contacts import near_pitches
 
 from ..case import SIDES
-from ..contact.plane import PairContact
+from ..contact.pair_contact import PairContact
 from ..energy.closed.plain_sum import plain_sum
 from ..steps import part, steps
 from .curve import StiffnessCurve
@@ -19,17 +19,16 @@ from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
 
-MODEL = (
-    1e-3  # of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
-)
+# of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
+MODEL = 1e-3
 
 
 def sum_curves(row, case, how, phase):
     """Curves of a plain sum of tooth pairs, one for each load."""
-    face, variants = case.face or "spur", how.variants or {}
-    of_teeth = {"cracks": case.cracks, "pits": case.pits, "flanks": case.forms, "face": face, "groove": case.groove}
-    solve, details = plain_sum(case.pair, case.materials, phase, row.load(), **of_teeth, **variants)
-    said = variants | {"face": face, "groove": case.groove, "outside": [asdict(place) for place in details["outside"]]}
+    variants = how.variants or {}
+    solve, details = plain_sum(case, phase, row.load(), **variants)
+    said = variants | {"face": case.face or "spur", "groove": case.groove}
+    said |= {"outside": [asdict(place) for place in details["outside"]]}
     meta = provenance(case, row.name, said)
     return [curve(case, phase, force, yielding(solve, case), meta) for force in case.forces]
 
@@ -47,18 +46,10 @@ def section_curves(row, case, how, phase):
 
 
 def section_solver(row, case, how, phase, hats=1.0, **coarser):
-    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.plane.Solved`), and what `meta` says of it.
+    """`solve` of two sections in contact (line load [N/mm] to `gearfe.contact.pair_contact.Solved`), and what `meta` says of it.
 
-    Parameters
-    ----------
-    row : Method
-    case : Case
-    how : Solve
-    phase : ndarray, shape (n,)
-    hats : float
-        How many times shorter than those of the method the hats at corners are.
-    **coarser
-        ``refine`` and ``order`` of an estimate, instead of those of `how`.
+    At phases ``(n,)``; hats at corners are `hats` times as long as those of the method. `coarser` are ``refine`` and ``order`` of
+    an estimate, instead of those of `how`.
     """
     started = time.perf_counter()
     own, pair, numeric = row.own, case.pair, _numeric(row, how) | coarser
@@ -94,17 +85,8 @@ def _numeric(row, how):
 def curve(case, phase, force, solve, meta):
     """`StiffnessCurve` under a force [N] along the line of action; warns if no damaged tooth is in contact.
 
-    To SI, in one place: widths and millimetres become newtons and metres here.
-
-    Parameters
-    ----------
-    case : Case
-    phase : ndarray, shape (n,)
-    force : float
-    solve : callable
-        From the line load [N/mm] to `gearfe.contact.plane.Solved`.
-    meta : dict
-        Without the force.
+    To SI, in one place: widths and millimetres become newtons and metres here. `solve` is from the line load [N/mm] to
+    `gearfe.contact.pair_contact.Solved` at the phases ``(n,)``, `meta` without the force.
     """
     started = time.perf_counter()
     width = min(case.pair.gear_1.b, case.pair.gear_2.b)

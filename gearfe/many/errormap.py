@@ -4,7 +4,7 @@ import csv
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,13 +15,14 @@ from geometry.damage.crack import Crack, crack_path
 from geometry.pair.gear_pair import GearPair
 from geometry.tooth.gear import Gear
 
+from ..case import Case
 from ..files import written
 from ..material import Material
 from ..stiffness.methods import ROWS
-from ..stiffness.solve import mesh_stiffness
+from ..stiffness.solve import Solve, solve
+from ..studies.own_model import OwnModel, own_curve
 from ..threads import own_warnings
 from .batches import batch
-from .own_model import OwnModel, own_curve
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,8 +84,7 @@ class ErrorMap:
         with written(path) as name, open(name, "w", newline="", encoding="utf-8") as file:
             table = csv.writer(file)
             table.writerow(self.columns)
-            for row in zip(*self.columns.values(), strict=True):
-                table.writerow([f"{value:.6g}" for value in row])
+            table.writerows([f"{value:.6g}" for value in row] for row in zip(*self.columns.values(), strict=True))
 
     def plot(
         self,
@@ -130,14 +130,8 @@ def error_map(
         phase, or a `PairModel`).
     phases : int
         Per mesh cycle.
-    workers : int, optional
-        As in `gearfe.batch`.
-    progress : callable, optional
-        As in `gearfe.batch`.
-
-    Returns
-    -------
-    ErrorMap
+    workers, progress
+        As of `gearfe.batch`.
     """
     if pairs != int(pairs) or pairs < 1:
         raise ValueError(f"pairs = {pairs}, but give a number of pairs >= 1")
@@ -157,18 +151,12 @@ def error_map(
 def build(sample):
     """Pair of module 1 and width 1 mm from the sampled numbers."""
     rack = {"m_n": 1.0, "alpha_n": math.radians(sample["alpha_deg"]), "b": 1.0, "tip_radius": sample["tip_radius"]}
-    gears = []
-    for k in (1, 2):
-        z, x = sample[f"z_{k}"], sample[f"x_{k}"]
-        gears.append(_gear(z, x, sample[f"bore_{k}"], rack))
-    with own_warnings():
-        return GearPair(*gears)
-
-
-def _gear(z, x, bore, rack):
-    """Gear with its bore in root radii."""
     with own_warnings():  # tip radii are capped at the full rounding
-        return Gear(z=int(z), x=x, r_bore=bore * (z / 2 - 1.25 + x), **rack)
+        gears = []
+        for k in (1, 2):
+            z, x = sample[f"z_{k}"], sample[f"x_{k}"]
+            gears.append(Gear(z=int(z), x=x, r_bore=sample[f"bore_{k}"] * (z / 2 - 1.25 + x), **rack))
+        return GearPair(*gears)
 
 
 def _samples(count, seed):
@@ -193,11 +181,10 @@ def _samples(count, seed):
 def _one(sample, loads, models, phases):
     """Rows of one pair."""
     pair, steel = build(sample), Material()
-    run = {"material": steel, "phases": (np.arange(phases) + 0.5) / phases, "extended": False}
     forces = [load * 1.0 for load in loads]
-    truth = mesh_stiffness(pair, forces, method="ritz", **run)
-    beyond = mesh_stiffness(pair, forces, method="ritz", **(run | {"extended": True}))
-    found = {name: mesh_stiffness(pair, forces, method=name, **run) for name in HEALTHY}
+    case, how = Case(pair, forces, steel), Solve("ritz", phases=(np.arange(phases) + 0.5) / phases, extended=False)
+    truth, beyond = solve(case, how), solve(case, replace(how, extended=True))
+    found = {name: solve(case, replace(how, method=name)) for name in HEALTHY}
     for name, make in models.items():
         found[name] = [own_curve(name, make(pair, force, steel), pair, curve) for force, curve in zip(forces, truth, strict=True)]
     rows = [
@@ -208,12 +195,12 @@ def _one(sample, loads, models, phases):
     ]
     if sample["crack"]:
         inside = np.linspace(0, pair.eps_alpha, int(phases * pair.eps_alpha) + 1)
-        run |= {"phases": (inside[1:] + inside[:-1]) / 2, "damage": {"pinion": [Crack(level=sample["crack"])]}}
-        truth = mesh_stiffness(pair, forces, method="ritz", **run)
-        found = {}
+        case = replace(case, damage={"pinion": [Crack(level=sample["crack"])]})
+        how = replace(how, phases=(inside[1:] + inside[:-1]) / 2)
+        truth, found = solve(case, how), {}
         for name, (method, variants) in CRACKED.items():
             try:
-                found[name] = mesh_stiffness(pair, forces, method=method, variants=variants, **run)
+                found[name] = solve(case, replace(how, method=method, variants=variants))
             except ValueError:  # nothing is left of the beam: the model has no value here
                 continue
         rows += [sample | {"load": load} | _errors(truth, found, i) for i, load in enumerate(loads)]

@@ -11,7 +11,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import gearfe as gf
-from gearfe.studies.errormap import CRACKED, HEALTHY, RANGES, ErrorMap, build
+from gearfe.many.errormap import CRACKED, HEALTHY, RANGES, ErrorMap, build
 
 RACK = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 1.0}
 PAIR = gf.GearPair(gf.Gear(z=18, r_bore=9.0, **RACK), gf.Gear(z=27, r_bore=12.0, **RACK))

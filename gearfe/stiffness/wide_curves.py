@@ -7,8 +7,7 @@ from functools import partial
 import numpy as np
 
 from ..contact.bodies import Bodies, energy_bodies
-from ..contact.solid import pair_stiffness3d
-from ..elements.fe_gear3d import PER_HAT, SIZES
+from ..contact.wide_contact import pair_stiffness3d
 from ..elements.section_error import FINER, finer_section
 from ..steps import part, steps
 from .cache import solved_solid, unsolved
@@ -34,22 +33,12 @@ def solid_curves(row, case, how, phase):
     each on its own, the differences added. Of the energy model: an order and a quarter of the axial degrees less. Of finite
     elements: layers of `COARSER` resolution with `LESS` axial degrees less, and what the section lacks in plane strain against
     one of `gearfe.elements.section_error.FINER` times its resolution. (Both apart, because the quads of a section do not get
-    coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and
-    r h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times
-    `SAFETY`. The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed
-    phases of one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter.
+    coarser in proportion: gmsh fills an outline, and the error stands still or jumps.) From a difference d between edges h and r
+    h follows the error ``d / (r**p - 1)`` of the finer and ``r**p`` times that of the coarser, with p of `ORDER`; times `SAFETY`.
+    The estimate at a phase is that of k there, or, because that can vanish by chance, the mean of those at the fixed phases of
+    one base pitch about it (`estimate.fixed_phases`), whichever is larger: other phases of the list do not enter.
 
-    Parameters
-    ----------
-    row : Method
-    case : Case
-    how : Solve
-    phase : ndarray, shape (n,)
-
-    Returns
-    -------
-    list of StiffnessCurve
-        `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
+    `pressure` is the largest of each pair's contact line, tip corners left out; nan where nothing else touches.
     """
     started = time.perf_counter()
     written = {"face": case.runs, "groove": case.groove, "extended": how.extended, "refine": how.refine}
@@ -137,7 +126,7 @@ def _foretold(how, bodies, *, neighbours):
         for given, held in bodies:
             plans |= unsolved(*given, cache=how.cache, neighbours=neighbours, **level, **held)
     if how.tell and len(plans) > 1:
-        seconds = float(f"{sum(one.seconds for one in plans.values()):.2g}")
+        seconds = float(f"{sum(plan.seconds for plan in plans.values()):.2g}")
         how.tell(f"{len(plans)} solves, about {seconds:g} s in all")
 
 
@@ -156,5 +145,4 @@ def _coarser(case, phase, options, how):
 def _finer_section(how, gear, material, cracks=(), **options):
     """A gear whose section is finer."""
     found = solved_solid(gear, material, cracks, refine=how.refine, cache=how.cache, tell=how.tell, **options)
-    section = {"refine": how.refine, "per_hat": PER_HAT, "sizes": SIZES}
-    return finer_section(found, material, cracks, cache=how.cache, **section)
+    return finer_section(found, material, cracks, refine=how.refine, cache=how.cache)

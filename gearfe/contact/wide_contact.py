@@ -148,7 +148,7 @@ def _solved(contact, phase, bodies):
     own = contact.solve(phase.tolist(), bodies)
     cells = tuple(one.cells for one in own)
     approach, tangent = np.array([one.approach for one in own]), 1e3 * np.array([one.tangent for one in own])
-    orders = np.array(sorted({order for one in cells for order in one.order.tolist()}))
+    orders = np.array(sorted({order for cell in cells for order in cell.order.tolist()}))
     load = np.zeros((phase.size, orders.size))
     for i, one in enumerate(cells):
         np.add.at(load[i], np.searchsorted(orders, one.order), one.load * math.cos(contact.beta_b))

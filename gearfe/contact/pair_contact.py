@@ -19,7 +19,7 @@ from ..flexibility.section_contact import Solved
 from .directions import leaning
 from .kinks import kink_rows, near_kink
 from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
-from .sharing import line_contact, line_contacts, stacked
+from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 
 CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
@@ -57,17 +57,7 @@ def _aligned(rows):
 class PairContact:
     """Two gears' flexibilities and the contacts of a pair at some phases; solves for any load.
 
-    Parameters
-    ----------
-    pair : GearPair
-    materials : (Material, Material)
-    flexibility : (Flexibility, Flexibility)
-        Of pinion and wheel.
-    phase : ndarray
-    extended : bool
-    state : str
-    flanks : (FlankForm, FlankForm), optional
-        Modifications of pinion and wheel, `geometry.tooth.modified.flank_forms`.
+    Of the `Flexibility` of pinion and wheel; `extended`, `state` as of a `Solve`, `flanks` the forms of a `Case`.
     """
 
     def __init__(self, pair, materials, flexibility, phase, *, extended, state, flanks=None):
@@ -96,13 +86,14 @@ class PairContact:
 
     def solve(self, line_load):
         """Contact under `line_load` [N/mm] at all phases."""
-        found, c, tilt = self.found, self.coefficient, bounded(self, line_load)
+        found, tilt = self.found, bounded(self, line_load)
         # all beyond the first touch: a light load closes so little that it would drown in the digits of the gaps
         least = found.gap.min(axis=1)
         reach, beyond = self._reach(line_load), found.gap - least[:, None]
         possible = beyond < reach[:, None]
         corner, zone, width = self.corners(line_load, possible)
-        line, closing, tangent, done = line_contacts(self.matrix, beyond, line_load, c, self.radius, self.modulus, possible, tilt)
+        single = LineContacts(self.matrix, beyond, self.coefficient, self.radius, self.modulus, tilt)
+        line, closing, tangent, done = line_contacts(single, line_load, possible)
         pressure = peak_pressure(line, self.radius, self.modulus)
         kink = near_kink(self, line_load) & possible & (corner == 0)
         done &= ~(corner.any(axis=1) | kink.any(axis=1))
@@ -143,8 +134,8 @@ class PairContact:
         least = np.full(smooth.shape, np.inf)
         np.minimum.at(least, (row[there], column[there]), gap[there])
         close = gap - least[row, column] <= sum(self.coefficients) * smooth[row, column]
-        case = flexibility, gap, line_load, coefficient, radius, self.modulus, there, tilt, there & ((coefficient > 0) | close)
-        force, approach, tangent, settled = line_contacts(*case)
+        case = LineContacts(flexibility, gap, coefficient, radius, self.modulus, tilt)
+        force, approach, tangent, settled = line_contacts(case, line_load, there, there & ((coefficient > 0) | close))
         closed, fillet = [], []
         for k, contacts in enumerate(sets):
             own = force[k, : contacts["gap"].size]
@@ -164,9 +155,8 @@ class PairContact:
         return line, pressure, approach, tangent, closed, fillet
 
     def _share(self, contacts, line_load, weight=None):
-        names = ("coefficient", "radius")
-        case = contacts["flexibility"], contacts["gap"], line_load, *(contacts[n] for n in names), self.modulus
-        return line_contact(*case, weight, tilt=contacts["tilt"])
+        own = (contacts[name] for name in ("flexibility", "gap", "coefficient", "radius"))
+        return line_contact(LineContacts(*own, self.modulus, contacts["tilt"]), line_load, weight)
 
     def _share_closing(self, contacts, line_load):
         """The same contacts with crack faces that can push each other apart but not pass through."""

@@ -1,0 +1,21 @@
+"""A spring and a damper: the law of a mesh whose stiffness over the phase, or law of several loads, says all."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """``F = k depth + c rate``."""
+
+    power: float = field(default=1.0, init=False)
+    straight: bool = field(default=True, init=False)
+
+    @staticmethod
+    def force(depth, rate, k, c, law):
+        """Force [N]."""
+        return k * depth + c * rate
+
+    @staticmethod
+    def slopes(depth, rate, k, c, law):
+        """Its derivatives by depth and rate."""
+        return k, c

@@ -1,0 +1,105 @@
+"""Many cases at once, over processes, each timed; a case that cannot be gives its error in place of its result."""
+
+import multiprocessing
+import pickle
+import sys
+import time
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from ..stiffness.solve import mesh_stiffness
+from .runner import Tally, check_workers, count_of, results
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Results of `batch`, in the order of its cases.
+
+    `results` holds what the work returned, or the ValueError or RuntimeError it raised; `seconds` the time of each case;
+    `elapsed` that of all, by `workers` processes.
+    """
+
+    results: list[Any]
+    seconds: list[float]
+    elapsed: float
+    workers: int
+
+
+def batch(
+    cases: Iterable[Mapping[str, Any]],
+    *,
+    work: Callable[..., Any] | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+) -> Batch:
+    """Work through many cases.
+
+    Parameters
+    ----------
+    cases : iterable of dict
+        Keyword arguments of `work`.
+    work : callable, optional
+        Default `mesh_stiffness`; for several processes a function that can be imported by name.
+    workers : int, optional
+        Processes, one thread each; default one per core. 1: in this process. A plain script needs no guard, unless `work` or
+        something in the cases is defined in it: then it needs the usual ``if __name__ == "__main__":``.
+    progress : callable, optional
+        Called with (cases done, cases in all).
+
+    Raises
+    ------
+    ValueError
+        If `workers` is not a whole number from 1 on, or `work` cannot be handed to other processes.
+    RuntimeError
+        If a process ended with a case, also when it was tried again alone.
+
+    Examples
+    --------
+    >>> batch([{"x": 2.0}, {"x": -1.0}], work=float.fromhex, workers=0)
+    Traceback (most recent call last):
+    ...
+    ValueError: workers = 0, but it is a whole number from 1 on
+    """
+    cases, work = list(cases), work or mesh_stiffness
+    check_workers(workers)
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        sys.exit(1)  # a worker that imports an unguarded script: the process that started it says what to do
+    workers = count_of(workers, cases)
+    own = workers > 1 and _of_script(work, cases)
+    started, tally = time.perf_counter(), Tally("cases", len(cases), progress)
+    size = max(1, min(16, len(cases) // (4 * workers))) if workers > 1 else 1
+    parts = [range(start, min(start + size, len(cases))) for start in range(0, len(cases), size)]
+    jobs = [(part, [cases[i] for i in part]) for part in parts]
+    rows: list[Any] = [None] * len(cases)
+    for (part, _), found in results(partial(_timed, work), jobs, workers, own=own):
+        if found is None:
+            guard = 'work or cases are defined in this script: write the call under if __name__ == "__main__":; or '
+            told = "a worker process ended before its cases were done: killed, or out of memory"
+            raise RuntimeError(f"{guard if own else ''}{told}")
+        for i, row in zip(part, found, strict=True):
+            rows[i] = row
+            tally.add(1)
+    return Batch([row[0] for row in rows], [row[1] for row in rows], time.perf_counter() - started, workers)
+
+
+def _of_script(work, cases):
+    """Whether other processes need what the caller's script defines; ValueError if they cannot be handed the work."""
+    try:
+        return any(b"__main__" in pickle.dumps((work, case)) for case in cases)
+    except (AttributeError, TypeError, pickle.PicklingError) as error:
+        raise ValueError(f"{error}: processes need functions that can be imported by name; or use workers = 1") from error
+
+
+def _timed(work, job):
+    """Result, or error, and seconds of each case of a job."""
+    out = []
+    for case in job[1]:
+        started = time.perf_counter()
+        try:
+            result = work(**case)
+        except (ValueError, RuntimeError) as error:
+            result = error
+        out.append((result, time.perf_counter() - started))
+    return out
