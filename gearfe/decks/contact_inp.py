@@ -63,7 +63,7 @@ def write_contact_inp(
         Whether both gears turn by half the approach, or one of them against the held other.
     flanks : dict, optional
         Modifications, as of `mesh_stiffness`: the mesh carries them (`geometry.mesh.relieved`, with `face`
-        `geometry.mesh.relieved`); `approach` is the transmission error under load, its unloaded part included.
+        `geometry.mesh.relieved_solid`); `approach` is the transmission error under load, its unloaded part included.
     misalignment : Misalignment, optional
         With `face`: of the axes, as of `mesh_stiffness`; the flanks lie askew, the axes stay.
     per_width : float, optional

@@ -11,7 +11,7 @@ import gearfe as gf
 from gearfe.decks.contact_solid import SolidDeck, _uncovered
 from gearfe.decks.solid_deck import FACES, TWENTY, sides_of
 from gearfe.elements.hexahedron import gauss, shapes
-from geometry.mesh.relieved import relieved_points
+from geometry.mesh.relieved_solid import relieved_points
 from geometry.pair.flanks import flank_forms
 from geometry.tooth.profile import flank
 from validation.make import three
