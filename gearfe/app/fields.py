@@ -133,7 +133,7 @@ START = {one.name: one.start for one in FIELDS} | TEXTS | {"assumption": []}
 
 def form() -> str:
     """The table of fields and the state of the working example as JSON, for the browser."""
-    return json.dumps({"fields": [asdict(one) for one in FIELDS], "start": START})
+    return json.dumps({"fields": [asdict(field) for field in FIELDS], "start": START})
 
 
 def checked_state(given: Any) -> dict[str, Any]:
@@ -154,7 +154,7 @@ def checked_state(given: Any) -> dict[str, Any]:
         if not isinstance(out[name], str) or len(out[name]) > 4 * LONGEST:
             raise ValueError(f"{name} = {shown(out[name])}: expected a text of at most {4 * LONGEST} characters")
     notes = out["assumption"]
-    if not isinstance(notes, list) or not all(isinstance(one, dict) and set(one) <= NOTE for one in notes):
+    if not isinstance(notes, list) or not all(isinstance(note, dict) and set(note) <= NOTE for note in notes):
         raise ValueError(f"assumption = {shown(notes)}: expected a list of tables with {', '.join(sorted(NOTE))}")
     return out
 

@@ -183,7 +183,7 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
         rows = slice(1, min(int(np.searchsorted(one.frequency, last)) + 1, SHOWN))
         spectra.append({"name": name, "f": _numbers(one.frequency[rows]), "value": _numbers(one.values[rows])})
     lines = [{"name": name, "f": value} for name, value in found.lines.items() if name in found.standing()]
-    words = ", ".join(f"{in_words(one['name'])} {one['f']:.1f} Hz" for one in lines)
+    words = ", ".join(f"{in_words(line['name'])} {line['f']:.1f} Hz" for line in lines)
     text = f"{SECONDS:g} s of vibration; lines that stand out: {words or 'none'}"
     title = f"{found.channel} [{found.unit}]"
     return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in told]}

@@ -171,12 +171,12 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
 def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | None) -> list[str]:
     """What a scene says beside its pair (of several the chosen one) and case, in words."""
     others = [one for one in scene.pairs if one != pair] if len(scene.pairs) > 1 else []
-    names = dict.fromkeys(one for own in scene.pairs.values() for one in own.damage)
-    cases = [one for one in names if one != case] if case is not None or len(names) > 1 else []
+    names = dict.fromkeys(hurt for own in scene.pairs.values() for hurt in own.damage)
+    cases = [name for name in names if name != case] if case is not None or len(names) > 1 else []
     out = [f"{what} {', '.join(found)}" for what, found in (("pairs", others), ("cases", cases)) if found]
     out += [f"machine {scene.machine['model']}"] if scene.machine and not _runs(tables) else []
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
-    spare = [one for one in scene.gears if one not in used]
+    spare = [gear for gear in scene.gears if gear not in used]
     out += [f"gears in no pair {', '.join(spare)}"] if spare else []
     return out + [f"[[{key}]]" if key == "reference" else f"{key}" for key in ("reference", "given", "later") if tables.get(key)]
 

@@ -82,7 +82,7 @@ def _springs(held, what):
     """What of a support is too soft, as it was given."""
     if isinstance(held, Support):
         return f"support has {what} = {getattr(held, what):g} {UNITS[what]}"
-    thin, thick = (pick(one.diameter for one in held.segments) for pick in (min, max))
+    thin, thick = (pick(segment.diameter for segment in held.segments) for pick in (min, max))
     return f"shaft is {held.length:g} mm long and {thin:g} to {thick:g} mm thick, its bearings {held.bearing_stiffness} N/mm"
 
 

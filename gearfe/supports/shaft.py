@@ -72,7 +72,7 @@ class Shaft:
     def __post_init__(self) -> None:
         """Bring all into one form, and refuse what is no shaft."""
         object.__setattr__(self, "segments", tuple(_segment(i, one) for i, one in enumerate(_rows(self.segments))))
-        thick, thin = (pick(one.diameter for one in self.segments) for pick in (max, min))
+        thick, thin = (pick(segment.diameter for segment in self.segments) for pick in (max, min))
         if thick > THICKEST * thin:
             raise ValueError(
                 f"shaft: diameters from {thin:g} to {thick:g} mm, but no shaft is {THICKEST} times thicker in one part than in "
@@ -100,12 +100,12 @@ class Shaft:
     @property
     def length(self) -> float:
         """Length of the shaft [mm]."""
-        return sum(one.length for one in self.segments)
+        return sum(segment.length for segment in self.segments)
 
     @property
     def diameter(self) -> float:
         """Thickness of the shaft in the middle of its gear [mm], of the thinner part where a step is there."""
-        ends = np.cumsum([0.0, *(one.length for one in self.segments)])
+        ends = np.cumsum([0.0, *(segment.length for segment in self.segments)])
         near = 1e-9 * ends[-1]
         touch = [k for k in range(len(self.segments)) if ends[k] - near <= self.gear <= ends[k + 1] + near]
         return min(self.segments[k].diameter for k in touch)
@@ -157,7 +157,7 @@ class Shaft:
 
 def _rows(segments):
     try:
-        rows = [tuple(one) for one in segments]
+        rows = [tuple(segment) for segment in segments]
     except TypeError:
         rows = []
     if not rows:

@@ -60,7 +60,7 @@ def _condensed(stiffness, kept):
 
 def face_radii(shaft: Any, width: float) -> tuple[float, float]:
     """Radius of the shaft beside the faces z = 0 and z = b [mm], 0 where it ends there."""
-    ends = np.cumsum([0.0, *(one.length for one in shaft.segments)])
+    ends = np.cumsum([0.0, *(segment.length for segment in shaft.segments)])
     slack = 1e-9 * ends[-1]
 
     def beside(place: float) -> float:

@@ -72,21 +72,21 @@ def check_hollows(gear, hollows):
     Hollows may cross the tip edge and the end faces, and may overlap; what reaches below the form circle is not on the flank and
     is left out.
     """
-    for one in hollows:
-        noun = one.nouns[0]
+    for hollow in hollows:
+        noun = hollow.nouns[0]
         low, high = sorted((gear.r_form, gear.r_a))
-        if not low <= one.radius <= high:
+        if not low <= hollow.radius <= high:
             raise ValueError(
-                f"{noun} at radius = {one.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
+                f"{noun} at radius = {hollow.radius:.6g} mm, but the flank of z = {gear.z} runs from {low:.6g} to {high:.6g} mm: "
                 f"put the {noun}'s centre there"
             )
-        if not 0 <= one.z <= gear.b:
-            raise ValueError(f"{noun} at z = {one.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
-        radius, angle = flank(gear, rolls(gear, one)[1])
+        if not 0 <= hollow.z <= gear.b:
+            raise ValueError(f"{noun} at z = {hollow.z:.6g} mm, but the face is {gear.b:.6g} mm wide: give 0 <= z <= b")
+        radius, angle = flank(gear, rolls(gear, hollow)[1])
         half = float(radius * math.sin(angle))
-        if one.depth >= half:
+        if hollow.depth >= half:
             raise ValueError(
-                f"{noun} of depth = {one.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
+                f"{noun} of depth = {hollow.depth:.6g} mm, but half the tooth of z = {gear.z} is only {half:.6g} mm thick at its "
                 "upper end: make it shallower or put it nearer the root"
             )
 

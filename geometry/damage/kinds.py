@@ -54,7 +54,7 @@ def _listed(damage, side):
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """What weakens the body, and what takes contact away: two tuples."""
     damage = tuple(damage)
-    weakens, removes = (tuple(one for one in damage if one.removes_contact is there) for there in (False, True))
+    weakens, removes = (tuple(hurt for hurt in damage if hurt.removes_contact is there) for there in (False, True))
     return weakens, removes
 
 
@@ -71,11 +71,11 @@ def told(gears: Mapping[str, Gear], damage: Mapping[str, Iterable[Damage]]) -> s
 
 def called(damage: Iterable[Damage]) -> str:
     """What a tooth with such damage is called: cracked, pitted or spalled; damaged if it is more than one of these."""
-    words = {one.called for one in damage}
+    words = {hurt.called for hurt in damage}
     return words.pop() if len(words) == 1 else "damaged"
 
 
 def why_wide(damage: Sequence[Damage]) -> str:
     """Which damage no transverse section shows, because it changes along the width; empty if none does."""
-    nouns = {one.nouns[1] for one in damage if not one.through}
+    nouns = {hurt.nouns[1] for hurt in damage if not hurt.through}
     return next((f"{kind.nouns[1]} change along the width" for kind in get_args(Damage) if kind.nouns[1] in nouns), "")

@@ -97,7 +97,7 @@ class Gear:
 
     def __repr__(self):
         """All numbers that are not the default ones: enough to make it again."""
-        given = ((one.name, getattr(self, one.name)) for one in fields(self) if getattr(self, one.name) != one.default)
+        given = ((field.name, getattr(self, field.name)) for field in fields(self) if getattr(self, field.name) != field.default)
         return f"Gear({', '.join(f'{name}={value!r}' for name, value in given)})"
 
     def _repr_html_(self):
