@@ -203,21 +203,21 @@ def test_files_take_the_rights_of_new_files_and_the_mask_is_not_touched(tmp_path
 
 
 def test_batches_that_overlap_leave_the_environment_as_it_was(monkeypatch):
-    from gearfe.studies import batches
+    from gearfe.many import processes
 
     monkeypatch.delenv("OMP_NUM_THREADS", raising=False)
     main, inside, leave = sys.modules["__main__"], threading.Event(), threading.Event()
     file = getattr(main, "__file__", None)
 
     def other():
-        with batches._told_one, batches._hidden:
+        with processes._told_one, processes._hidden:
             inside.set()
             leave.wait()
 
     thread = threading.Thread(target=other)
     thread.start()
     inside.wait()
-    with batches._told_one, batches._hidden:
+    with processes._told_one, processes._hidden:
         leave.set()
         thread.join()
         assert os.environ["OMP_NUM_THREADS"] == "1"

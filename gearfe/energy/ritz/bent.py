@@ -36,7 +36,7 @@ def bent(gear, sector, number, crack):
 
     bulges, outline = sector.edge_bulges, np.unique(np.array(list(sector.bulge)))
     line = np.array(sector.faces[number])
-    return follow(gear, crack, gear.b, sector.points, sector.triangles, outline=outline, line=line, folds=folds)
+    return follow(gear, crack, gear.b, sector.points, sector.triangles, fixed=outline, line=line, folds=folds)
 
 
 @dataclass(frozen=True, slots=True)
