@@ -20,7 +20,7 @@ r_b, the centre of the gear whose corner touches at ``q r_b`` (q is 0.96 at a ga
 ``q_1 r_b1`` and ``q_2 r_b2``. A normal force N then gives torques with ``T1 / r_b1 = q_1 N`` and ``T2 / r_b2 = q_2 N``, and a
 shared approach closes the pair by ``rate = (q_1 + q_2) / 2`` of itself. The work of the tooth forces in a shared approach is ``F
 d delta`` with ``F = (T1 / r_b1 + T2 / r_b2) / 2 = rate N``: this is the force meant. A tooth yields along and across its own
-involute normal to both parts of N (`gearfe.flexibility.plane.Flexibility.towards`); other teeth feel its torque, ``(q / rate)
+involute normal to both parts of N (`gearfe.flexibility.plane.towards`); other teeth feel its torque, ``(q / rate)
 F``. All count by ``1 / rate`` as much more of an approach (`gearfe.contact.rows`; ``tests/contact/test_pose.py``).
 
 **Other poses.** Let the pinion alone turn, or the wheel: ``n1 = n + delta, n2 = n`` or ``n1 = n, n2 = n - delta``. That is the
