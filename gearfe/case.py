@@ -142,7 +142,7 @@ class Case(Mapping[str, Any]):
         return getattr(self, name)
 
     def __iter__(self) -> Iterator[str]:
-        """Names of what was given: pair, force and material, and what is not the default."""
+        """Names of what was given: pair, force, material, face and groove, and of all else what is not the default."""
         return (own.name for own in GIVEN if own.name in FIRST or getattr(self, own.name) not in (None, own.default, {}))
 
     def __len__(self) -> int:
@@ -194,7 +194,7 @@ class Case(Mapping[str, Any]):
         return overlap(self.pair, face or self.runs, self.groove)
 
 
-FIRST = ("pair", "force", "material")
+FIRST = ("pair", "force", "material", "face", "groove")
 GIVEN = tuple(own for own in fields(Case) if own.init)
 NAMES = tuple(own.name for own in GIVEN)
 

@@ -12,7 +12,7 @@ COLUMNS = ("pair", "case", "print", "phase", "k [N/m]", "own tooth [N/m]", "esti
 
 def fingerprint(case):
     """Eight letters that change with any number of a `Case`; fields left at their default do not count."""
-    run = {"face": None, "groove": 0.0, **case}
+    run = dict(case)
     text = ";".join(f"{name}={_plain(run[name])}" for name in sorted(run))
     return hashlib.sha256(text.encode()).hexdigest()[:8]
 
