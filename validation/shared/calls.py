@@ -5,7 +5,7 @@ thread and however it was reached. What was called counts with all that stands i
 with decorators, name and signature, since it may hide another one; a function of a module counts so only if it is decorated
 or named as a builtin, since one more or less changes nothing for the others. Everything outside functions always counts.
 Notes are never taken back, so that what a memory cache gives brings the functions that filled it. A module counts whole if it
-was loaded otherwise, as tests are by pytest, or speaks of numba, since compiled calls are not seen.
+was loaded otherwise, as tests are by pytest, or speaks of numba or stands in `COMPILED`, since compiled calls are not seen.
 """
 
 import ast
@@ -23,6 +23,7 @@ from . import places
 WHOLE = "*"
 SILENT = {"ctx", "kind", "type_comment"}  # fields of a syntax tree that follow from the rest
 NOTE = "__called__"  # a builtin while functions are noted
+COMPILED = ("gearfe/machine/laws/",)  # whose functions numba compiles although they do not speak of it
 called: set[str] = set()  # path below the root, colon, name
 noted: set[str] = set()  # modules whose functions are noted, as paths below the root
 
@@ -39,7 +40,7 @@ def begin(packages):
     class Loader(SourceFileLoader):
         def get_code(self, fullname):
             text = self.get_data(self.path)
-            if b"numba" in text:
+            if b"numba" in text or below(self.path).startswith(COMPILED):
                 return super().get_code(fullname)
             tree, name = ast.parse(text), below(self.path)
             for function, node in functions(tree):
