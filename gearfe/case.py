@@ -13,6 +13,7 @@ from geometry.damage.crack import Crack, check_apart
 from geometry.damage.kinds import Damage, by_side, split, why_wide
 from geometry.pair.flanks import Misalignment, flank_forms
 from geometry.pair.gear_pair import GearPair
+from geometry.pair.lines import FACES
 from geometry.tooth.flank_form import FlankForm
 from geometry.tooth.modified import Flank
 
@@ -22,7 +23,6 @@ from .supports.held import REFUSE, supports_of
 from .supports.shaft import Shaft
 from .supports.support import Support
 
-FACES = ("spur", "helical", "herringbone")  # how teeth run
 SIDES = (("pinion", 1), ("wheel", -1))  # the wheel's tooth of pair k is -k in its own frame
 
 

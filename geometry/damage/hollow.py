@@ -8,7 +8,7 @@ the axial distance from its centre along the tooth trace. A kind of hollow (`Pit
 - ``covers(u, w)``: whether places are in it; ``span(u)``: between which w it lies at u; ``crossing(gear, roll, z)``: where a
   straight contact line runs through it; ``along(p, q, dp, dq)``: where straight lines do, in units of its half extents;
 - `kinks`: u and w (two tuples) where its outline is not smooth between its ends; ``edge()``: its outline;
-- ``drawn(centre, axes)``: its outline in space by curves, as `geometry.mesh.mesher.tetrahedra` takes them.
+- ``drawn(centre, axes)``: its outline in space by curves, as `geometry.mesh.tetrahedra.tetrahedra` takes them.
 """
 
 import math
@@ -21,6 +21,24 @@ from ..tooth.profile import arc_at, cartesian, flank, roll_at_arc
 def centre_arc(gear, hollow):
     """Arc of the hollow's centre [mm], as `geometry.tooth.profile.arc_at` counts it."""
     return gear.outward * (hollow.radius**2 - gear.r_b**2) / (2 * gear.r_b)
+
+
+def on_line(gear, hollow, roll, z):
+    """A straight contact line beside a hollow: roll lengths and heights [mm] at its ends, t = 0 and t = 1.
+
+    Returns the coefficients of its place u(v) [mm], quadratic in ``v = (z - hollow.z) / hollow.reach[1]``, which is between -1
+    and 1 in the hollow whatever the line's length; and what makes ranges of t of ranges of v, those of some length.
+    """
+    slope, reach = z[1] - z[0], hollow.reach[1]
+    change = (roll[1] - roll[0]) / slope
+    at, sign = roll[0] + change * (hollow.z - z[0]), gear.outward / (2 * gear.r_b)
+    u = np.array([sign * at**2 - centre_arc(gear, hollow), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
+
+    def ranges(parts):
+        ends = [np.clip((hollow.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in parts]
+        return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
+
+    return u, ranges
 
 
 def rolls(gear, hollow):

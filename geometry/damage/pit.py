@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import centre_arc, doubts, in_circle, profile
+from .hollow import doubts, in_circle, on_line, profile
 
 MOST = 5000  # pits in a row
 LEAST, LONGEST = 1e-50, 1e50  # semi-axes [mm]: a pit larger than its flank takes all of it, however large
@@ -148,28 +148,10 @@ class Pit:
         return in_circle(p, q, dp, dq, 1e-12 / min(self.axes) ** 2)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Where a straight contact line runs through it.
-
-        Parameters
-        ----------
-        gear : Gear
-        roll, z : (float, float)
-            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
-
-        Returns
-        -------
-        list of (float, float)
-            Ranges of t inside the pit; at most two, because the profile arc is quadratic in t.
-        """
+        """Ranges of t in which a straight contact line is in it, at most two; the line as of `geometry.damage.hollow.on_line`."""
         across, mixed, along = self.form
-        slope = z[1] - z[0]
-        reach = self.reach[1]
-        # in v = (z - self.z) / reach, which is between -1 and 1 in the pit, whatever the line's length
-        change = (roll[1] - roll[0]) / slope
-        at = roll[0] + change * (self.z - z[0])
-        sign = gear.outward / (2 * gear.r_b)
-        u = np.array([sign * at**2 - centre_arc(gear, self), 2 * sign * at * change * reach, sign * (change * reach) ** 2])
-        w = np.array([0.0, reach])
+        u, ranges = on_line(gear, self, roll, z)
+        w = np.array([0.0, self.reach[1]])
         inside = across * _times(w, w, 5) + 2 * mixed * _times(u, w, 5) + along * _times(u, u, 5)
         inside[0] -= 1.0
         inside = inside[: np.flatnonzero(np.abs(inside) > 1e-15 * np.abs(inside).max())[-1] + 1]
@@ -177,9 +159,7 @@ class Pit:
         found = found.real[np.abs(found.imag) < 1e-9]
         places = np.sort(np.concatenate([[-1.0, 1.0], found[np.abs(found) < 1]]))
         parts = zip(places[:-1], places[1:], strict=True)
-        kept = [(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0]
-        ends = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in kept]
-        return [(float(t.min()), float(t.max())) for t in ends if t.max() > t.min()]
+        return ranges([(a, b) for a, b in parts if np.polynomial.polynomial.polyval((a + b) / 2, inside) < 0])
 
 
 def pit_row(count, first, last, **numbers):

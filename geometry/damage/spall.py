@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..tooth.gear import Gear
 from .given import finite, tooth_and_side
-from .hollow import centre_arc, doubts, in_circle, profile
+from .hollow import doubts, in_circle, on_line, profile
 
 LEAST, LONGEST = 1e-6, 1e6  # sides [mm]
 QUARTER = 8  # parts of a rounded corner that is drawn
@@ -163,27 +163,11 @@ class Spall:
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
-        """Where a straight contact line runs through it.
+        """Ranges of t in which a straight contact line is in it, between places where it meets a side or a corner's circle.
 
-        Parameters
-        ----------
-        gear : Gear
-        roll, z : (float, float)
-            Roll lengths [mm] and axial positions [mm] at the line's ends, t = 0 and t = 1.
-
-        Returns
-        -------
-        list of (float, float)
-            Ranges of t inside the spall, between places where the line meets a side or a corner's circle.
+        The line as of `geometry.damage.hollow.on_line`.
         """
-        slope, reach = z[1] - z[0], self.axes[1]
-        change = (roll[1] - roll[0]) / slope
-        # in v = (z - self.z) / reach, which is between -1 and 1 in the spall, whatever the line's length
-        one = np.array([1.0, 0.0, 0.0])
-        u = (
-            gear.outward / (2 * gear.r_b) * _square(roll[0] + change * (self.z - z[0]), change * reach)
-            - centre_arc(gear, self) * one
-        )
+        (u, ranges), reach, one = on_line(gear, self, roll, z), self.axes[1], np.array([1.0, 0.0, 0.0])
         inner = [half - self.corner for half in self.axes]
         limits = [u - sign * half * one for half in (self.axes[0], inner[0]) for sign in (-1, 1)]
         for i, j in ((1, 1), (-1, 1), (-1, -1), (1, -1)) if self.corner else ():
@@ -200,8 +184,7 @@ class Spall:
                 ends[-1][1] = last
             elif inside:
                 ends.append([first, last])
-        parts = [np.clip((self.z + reach * np.array(part) - z[0]) / slope, 0.0, 1.0) for part in ends]
-        return [(float(t.min()), float(t.max())) for t in parts if t.max() > t.min()]
+        return ranges(ends)
 
 
 def _square(*coefficients):

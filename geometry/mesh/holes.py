@@ -19,7 +19,7 @@ from ..damage.kinds import check_crack
 from ..tooth.gear import Gear
 from ..tooth.profile import arc_at, cartesian, fillet_length, flank, root_curve
 from .holed_drawing import fine, numbers_of, on_outline, section, tool
-from .mesher import UnmeshedError, tetrahedra
+from .tetrahedra import UnmeshedError, tetrahedra
 
 # edge lengths in modules: largest, of the damaged tooth, its loaded flank, its fillets, at the crack; at the pits' rims in parts
 # of the smallest half axis

@@ -1,4 +1,4 @@
-"""gmsh: triangles and quads between lines, tets between surfaces; nowhere else is it imported.
+"""gmsh: its session, and triangles and quads between lines; tets are in `geometry.mesh.tetrahedra`, nowhere else is it used.
 
 gmsh has one model and one set of options for the whole process: threads that mesh at the same time take turns.
 """
@@ -9,7 +9,6 @@ import os
 import signal
 import sys
 import threading
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,15 +16,9 @@ import numpy as np
 # one circle hangs on their last digits, so gears that differ in size alone have to look the same to it.
 SEEN, DECIMALS = 50.0, 8
 
-GROWTH = 0.5  # of the edge length of tets per length, away from fine places
-
 TOUCHED = [getattr(signal, name) for name in ("SIGILL", "SIGFPE", "SIGBUS", "SIGSEGV", "SIGPIPE") if hasattr(signal, name)]
 
 _turn = threading.Lock()
-
-
-class UnmeshedError(RuntimeError):
-    """Gmsh made no tets of a solid with these edge lengths; with others it may."""
 
 
 @contextlib.contextmanager
@@ -188,164 +181,3 @@ def quadrangulate(points, lines, surfaces, algorithm):
     place[found[~known]] = points.shape[1] + np.arange((~known).sum())
     points = np.hstack([points, unit * coords.reshape(-1, 3)[~known, :2].T])
     return points, place[np.concatenate(cells)].T, np.repeat(np.arange(len(cells)), [len(c) for c in cells])
-
-
-@dataclass(frozen=True, slots=True)
-class Pieces:
-    """Tets of an extruded section, cut into pieces that share their nodes.
-
-    `points` (3, n) [mm]; `tets` (4, m) right-handed; `face` (m,) the face of the section a tet stands on; `plug` (m,) the
-    cylinder it is in, -1 outside of all; `volume` [mm**3] by (face, plug), that of the boundary representation.
-    """
-
-    points: np.ndarray
-    tets: np.ndarray
-    face: np.ndarray
-    plug: np.ndarray
-    volume: dict
-
-
-def tetrahedra(drawing, height, cylinders=(), *, fine=(), rim=None, far, strips=()):
-    """Tets of an extruded section, with cylinders cut out and kept as pieces of their own.
-
-    Parameters
-    ----------
-    drawing : (ndarray, list, list)
-        The section: points ``(2, n)`` [mm]; curves ``(kind, numbers of points)``, each a ``line`` or ``arc`` (about the origin)
-        between two of them or a ``spline`` through all; and of each face its loops, the outer first, as numbers of curves. Faces
-        may share curves.
-    height : float
-        [mm].
-    cylinders : sequence of (list, ndarray)
-        The outline, and by which vector (3,) it is pushed [mm]: one ``ellipse``, by its centre and its half axes (3, 3); or a
-        loop of ``line``, by its ends (3, 2), and ``arc``, a quarter of an ellipse, by its ends and its centre (3, 3). What lies
-        outside of the solid is dropped; where cylinders overlap the first one has it.
-    fine : sequence of (float, float, float, float)
-        Circles of the section: x, y, radius and the edge length within [mm].
-    rim : float, optional
-        Edge length on the cylinders' edges [mm].
-    far : float
-        Largest edge length [mm].
-    strips : sequence of (ndarray (3, n), float, float)
-        Points of lines [mm], the distance from them within which the mesh is finer, the edge length there [mm].
-
-    Returns
-    -------
-    Pieces
-
-    Raises
-    ------
-    UnmeshedError
-        If gmsh cannot.
-    """
-    points, curves, faces = drawing
-    with gmsh_session() as gmsh:
-        occ, mesh = gmsh.model.occ, gmsh.model.mesh
-        tags = [occ.addPoint(x, y, 0.0) for x, y in points.T]
-        centre = occ.addPoint(0.0, 0.0, 0.0)
-        make = {
-            "line": lambda at: occ.addLine(*at),
-            "arc": lambda at: occ.addCircleArc(at[0], centre, at[1]),
-            "spline": lambda at: occ.addSpline(at),
-        }
-        lines = [make[kind]([tags[i] for i in at]) for kind, at in curves]
-        flat = [occ.addPlaneSurface([occ.addCurveLoop([lines[i] for i in loop]) for loop in loops]) for loops in faces]
-        prisms = [next(one for one in occ.extrude([(2, face)], 0, 0, height) if one[0] == 3) for face in flat]
-        plugs = [_cylinder(occ, *cylinder) for cylinder in cylinders]
-        if len(prisms) + len(plugs) > 1:
-            _, made = occ.fragment(prisms[:1], prisms[1:] + plugs)
-        else:
-            made = [prisms]
-        owner, outside = {}, set()
-        for face, own in enumerate(made[: len(prisms)]):
-            owner |= {tag: (face, -1) for _, tag in own}
-        for plug, own in reversed([*enumerate(made[len(prisms) :])]):
-            outside |= {tag for _, tag in own if tag not in owner}
-            owner |= {tag: (owner[tag][0], plug) for _, tag in own if tag in owner}
-        occ.remove([(3, tag) for tag in outside], recursive=True)
-        occ.remove([(0, centre)])
-        occ.synchronize()
-        volume = {}
-        for tag, piece in owner.items():
-            volume[piece] = volume.get(piece, 0.0) + occ.getMass(3, tag)
-        inner = [(3, tag) for tag, (_, plug) in owner.items() if plug >= 0]
-        _sizes(gmsh, inner, fine, rim, far, strips)
-        try:
-            mesh.generate(3)
-        except Exception as error:  # gmsh itself raises just Exception
-            raise UnmeshedError(
-                f"gmsh cannot mesh this solid: {error}; raise refine, or move what nearly touches apart"
-            ) from error
-        found, coords, _ = mesh.getNodes()
-        place = np.full(int(found.max()) + 1, -1, dtype=np.int64)
-        place[found] = np.arange(found.size)
-        cells = {piece: [] for piece in volume}
-        for tag, piece in owner.items():
-            cells[piece].append(place[mesh.getElementsByType(4, tag)[1]].reshape(-1, 4))
-    tets = np.concatenate([part for parts in cells.values() for part in parts])
-    label = np.repeat([*cells], [sum(map(len, parts)) for parts in cells.values()], axis=0)
-    used, tets = np.unique(tets, return_inverse=True)
-    return Pieces(coords.reshape(-1, 3)[used].T, tets.reshape(-1, 4).T, *label.T, volume)
-
-
-def _cylinder(occ, outline, push):
-    """Volume swept by what an outline bounds."""
-    kind, (first, *_) = outline[0][0], outline[0][1].T
-    if kind == "ellipse":
-        axes = outline[0][1][:, 1:]
-        size = np.linalg.norm(axes, axis=0)
-        axes, size = axes[:, np.argsort(-size)], np.sort(size)[::-1]
-        normal = np.cross(axes[:, 0], axes[:, 1])
-        face = occ.addDisk(*first, *size, zAxis=normal / np.linalg.norm(normal), xAxis=axes[:, 0] / size[0])
-    else:
-        tags, curves = [occ.addPoint(*first)], []
-        for k, (kind, (start, end, *centre)) in enumerate((kind, points.T) for kind, points in outline):
-            tags.append(tags[0] if k == len(outline) - 1 else occ.addPoint(*end))
-            if kind == "line":
-                curves.append(occ.addLine(*tags[-2:]))
-                continue
-            middle = occ.addPoint(*centre[0])
-            longer = tags[-2] if np.linalg.norm(start - centre) >= np.linalg.norm(end - centre) else tags[-1]
-            curves.append(occ.addEllipseArc(tags[-2], middle, longer, tags[-1]))
-            occ.remove([(0, middle)])
-        face = occ.addPlaneSurface([occ.addCurveLoop(curves)])
-    return next(one for one in occ.extrude([(2, face)], *push) if one[0] == 3)
-
-
-def _sizes(gmsh, inner, fine, rim, far, strips):
-    """Background field: edge lengths that grow away from circles of the section, from strips and from the edges of pieces."""
-    field = gmsh.model.mesh.field
-    numbers = []
-    for x, y, radius, size in fine:
-        numbers.append(field.add("MathEval"))
-        away = f"sqrt((x-({x}))^2+(y-({y}))^2)-{radius}"
-        field.setString(numbers[-1], "F", f"{size}+{GROWTH / 2}*(({away})+abs({away}))")
-    if inner:
-        edges = gmsh.model.getBoundary(
-            gmsh.model.getBoundary(inner, combined=False, oriented=False), combined=False, oriented=False
-        )
-        near = field.add("Distance")
-        field.setNumbers(near, "CurvesList", sorted({abs(tag) for dim, tag in edges if dim == 1}))
-        field.setNumber(near, "Sampling", 40)
-        numbers.append(_away(field, near, 0.0, rim, far))
-    for line, reach, size in strips:
-        tags = [gmsh.model.occ.addPoint(*place) for place in line.T.tolist()]
-        gmsh.model.occ.synchronize()
-        near = field.add("Distance")
-        field.setNumbers(near, "PointsList", tags)
-        numbers.append(_away(field, near, reach, size, far))
-    least = field.add("Min")
-    field.setNumbers(least, "FieldsList", numbers)
-    field.setAsBackgroundMesh(least)
-    for name, value in (("MeshSizeMax", far), ("MeshSizeFromPoints", 0), ("MeshSizeExtendFromBoundary", 0)):
-        gmsh.option.setNumber(f"Mesh.{name}", value)
-    gmsh.option.setNumber("Mesh.Algorithm3D", 1)
-
-
-def _away(field, near, reach, size, far):
-    """Field of edge lengths: `size` up to `reach` from the places of field `near`, then growing to `far`."""
-    number = field.add("Threshold")
-    for name, value in (("InField", near), ("SizeMin", size), ("SizeMax", far), ("DistMin", reach)):
-        field.setNumber(number, name, value)
-    field.setNumber(number, "DistMax", reach + (far - size) / GROWTH)
-    return number
