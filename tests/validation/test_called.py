@@ -43,7 +43,9 @@ class Square:
 
 @functools.cache
 def filled():
-    return 4
+    sides = [side for side in (1, 3) if side < LIMIT + 1]
+    first, last = sides
+    return first + last
 '''
 
 
@@ -78,9 +80,16 @@ DISPATCHER = "class Dispatcher:\n    def __init__(self, function):\n        self
         pytest.param("return more\n", "return more + 1\n", 0, id="function that was not called"),
         pytest.param("self.side += 1", "self.side += 2", 0, id="method that was not called"),
         pytest.param("deep() + more", "deep() + 2 * more", 2, id="function that was called"),
+        pytest.param("[side for side in (1, 3) if side <", "[n for n in (1, 3) if n <", 0, id="another word for a variable"),
+        pytest.param("first, last = sides\n    return first +", "a, last = sides\n    return a +", 0, id="another word, twice"),
+        pytest.param("return first + last", "return last + first", 2, id="variables exchanged"),
+        pytest.param("return first + last", "return first + first", 2, id="another variable"),
+        pytest.param("if side < LIMIT", "if LIMIT < side", 2, id="variable and constant exchanged"),
+        pytest.param("first, last = sides\n    return first +", "LIMIT, last = sides\n    return LIMIT +", 2, id="a word taken"),
+        pytest.param("more=0, inner=None", "less=0, inner=None", 2, id="another word for an argument"),
         pytest.param("        return 1", "        return 2", 2, id="function inside it"),
         pytest.param("* filled() - 1", "* filled() - 2", 2, id="property that was read"),
-        pytest.param("return 4", "return 5", 2, id="function behind a memory cache"),
+        pytest.param("(1, 3) if", "(1, 4) if", 2, id="function behind a memory cache"),
         pytest.param("yield 0", "yield 1", 2, id="generator"),
         pytest.param("LIMIT = 3", "LIMIT = 4", 2, id="constant"),
         pytest.param("side = 0", "side = 1", 2, id="constant of a class"),

@@ -139,8 +139,30 @@ def _spelt(node):
     return _hash(" ".join(words).encode())
 
 
-def _spell(node, words):
-    """Append a syntax tree without docstrings, unlike `ast.dump` the same in all versions of Python."""
+def _inner(function):
+    """What a function calls its own variables, those of functions and lambdas inside it too: numbers by name, all as yet unset.
+
+    Arguments of `def` are left out, since they may be given by name, and names of the module; all are if a class stands inside.
+    """
+    parts = list(ast.walk(function))
+    named = {part.arg for own in parts if isinstance(own, ast.FunctionDef | ast.AsyncFunctionDef) for part in _arguments(own)}
+    named |= {name for part in parts if isinstance(part, ast.Global) for name in part.names}
+    inner = {part.id for part in parts if isinstance(part, ast.Name) and not isinstance(part.ctx, ast.Load)}
+    inner |= {part.arg for own in parts if isinstance(own, ast.Lambda) for part in _arguments(own)}
+    return {} if any(isinstance(part, ast.ClassDef) for part in parts) else dict.fromkeys(inner - named)
+
+
+def _arguments(function):
+    return [part for part in ast.walk(function.args) if isinstance(part, ast.arg)]
+
+
+def _spell(node, words, inner=None):
+    """Append a syntax tree, unlike `ast.dump` the same in all versions of Python: without docstrings, inner names as numbers.
+
+    A function's own variables are numbered as they come, so that another word for one changes nothing.
+    """
+    if inner is None and isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        inner = _inner(node)
     words.append(type(node).__name__)
     for name in node._fields:
         value = getattr(node, name, None)
@@ -148,10 +170,15 @@ def _spell(node, words):
             continue
         words.append(name)
         for one in value if isinstance(value, list) else [value]:
-            if not isinstance(one, ast.AST):
+            if isinstance(one, ast.AST):
+                if not _says_nothing(node, one):
+                    _spell(one, words, inner)
+            elif inner and one in inner and isinstance(node, ast.Name | ast.arg | ast.Nonlocal):
+                if inner[one] is None:
+                    inner[one] = sum(number is not None for number in inner.values())
+                words.append(str(inner[one]))
+            else:
                 words.append(repr(one))
-            elif not _says_nothing(node, one):
-                _spell(one, words)
     words.append(")")
 
 
