@@ -37,8 +37,8 @@ def jacobians(points, cells):
     slopes = _slopes(len(cells))
     out = np.empty(cells.shape[1])
     for start in range(0, cells.shape[1], 5000):
-        some = slice(start, start + 5000)
-        out[some] = np.linalg.det(np.einsum("dkm,kcq->mqdc", points[:, cells[:, some]], slopes, optimize=True)).min(axis=1)
+        chunk = slice(start, start + 5000)
+        out[chunk] = np.linalg.det(np.einsum("dkm,kcq->mqdc", points[:, cells[:, chunk]], slopes, optimize=True)).min(axis=1)
     return out
 
 
