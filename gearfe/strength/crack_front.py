@@ -113,8 +113,8 @@ def stress_intensity_along_front(
     length = math.dist(mouth, tip)
     front, ahead, normal = _axes(gear, mouth, tip, z, part)
     tube = _tube(gear, crack, least)
-    one, two, three = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
-    return FrontIntensity(z, part[0] * length, one, two, three, unknowns)
+    k_1, k_2, k_3 = front_intensity(mesh.points, mesh.cells, moved.T, material, front, ahead, normal, tube)
+    return FrontIntensity(z, part[0] * length, k_1, k_2, k_3, unknowns)
 
 
 def _mesh(gear, crack, refine, **options):
