@@ -69,8 +69,8 @@ def solved_solid(gear, material, cracks=(), *, cache=True, tell=None, **options)
 
     def solve():
         healthy = solved_solid(gear, material, cache=kept, tell=tell, **options) if cracks else None
-        own = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
-        return solid_flexibility(WholeGear(gear, cracks, **options), material, **own)
+        keywords = {"healthy": healthy, "tell": said if tell else None, "cache": kept}
+        return solid_flexibility(WholeGear(gear, cracks, **options), material, **keywords)
 
     return _kept("solid", gear, _solid_case(material, cracks, options), solve, kept)
 

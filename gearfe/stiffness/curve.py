@@ -104,10 +104,10 @@ class StiffnessCurve:
             import xarray
         except ImportError as error:
             raise missing("xarray", error) from error
-        made = content(self)
-        names = [name for name in made.arrays if name not in ("phase", "order")]
+        table = content(self)
+        names = [name for name in table.arrays if name not in ("phase", "order")]
         axes = {1: ("phase",), 2: ("phase", "order")}
-        values = {n: (axes[made.arrays[n].ndim], made.arrays[n], {"units": made.units[n]}) for n in names}
+        values = {n: (axes[table.arrays[n].ndim], table.arrays[n], {"units": table.units[n]}) for n in names}
         return xarray.Dataset(values, coords={"phase": self.phase, "order": self.order}, attrs=dict(self.meta))
 
     def __call__(self, phase: ArrayLike) -> NDArray:
@@ -120,16 +120,16 @@ class StiffnessCurve:
         if wanted.dtype.kind not in "iuf" or not np.isfinite(wanted).all():
             raise ValueError(f"phase = {phase!r}, but give finite numbers")
         order = np.argsort(self.phase)
-        own, k = self.phase[order], self.k[order]
-        steps = np.diff(own)
-        if own.size > 1 and 0 < own[0] + 1 - own[-1] <= 1.5 * steps.max():
-            return np.interp(wanted, own, k, period=1.0)
-        if wanted.size and (wanted.min() < own[0] or wanted.max() > own[-1]):
+        known, k = self.phase[order], self.k[order]
+        steps = np.diff(known)
+        if known.size > 1 and 0 < known[0] + 1 - known[-1] <= 1.5 * steps.max():
+            return np.interp(wanted, known, k, period=1.0)
+        if wanted.size and (wanted.min() < known[0] or wanted.max() > known[-1]):
             raise ValueError(
-                f"phase from {wanted.min():g} to {wanted.max():g}, but it is known from {own[0]:g} to {own[-1]:g} and goes "
+                f"phase from {wanted.min():g} to {wanted.max():g}, but it is known from {known[0]:g} to {known[-1]:g} and goes "
                 "round no cycle: compute one with span='cycle' for a healthy pair"
             )
-        return np.interp(wanted, own, k)
+        return np.interp(wanted, known, k)
 
     @property
     def te(self) -> NDArray[np.float64]:
@@ -207,8 +207,8 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
     def rows(name: str) -> NDArray[np.float64]:
         out = [np.zeros((curve.phase.size, order.size)) for curve in curves]
-        for part, one in zip(out, curves, strict=True):
-            part[:, np.searchsorted(order, one.order)] = getattr(one, name)
+        for part, source in zip(out, curves, strict=True):
+            part[:, np.searchsorted(order, source.order)] = getattr(source, name)
         return np.concatenate(out)
 
     def row(name: str) -> NDArray[np.float64] | None:

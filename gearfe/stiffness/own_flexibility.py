@@ -164,9 +164,9 @@ class OwnGear:
         (roll, on), teeth = _on_flank(self.gear, roll), np.asarray(teeth)
         out = np.zeros((*roll.shape, teeth.size))
         for place in np.ndindex(roll.shape[:-1]):
-            own = np.flatnonzero(on[place])
-            if own.size:
-                out[(*place, own[:, None], own)] = self._among(roll[place][own], teeth[own])
+            contacts = np.flatnonzero(on[place])
+            if contacts.size:
+                out[(*place, contacts[:, None], contacts)] = self._among(roll[place][contacts], teeth[contacts])
         return out
 
     def _among(self, roll, teeth):
@@ -244,14 +244,14 @@ def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDA
 
 def flexibility_of(own: OwnFlexibility, side: int, gear: Gear, material: Material, state: str, named: Callable) -> Any:
     """What contact reads of one gear (side 0: pinion, 1: wheel); ``named(row, gear, material)`` gives that of a method."""
-    one = own.gears[side]
-    if isinstance(one, str):
-        return named(METHODS[one], gear, material)
-    if callable(getattr(one, "matrix", None)):
-        if getattr(one, "gear", gear) != gear:
+    model = own.gears[side]
+    if isinstance(model, str):
+        return named(METHODS[model], gear, material)
+    if callable(getattr(model, "matrix", None)):
+        if getattr(model, "gear", gear) != gear:
             raise ValueError(
-                f"a Flexibility of z = {one.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; give "
-                "those of pinion and wheel"
+                f"a Flexibility of z = {model.gear.z} was given for z = {gear.z}: it holds for the very gear it was made of; "
+                "give those of pinion and wheel"
             )
-        return one if hasattr(one, "seam") else OwnMatrix(one, gear)
-    return OwnGear(one, gear, material, state, own.given)
+        return model if hasattr(model, "seam") else OwnMatrix(model, gear)
+    return OwnGear(model, gear, material, state, own.given)

@@ -47,8 +47,8 @@ def _settled(solve, phase, pose, moved, enough=lambda found: LEAST):
     at = phase
     for _ in range(MOST):
         found = solve(at)
-        wanted = phase + moved(found)
-        if (np.abs(wanted - at) < enough(found)).all():
+        target = phase + moved(found)
+        if (np.abs(target - at) < enough(found)).all():
             return at, found
-        at = wanted
+        at = target
     raise RuntimeError(f"the pose {pose!r} did not settle in {MOST} solves; lower the force, or use pose = 'mean'")
