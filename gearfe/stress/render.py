@@ -102,12 +102,12 @@ def render_contact(case, path, *, phase=None, title=""):
     (the largest of Hertz's) [MPa], and whether a ``corner`` touches: at a tip corner the pressure is unbounded, and the largest
     is that of the rest; nan if nothing else touches.
     """
-    found = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
-    plot_contact(case.pair, found, path=path, pits=case.pits[0], title=title)
-    pressure = found.cells[0].pressure
+    contact = contact_of(case, None if phase is None else [phase], case.first_tooth or 0)
+    plot_contact(case.pair, contact, path=path, pits=case.pits[0], title=title)
+    pressure = contact.cells[0].pressure
     corner = np.isnan(pressure)
     largest = math.nan if corner.all() else float(pressure[~corner].max())
-    return {"phase": float(found.phase[0]), "k": float(found.k[0]), "pressure": largest, "corner": bool(corner.any())}
+    return {"phase": float(contact.phase[0]), "k": float(contact.k[0]), "pressure": largest, "corner": bool(corner.any())}
 
 
 def _check_size(wide, refine):
@@ -126,10 +126,15 @@ def _gears(case, phase, refine):
 
 
 def _tooth(case, phase, refine):
-    made = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
-    field = tooth_field(made)
-    told = {"phase": float(made.contact.phase[0]), "load": float(made.load[0]), "where": "on this tooth", "sector": made.sector}
-    return [field], told | {"enlarged": enlarged(field.opening, made.sector.gear.m_n)}
+    pressed = pressed_tooth(case, phases=None if phase is None else [phase], refine=refine, sizes=FINE, strip=STRIP)
+    field = tooth_field(pressed)
+    told = {
+        "phase": float(pressed.contact.phase[0]),
+        "load": float(pressed.load[0]),
+        "where": "on this tooth",
+        "sector": pressed.sector,
+    }
+    return [field], told | {"enlarged": enlarged(field.opening, pressed.sector.gear.m_n)}
 
 
 def enlarged(opening, module):
