@@ -223,10 +223,10 @@ def _abscissa(path, cell):
 
 
 def _stiffness(path, cell):
-    found = _stiffness_unit(cell)
-    if not found:
+    unit = _stiffness_unit(cell)
+    if not unit:
         raise ValueError(f"{path}: second column {cell!r} states no known unit of stiffness; use k [unit] with {UNITS}")
-    return found
+    return unit
 
 
 def _stiffness_unit(cell):
@@ -260,8 +260,8 @@ def _numbers(path, rows):
 
 
 def _offset(path, comments, given):
-    found = [match[1] for c in comments if (match := re.fullmatch(r"(?:phase[ _])?offset\s*[:=](.*)", c, re.I))]
-    values = [*found, *([given] if given is not None else [])]
+    stated = [match[1] for c in comments if (match := re.fullmatch(r"(?:phase[ _])?offset\s*[:=](.*)", c, re.I))]
+    values = [*stated, *([given] if given is not None else [])]
     if len(values) > 1:
         raise ValueError(f"{path}: phase_offset is given {len(values)} times ({', '.join(map(str, values))}); give it once")
     return _finite(path, values[0]) if values else None

@@ -26,7 +26,7 @@ def resolving_seconds(fault, turning=None, carrier=None):
     if not line:
         return 0.0
     apart = [_beside(line, comb) for comb in (turning, carrier) if comb]
-    return max([2 * LOBES / (turning or line), *(LOBES / one for one in apart)])
+    return max([2 * LOBES / (turning or line), *(LOBES / distance for distance in apart)])
 
 
 def too_short(seconds, needed):

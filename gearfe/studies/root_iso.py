@@ -99,7 +99,7 @@ def told_root(case: Case) -> list[str]:
     lines = ["root stress of one tooth under the whole force at its outer point of single contact, as ISO 6336-3 has it:"]
     for i, side in enumerate(("pinion", "wheel")):
         gear, norm = (case.pair.gear_1, case.pair.gear_2)[i], iso_root_stress(case.pair, case.forces[0], side)
-        found = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
-        away, factors = 100 * (norm.stress / found - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
-        lines.append(f"  {side} {found:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")
+        stress = cast(float, root_stress(gear, norm.radius, case.forces[0] / width, case.materials[i]))
+        away, factors = 100 * (norm.stress / stress - 1), f"Y_F {norm.Y_F:.3f}, Y_S {norm.Y_S:.3f}"
+        lines.append(f"  {side} {stress:.1f} MPa; method B of the standard {norm.stress:.1f} MPa ({away:+.1f} %; {factors})")
     return lines
