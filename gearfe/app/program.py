@@ -51,7 +51,7 @@ def program(scene: Scene, phases: int = 64, solid: int = 16) -> str:
     hurt = ", damaged {damaged.zones()[zone] / 1e6:.4g} N/um" if damage else ""
     return TEXT.format(
         title=" ".join(scene.title.split()), one=said(pair.gear_1), two=said(pair.gear_2), a=pair.a, force=chosen.force,
-        material=said(chosen.materials), options="".join(f"\n    {name}={said(one)}," for name, one in options.items()),
+        material=said(chosen.materials), options="".join(f"\n    {name}={said(option)}," for name, option in options.items()),
         method=method, phases=spelled, why=why, damaged=DAMAGED.format(damage=said(damage)) if damage else "", printed=hurt,
     )  # fmt: skip
 

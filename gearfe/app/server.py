@@ -51,14 +51,14 @@ class Answer(Response):
                 pass
 
         await send({"type": "http.response.start", "status": 200, "headers": self.raw_headers})
-        work, gone = (asyncio.ensure_future(one) for one in (self.pool.ask(self.lane, self.kind, self.given, tell), left()))
+        work, gone = (asyncio.ensure_future(task) for task in (self.pool.ask(self.lane, self.kind, self.given, tell), left()))
         try:
             await asyncio.wait({work, gone}, return_when=asyncio.FIRST_COMPLETED)
             if work.done():
                 await send({"type": "http.response.body", "body": work.result() + b"\n"})
         finally:
-            for one in (work, gone):
-                one.cancel()
+            for task in (work, gone):
+                task.cancel()
 
 
 def application(
