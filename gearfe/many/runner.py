@@ -95,8 +95,8 @@ def _until_broken(work, waiting, suspects, workers, own):
                     waiting.popleft()
                 ended, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in ended:
-                    found = future.result()
-                    yield running.pop(future), found
+                    result = future.result()
+                    yield running.pop(future), result
         except BrokenProcessPool:
             for future, job in running.items():
                 if future.done() and not future.cancelled() and future.exception() is None:
@@ -145,11 +145,11 @@ def _on_cluster(work, jobs, address):
         for future in ended:
             job = under_way.pop(future.key)
             try:
-                found = future.result()
+                result = future.result()
             except KilledWorker:
-                found = None
+                result = None
             if time.monotonic() - asked > REFRESH:  # workers come and go
                 threads, asked = sum(client.nthreads().values()), time.monotonic()
             for more in send(AHEAD * threads - len(under_way) if threads else 1):
                 ended.add(more)
-            yield job, found
+            yield job, result

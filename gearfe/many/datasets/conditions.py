@@ -51,7 +51,7 @@ def conditions(plan: Plan) -> list[Condition]:
 
     ValueError if there are too few for the sides of the split.
     """
-    made, points = [], operations(plan)
+    out, points = [], operations(plan)
     rows = [
         (fault, severity, nominal)
         for fault, severity, repeats in combinations(plan)
@@ -66,8 +66,8 @@ def conditions(plan: Plan) -> list[Condition]:
         values = {key: quantiles(spec, drawn[3 + j : 4 + j])[0] for j, (key, spec) in enumerate(plan.scatter.items())}
         label = HEALTHY if fault is None else fault["kind"]
         at = None if fault is None else plan.fault.index(fault)
-        made.append(Condition(number, label, at, severity, nominal, speed, torque, values, float(drawn[2]), sides[number]))
-    return made
+        out.append(Condition(number, label, at, severity, nominal, speed, torque, values, float(drawn[2]), sides[number]))
+    return out
 
 
 def _sides(plan, rows):
@@ -81,9 +81,9 @@ def _sides(plan, rows):
     out = np.zeros(len(rows), dtype=int)
     keys = [(None if fault is None else plan.fault.index(fault), severity) for fault, severity, _ in rows]
     for key in dict.fromkeys(keys):
-        own = [i for i, one in enumerate(keys) if one == key]
-        told = HEALTHY if key[0] is None else f"{plan.fault[key[0]]['kind']} {key[1]:g}"
-        out[own] = _dealt(len(own), shares, rng, f"{len(own)} conditions of {told}")
+        members = [i for i, other in enumerate(keys) if other == key]
+        class_name = HEALTHY if key[0] is None else f"{plan.fault[key[0]]['kind']} {key[1]:g}"
+        out[members] = _dealt(len(members), shares, rng, f"{len(members)} conditions of {class_name}")
     return [SIDES[i] for i in out]
 
 
