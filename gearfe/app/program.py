@@ -71,5 +71,5 @@ def said(one: Any) -> str:
         return f"({', '.join(map(said, one))}{',' if len(one) == 1 else ''})"
     if not hasattr(one, "__dataclass_fields__"):
         return repr(one)
-    given = [(f.name, getattr(one, f.name)) for f in fields(one) if f.init and getattr(one, f.name) != f.default]
-    return f"gf.{type(one).__name__}({', '.join(f'{name}={said(value)}' for name, value in given)})"
+    arguments = [(f.name, getattr(one, f.name)) for f in fields(one) if f.init and getattr(one, f.name) != f.default]
+    return f"gf.{type(one).__name__}({', '.join(f'{name}={said(value)}' for name, value in arguments)})"

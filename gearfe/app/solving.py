@@ -78,7 +78,7 @@ def solid(state: dict[str, Any]) -> dict[str, Any]:
 
 
 def _answer(state, method, phases, *, error):
-    with own_warnings() as told:
+    with own_warnings() as caught:
         scene, left_out = scene_from(state), ()
         if method == "ritz" and _wide(state):
             scene = scene_from(state | ALONG | ({"crack": "none"} if state["part"] != ALONG["part"] else {}))
@@ -101,7 +101,7 @@ def _answer(state, method, phases, *, error):
         "share": {"phase": _numbers(curve.phase), "order": [int(entry) for entry in curve.order],
                   "value": [_numbers(entry) for entry in np.where(curve.force > 0, curve.share, np.nan).T]},
         "picture": picture(scene_from(state)),
-        "notes": [*left_out, *further, *dict.fromkeys(str(entry.message) for entry in told), *scene.pair().pair.notes],
+        "notes": [*left_out, *further, *dict.fromkeys(str(entry.message) for entry in caught), *scene.pair().pair.notes],
         "assumed": [entry["what"] for entry in of_stiffness(scene.assumptions)]
         + [f"changed: {entry}" for entry in scene.changed],
     }  # fmt: skip
@@ -176,7 +176,7 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
 
     if not state["speed"]:
         raise ValueError("speed of the pinion = 0 rpm, but a vibration needs one: give it a speed under Load")
-    with own_warnings() as told:
+    with own_warnings() as caught:
         scene = scene_from(state)
         analysed = analysis(responses(scene, CASE if scene.pair().damage else None, duration=SECONDS))
     last = 1.15 * max(analysed.lines.values(), default=math.inf)
@@ -185,10 +185,10 @@ def spectrum(state: dict[str, Any]) -> dict[str, Any]:
         rows = slice(1, min(int(np.searchsorted(one.frequency, last)) + 1, SHOWN))
         spectra.append({"name": name, "f": _numbers(one.frequency[rows]), "value": _numbers(one.values[rows])})
     lines = [{"name": name, "f": value} for name, value in analysed.lines.items() if name in analysed.standing()]
-    words = ", ".join(f"{in_words(line['name'])} {line['f']:.1f} Hz" for line in lines)
-    text = f"{SECONDS:g} s of vibration; lines that stand out: {words or 'none'}"
+    named = ", ".join(f"{in_words(line['name'])} {line['f']:.1f} Hz" for line in lines)
+    text = f"{SECONDS:g} s of vibration; lines that stand out: {named or 'none'}"
     title = f"{analysed.channel} [{analysed.unit}]"
-    return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in told]}
+    return {"title": title, "text": text, "spectra": spectra, "lines": lines, "notes": [str(one.message) for one in caught]}
 
 
 def load(given: dict[str, Any]) -> dict[str, Any]:

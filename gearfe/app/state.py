@@ -146,10 +146,10 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     if pair is None and case is None:
         rest = _rest(scene, tables, None, None)
         if rest:
-            told = "; ".join(rest)
+            further = "; ".join(rest)
             choices = {one: ["", *own.damage] for one, own in scene.pairs.items()}
             raise SeveralError(
-                f"{name}: the page shows one pair in one case, and here is more: {told}; choose a pair and case", choices
+                f"{name}: the page shows one pair in one case, and here is more: {further}; choose a pair and case", choices
             )
     chosen = scene.pair(pair)
     pair = pair or next(iter(scene.pairs))
@@ -158,12 +158,12 @@ def read(name: str, text: str, pair: str | None = None, case: str | None = None)
     rest = _rest(scene, tables, pair, case)
     own, notes = _renamed(name, tables, pair, case)
     state = _fields(name, own, chosen.force * chosen.pair.gear_1.r_b * 1e-3)
-    given, made = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
-    for place in [*given, *made]:
-        if place == "gear.wheel.beta_deg" and given[place] and _same(given[place], -made[place]):
-            notes.append(f"the hand of the wheel's helix, given as {given[place]:g}°, is written as {made[place]:g}°")
-        elif not _same(given.get(place), made.get(place)):
-            raise ValueError(f"{name}: {place} = {shown(given.get(place))}, but the page has {shown(made.get(place))} there: no "
+    stated, page = dict(_flat(_filled(name, own))), dict(_flat(_filled(name, tables_of(state))))
+    for place in [*stated, *page]:
+        if place == "gear.wheel.beta_deg" and stated[place] and _same(stated[place], -page[place]):
+            notes.append(f"the hand of the wheel's helix, given as {stated[place]:g}°, is written as {page[place]:g}°")
+        elif not _same(stated.get(place), page.get(place)):
+            raise ValueError(f"{name}: {place} = {shown(stated.get(place))}, but the page has {shown(page.get(place))} there: no "
                              "field of it holds this; nothing is dropped, so compute this scene by gearfe compare")  # fmt: skip
     return checked_state(state), [*(f"not taken from {name}: {one}" for one in rest), *notes]
 

@@ -116,20 +116,20 @@ class StiffnessCurve:
         Phases that go round a mesh cycle are continued periodically. Those of a damaged tooth's engagement (``span="tooth"``) are
         not: what comes before and after it is another tooth, and a ValueError says that the curve has no value there.
         """
-        wanted = np.asarray(phase)
-        if wanted.dtype.kind not in "iuf" or not np.isfinite(wanted).all():
+        phases = np.asarray(phase)
+        if phases.dtype.kind not in "iuf" or not np.isfinite(phases).all():
             raise ValueError(f"phase = {phase!r}, but give finite numbers")
         order = np.argsort(self.phase)
         known, k = self.phase[order], self.k[order]
         steps = np.diff(known)
         if known.size > 1 and 0 < known[0] + 1 - known[-1] <= 1.5 * steps.max():
-            return np.interp(wanted, known, k, period=1.0)
-        if wanted.size and (wanted.min() < known[0] or wanted.max() > known[-1]):
+            return np.interp(phases, known, k, period=1.0)
+        if phases.size and (phases.min() < known[0] or phases.max() > known[-1]):
             raise ValueError(
-                f"phase from {wanted.min():g} to {wanted.max():g}, but it is known from {known[0]:g} to {known[-1]:g} and goes "
+                f"phase from {phases.min():g} to {phases.max():g}, but it is known from {known[0]:g} to {known[-1]:g} and goes "
                 "round no cycle: compute one with span='cycle' for a healthy pair"
             )
-        return np.interp(wanted, known, k)
+        return np.interp(phases, known, k)
 
     @property
     def te(self) -> NDArray[np.float64]:

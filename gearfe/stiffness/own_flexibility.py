@@ -215,16 +215,16 @@ def _on_flank(gear: Gear, roll: NDArray) -> tuple[NDArray[np.float64], NDArray[n
 def _checked(where: str, shape: tuple[int, ...], work: Callable[[], Any]) -> NDArray[np.float64]:
     """What a user's function gives, if it is real, finite and symmetric and has the shape; else a ValueError that names it."""
     try:
-        given = work()
+        returned = work()
     except Exception as error:  # it may raise whatever it likes
         raise ValueError(f"{where}: it failed with {type(error).__name__}: {error}") from error
-    if isinstance(given, Components):
+    if isinstance(returned, Components):
         raise ValueError(
             f"{where}: it gives Components of a tooth, but no matrix; teeth that do not move each other have numpy.diag "
             "of their `total`"
         )
     try:
-        values = np.asarray(given)
+        values = np.asarray(returned)
     except ValueError as error:  # rows of different lengths
         raise ValueError(f"{where}: it gives rows that make no array, but give a matrix of numbers [mm per N/mm]") from error
     if values.dtype.kind not in "fiu":

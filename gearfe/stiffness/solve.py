@@ -264,6 +264,6 @@ def asked(function, pair, force, material, options):
     unknown = sorted(set(options) - {*NAMES, *OPTIONS})
     if unknown:
         raise TypeError(f"{function}() has no argument {unknown[0]!r}; it has {', '.join((*NAMES, *OPTIONS))}")
-    given = {name: value for name, value in options.items() if name in NAMES}
+    of_case = {name: value for name, value in options.items() if name in NAMES}
     how = Solve(**{name: value for name, value in options.items() if name in OPTIONS})
-    return case_of(pair, force, material, **given), how
+    return case_of(pair, force, material, **of_case), how

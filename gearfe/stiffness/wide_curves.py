@@ -125,8 +125,8 @@ def _foretold(how, bodies, *, neighbours):
     levels = [{"refine": how.refine}, {"refine": COARSER[0] * how.refine, "section": how.refine, "less": LESS}][: 1 + how.error]
     plans = {}
     for level in levels:
-        for given, held in bodies:
-            plans |= unsolved(*given, cache=how.cache, neighbours=neighbours, **level, **held)
+        for body, held in bodies:
+            plans |= unsolved(*body, cache=how.cache, neighbours=neighbours, **level, **held)
     if how.tell and len(plans) > 1:
         seconds = float(f"{sum(plan.seconds for plan in plans.values()):.2g}")
         how.tell(f"{len(plans)} solves, about {seconds:g} s in all")

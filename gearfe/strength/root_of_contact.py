@@ -72,8 +72,8 @@ def root_stress_of_contact(
         material = pair.materials[gear == "wheel"] if material is None else material
         pair = pair.pair
     if not isinstance(pair, GearPair) or not isinstance(contact, Contact3D):
-        given = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
-        raise ValueError(f"{given}: give a GearPair, and what gearfe.contact_pattern gives for it")
+        types = f"pair of type {type(pair).__name__}, contact of type {type(contact).__name__}"
+        raise ValueError(f"{types}: give a GearPair, and what gearfe.contact_pattern gives for it")
     check_one(pair.gear_1, material, refine)
     if gear not in ("pinion", "wheel"):
         raise ValueError(f"gear = {gear!r}, but it must be 'pinion' or 'wheel'")

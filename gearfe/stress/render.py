@@ -165,11 +165,11 @@ def _picture(path, size, text, top):
         place = {"vertical": True, "position_x": 0.89, "position_y": 0.2, "width": 0.06, "height": 0.6, "n_labels": 6}
         plotter.add_scalar_bar(title="MPa", mapper=mapper, **fonts, **place)
         plotter.add_text(f"von Mises stress\n{text}", position=(0.012, 0.985), viewport=True, color="black", font_size=1)
-        words = plotter.actors[next(reversed(plotter.actors))].prop
-        words.SetFontSize(round(28 * scale))
-        words.SetVerticalJustificationToTop()
-        words.SetBackgroundColor(1.0, 1.0, 1.0)
-        words.SetBackgroundOpacity(0.8)
+        text_style = plotter.actors[next(reversed(plotter.actors))].prop
+        text_style.SetFontSize(round(28 * scale))
+        text_style.SetVerticalJustificationToTop()
+        text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+        text_style.SetBackgroundOpacity(0.8)
         plotter.enable_anti_aliasing("ssaa")
         with written(path) as name:
             plotter.screenshot(name)
@@ -217,10 +217,10 @@ def _length_scale(plotter, size, up, view):
     plotter.add_mesh(sheet, color="white", lighting=False)
     plotter.add_mesh(pyvista.Line(start, start + length * right), color="black", line_width=6, lighting=False)
     plotter.add_text(f"{length:g} mm", position=(0.028, 0.045), viewport=True, color="black", font_size=1)
-    words = plotter.actors[next(reversed(plotter.actors))].prop
-    words.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
-    words.SetBackgroundColor(1.0, 1.0, 1.0)
-    words.SetBackgroundOpacity(0.8)
+    text_style = plotter.actors[next(reversed(plotter.actors))].prop
+    text_style.SetFontSize(round(24 * (size[0] / 1400) ** 0.7))
+    text_style.SetBackgroundColor(1.0, 1.0, 1.0)
+    text_style.SetBackgroundOpacity(0.8)
 
 
 def _draw_gears(pair, fields, told, path, size):

@@ -72,26 +72,26 @@ class ModelFile:
         out = np.empty(asked.shape)
         for low, high in ((-1.0, leaves), (leaves, 1.0)):
             row = (rows > low + SNAP) & (rows <= high + SNAP)
-            here = (asked > low + EXACT) & (asked <= high + EXACT)
-            if here.any() and not row.any():
+            inside = (asked > low + EXACT) & (asked <= high + EXACT)
+            if inside.any() and not row.any():
                 raise ValueError(
                     f"{self.path}: no row from phase {max(low, 0):.4g} to {high:.4g}, where another number of pairs is in "
                     "contact; give rows there"
                 )
             order = np.argsort(rows[row])
-            if here.any():
-                out[here] = np.interp(asked[here], rows[row][order], self.k[once][row][order])
+            if inside.any():
+                out[inside] = np.interp(asked[inside], rows[row][order], self.k[once][row][order])
         return out
 
     def _check_cycle(self, x, cycle):
         span, step = x[-1] - x[0], np.diff(x).max()
         unit, scale = (" deg", 180 / math.pi) if self.abscissa == "angle" else ("", 1.0)
         start, stop, whole = scale * self.x[0], scale * self.x[-1], scale * cycle
-        given = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
+        coverage = f"{self.path}: {self.abscissa}s {start:.6g} to {stop:.6g}{unit} cover {span:.4g} mesh cycles"
         if span + step < 1 - SNAP:
-            raise ValueError(f"{given}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
+            raise ValueError(f"{coverage}, but one is needed: {start:.6g} to {start + whole:.6g}{unit}")
         if span > 1 + step + SNAP:
-            raise ValueError(f"{given}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
+            raise ValueError(f"{coverage}: keep the rows of one, for example {start:.6g} to {start + whole:.6g}{unit}")
         if step > COARSEST + SNAP:
             finer = f"sample every {COARSEST * cycle * scale:.4g}{unit} or finer"
             raise ValueError(f"{self.path}: rows are up to {step:.4g} of a mesh cycle apart; {finer}")

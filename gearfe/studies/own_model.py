@@ -70,8 +70,8 @@ def own_models(models, taken=()):
                 "or the path of a file"
             )
         if name in taken or name in out:
-            what = "is a formulation of gearfe" if name in taken else "stands for two models"
-            raise ValueError(f"the name {name!r} {what}; rename the file or function, or give models={{'another name': ...}}")
+            clash = "is a formulation of gearfe" if name in taken else "stands for two models"
+            raise ValueError(f"the name {name!r} {clash}; rename the file or function, or give models={{'another name': ...}}")
         out[name] = model
     return out
 

@@ -66,9 +66,9 @@ def _pair(name: str, chosen: ScenePair) -> Iterator[str]:
         yield f"  herringbone teeth{groove}; the overlap ratio is that of one half"
     yield from (f"  {text}" for text in told_details(chosen))
     for which in (None, *chosen.damage):
-        what = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
+        heading = "healthy" if which is None else f"case {which}: {', '.join(_where(chosen, chosen.damage[which]))}"
         row, why = Solve().chosen(chosen.case(which))
-        yield f"  {what}; solved by {row.name}: {why}"
+        yield f"  {heading}; solved by {row.name}: {why}"
     yield from (f"  {note}" for note in pair.notes)
 
 

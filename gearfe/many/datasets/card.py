@@ -148,8 +148,8 @@ def _failed(made, every):
     lost = made.failed()
     if not lost:
         return ""
-    told = "\n".join(f"- {name}: {error}" for name, error in list(lost.items())[:5])
-    return f"## Conditions that could not be simulated\n\n{len(lost)} of {len(every)}:\n\n{told}"
+    listed = "\n".join(f"- {name}: {error}" for name, error in list(lost.items())[:5])
+    return f"## Conditions that could not be simulated\n\n{len(lost)} of {len(every)}:\n\n{listed}"
 
 
 def _made(made):

@@ -89,10 +89,10 @@ def _sides(plan, rows):
 
 def _dealt(count: int, shares: NDArray[np.float64], rng: np.random.Generator, told: str) -> NDArray[np.int64]:
     """Number of the side of each of `count`, in random order: the shares rounded, one at least for each side that has a share."""
-    wanted = shares > 0
-    if count < wanted.sum():
-        raise ValueError(f"[split] {told} for {wanted.sum()} sides: give more repeats or operations, or fewer sides")
-    sizes = np.where(wanted, np.maximum(np.floor(shares * count), 1), 0).astype(int)
+    has_share = shares > 0
+    if count < has_share.sum():
+        raise ValueError(f"[split] {told} for {has_share.sum()} sides: give more repeats or operations, or fewer sides")
+    sizes = np.where(has_share, np.maximum(np.floor(shares * count), 1), 0).astype(int)
     while sizes.sum() > count:
         sizes[np.argmax(sizes)] -= 1
     for i in np.argsort(sizes - shares * count)[: count - sizes.sum()]:

@@ -205,8 +205,8 @@ def _check(plan):
 def _check_split(split):
     shares = [split[side] for side in SIDES]
     if not all(share >= 0 for share in shares) or not math.isclose(sum(shares), 1.0, abs_tol=1e-6) or not split["train"] > 0:
-        told = ", ".join(f"{side} = {share:g}" for side, share in zip(SIDES, shares, strict=True))
-        raise ValueError(f"[split] {told}: shares >= 0 add up to 1, with some to train on")
+        stated = ", ".join(f"{side} = {share:g}" for side, share in zip(SIDES, shares, strict=True))
+        raise ValueError(f"[split] {stated}: shares >= 0 add up to 1, with some to train on")
     if split["by"] not in ("condition", "operation"):
         raise ValueError(f"[split] by = {split['by']!r}, but it must be 'condition' or 'operation'")
 

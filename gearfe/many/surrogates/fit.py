@@ -79,19 +79,20 @@ def fit_surrogate(
         if not is_number(count) or count != int(count) or not least <= count <= MOST:
             raise ValueError(f"{name} = {count!r}, but give a whole number from {least} to {MOST}")
     _check_corners(space, materials)
-    made, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
+    drawn, fresh = _sample(space, int(cases), seed), _sample(space, int(held_back), seed + 1_000_003)
     jobs = [
-        {"space": space, "materials": materials, "point": point, "check": i >= len(made)} for i, point in enumerate(made + fresh)
+        {"space": space, "materials": materials, "point": point, "check": i >= len(drawn)}
+        for i, point in enumerate(drawn + fresh)
     ]
     done = batch(jobs, work=solved, workers=workers, progress=progress)
-    for point, result in zip(made + fresh, done.results, strict=True):
+    for point, result in zip(drawn + fresh, done.results, strict=True):
         if isinstance(result, Exception):
             raise ValueError(f"the ranges have a gap at {_told(point)}: {result}; narrow them") from result
     pairs = sorted({result["pairs"] for result in done.results})
     if len(pairs) > 1:
         raise ValueError(f"contact ratios from below {pairs[-1]} to above it are in the ranges: k jumps there; narrow them")
-    fitted, judged = done.results[: len(made)], done.results[len(made) :]
-    points = space.scaled([list(point.values()) for point in made])
+    fitted, judged = done.results[: len(drawn)], done.results[len(drawn) :]
+    points = space.scaled([list(point.values()) for point in drawn])
     values = np.array([np.append(case["breaks"], case["series"]) for case in fitted])
     powers, weights, left_out = _regression(points, values, fitted[0]["breaks"].size)
     meta = {

@@ -33,8 +33,10 @@ def axes(file, vary, along):
     for i, table in enumerate(along):
         lists = {key: _listed(file, key, value) for key, value in flat(table).items()}
         if len({len(one) for one in lists.values()}) != 1:
-            told = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
-            raise ValueError(f"{file} [along {i + 1}]: lists that go together are of one length, but {told or 'there is none'}")
+            lengths = ", ".join(f"{key} has {len(one)}" for key, one in lists.items())
+            raise ValueError(
+                f"{file} [along {i + 1}]: lists that go together are of one length, but {lengths or 'there is none'}"
+            )
         yield lists
 
 

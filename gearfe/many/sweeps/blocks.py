@@ -154,8 +154,8 @@ def _told(block, i):
 @cache
 def _program():
     """What each row says of the program that made it."""
-    made = program()
-    return {"version": made["gearfe"], "source": made["source"]}
+    versions = program()
+    return {"version": versions["gearfe"], "source": versions["source"]}
 
 
 def _computed(study, cases, built):

@@ -46,8 +46,8 @@ def _known(parts, tables, options):
         if parts[1:2] == ["bodies"]:
             return [["bodies"], list(tables["machine"].get("bodies", {})), list(machine_table.BODY)]
         return [[*machine_table.MACHINE, "impact", "bodies"]]
-    there = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
-    raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(there)} or options, or is pair or case")
+    kinds = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
+    raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
 
 
 def placed(tables, values):
@@ -77,11 +77,11 @@ def _set(home, parts, value):
         home[parts[0]] = value
         return
     key, at = parts[0], int(parts[1])
-    given = list(home.get(key) or [])
-    if at >= len(given):
-        raise ValueError(f"{key} = {given!r} in the scene has no number {at}; the first is 0")
-    given[at] = value
-    home[key] = given
+    numbers = list(home.get(key) or [])
+    if at >= len(numbers):
+        raise ValueError(f"{key} = {numbers!r} in the scene has no number {at}; the first is 0")
+    numbers[at] = value
+    home[key] = numbers
 
 
 def trimmed(tables, pair, case):

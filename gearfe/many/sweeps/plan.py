@@ -84,11 +84,11 @@ def plan_sweep(
     wrong = [row["error"] for row in computed if row["status"] != DONE]
     unit = 1 if sys.platform == "darwin" else 1024
     place = Path(folder).absolute()
-    there = next(one for one in (place, *place.parents) if one.exists())
+    existing = next(one for one in (place, *place.parents) if one.exists())
     return Plan(
         cases, len(every), per_case * cases, workers or os.cpu_count() or 1,
         float(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit), len(content) / tried * cases,
-        float(shutil.disk_usage(there).free), tried, len(wrong), wrong[0] if wrong else "",
+        float(shutil.disk_usage(existing).free), tried, len(wrong), wrong[0] if wrong else "",
     )  # fmt: skip
 
 
