@@ -32,7 +32,7 @@ PORT, LARGEST_SCENE = 8033, 90_000  # characters, so that a request with it is b
 
 
 class Answer(Response):
-    """Lines of JSON: while a task waits what is known of that, at last its answer; whoever goes away gives his task up."""
+    """Lines of JSON: how a task waits, and at last its answer; a page that is closed cancels its task."""
 
     def __init__(self, pool: Pool, lane: str, kind: str, given: dict[str, Any]):
         super().__init__(media_type="application/x-ndjson")

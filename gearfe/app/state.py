@@ -226,7 +226,7 @@ def _renamed(name, tables, pair, case):
 
 
 def _filled(name, tables):
-    """Tables with the defaults of their keys; those that may be left out stand in with their defaults."""
+    """Tables with the defaults of their keys filled in; tables that may be left out are there too, with their defaults."""
     out = {"title": tables["title"], "source": tables["source"]}
     wanted = [("material", side) for side in SIDES] + [("gear", side) for side in SIDES] + [("pair", PAIR)]
     for kind, key in wanted + [(kind, side) for kind in ("flank", "support") for side in SIDES]:
@@ -264,7 +264,7 @@ def _same(one, other):
 
 
 def _fields(name, tables, torque):
-    """Values of the fields from renamed tables; what no field holds is left, and found by who compares."""
+    """Values of the fields from renamed tables; what no field holds is left out, and found when `read` compares."""
     out, filled = dict(START) | {"crack": "none"}, _filled(name, tables)
     for field in FIELDS:
         if field.places:

@@ -30,10 +30,10 @@ from .solid_deck import Part, element_lines, holed_part, node_lines, part_of, pl
 # edge lengths in modules, see `geometry.mesh.quads.SIZES`
 SIZES = {"flank": 0.5, "corner": 0.3, "fillet": 0.5, "root": 0.8, "near": 1.0, "far": 3.0, "crack": 0.3, "crack tip": 0.08}
 TETS = {"far": 1.4, "tooth": 0.7, "flank": 0.6, "fillet": 0.25}  # see `geometry.mesh.holes.SIZES`
-STRETCH = 2.0  # tets are so many times longer along the width
+STRETCH = 2.0  # length of tets along the width over that in the section
 RIM = 0.6  # edges at pits' rims against those along the contact lines
 SECTIONS = 33  # transverse sections at which the contacts are looked for
-REACH = 1.5  # contacts whose gap is below so many approaches
+REACH = 1.5  # gap below which a contact may touch, in approaches
 STRIP = 2.5  # Hertz half widths to either side of the contact line that are refined
 SOLID = 1.5  # edges per Hertz half width
 END = 1.0  # height of the layers at the end faces against that in between

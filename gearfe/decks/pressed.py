@@ -54,7 +54,7 @@ def _flank_faces(body, nodes, key):
 
 
 def pressing(stiffness, contacts, motions, step="*STEP, INC=200, NLGEOM"):
-    """Contacts between surfaces (slave, master), springs of so much pressure per overlap [N/mm^3], and the step that moves."""
+    """Contacts between surfaces (slave, master) of a stiffness, pressure over overlap [N/mm^3], and the step with the motions."""
     yield f"*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{stiffness:.6e}"
     for surfaces in contacts:
         yield from ("*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE", ", ".join(surfaces))
@@ -68,9 +68,10 @@ def write_lines(path, lines):
 
 
 def read_rows(path, heading=None):
-    """Three values of every node from the ``.dat`` file that CalculiX printed, of the part whose heading begins with a word.
+    """Three values of every node from the ``.dat`` file that CalculiX printed.
 
-    RuntimeError if the file is not there or has none: CalculiX did not get that far.
+    Only those under lines that begin with the word `heading`, default all. RuntimeError if the file is not there or has none:
+    CalculiX did not get that far.
     """
     try:
         lines = Path(path).read_text(encoding="ascii").splitlines()

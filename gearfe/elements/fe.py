@@ -109,8 +109,8 @@ def turned(vectors, angle):
 def mesh_gear(gear, *, loaded=(0,), read=(), refine=1.0, teeth=None, cracks=()):
     """Section of `gear` meshed for loads on the teeth `loaded` and for reading displacements on the teeth `read`.
 
-    `refine` divides every edge length of `EDGES`; of the whole gear or of so many `teeth` on a plain rim, with `cracks`, as in
-    `geometry.mesh.section_mesh.section`.
+    `refine` divides every edge length of `EDGES`. It is the section of the whole gear, or of a number of `teeth` on a plain rim,
+    with `cracks`, as in `geometry.mesh.section_mesh.section`.
     """
     if not (math.isfinite(refine) and refine > 0):
         raise ValueError(f"refine = {refine}, but it divides the edge lengths: give refine > 0, 1 is the default mesh")

@@ -35,8 +35,8 @@ class Patches:
     knots : ndarray, shape (3, arcs)
         Start, top and end of each hat along the flank, as of `geometry.tooth.profile.arc_at` [mm].
     modes : int
-        So many functions along the width, the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform line
-        load of unit resultant.
+        Number of functions along the width: the Legendre polynomials ``P_a(2 z / b - 1) / b``, of which the first is a uniform
+        line load of unit resultant.
     """
 
     teeth: tuple
@@ -161,7 +161,7 @@ def points_between(ends, cuts, count):
 
 
 def planned(mesh, patches, more=0):
-    """`gearfe.elements.solver.Plan` of the influence between patches, with so many `more` right-hand sides."""
+    """`gearfe.elements.solver.Plan` of the influence between patches, with `more` right-hand sides beside theirs."""
     free = mesh.points.shape[1] - np.unique(mesh.held).size
     return plan(3 * free, columns=math.prod(patches.shape) + more)
 

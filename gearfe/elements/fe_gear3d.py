@@ -26,7 +26,7 @@ SIZES = {"flank": 0.13, "corner": 0.07, "fillet": 0.17, "root": 0.27, "near": 0.
 
 
 def axial_modes(width, m_n):
-    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module and 2, at least 8: 2 more than `ritz3d` keeps."""
+    """Highest degree of the patches along a `width` [mm]: 0.8 per normal module plus 2, at least 8; `ritz3d` keeps 2 less."""
     return max(8, math.ceil(0.8 * width / m_n) + 2)
 
 
@@ -43,8 +43,8 @@ class WholeGear:
     neighbours : int
         How many following teeth may carry load at the same time.
     degree : int, optional
-        Of the patches along the width; default `axial_modes`, `less` so many. The highest that the layers cannot carry, at most
-        two, are dropped (seen on the gear without cracks).
+        Of the patches along the width, before `less` is taken off; default `axial_modes`. At most two of the highest degrees are
+        dropped if the layers cannot carry them (seen on the gear without cracks).
     refine : float
         Divides all edge lengths and the layers.
     section : float, optional

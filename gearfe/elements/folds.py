@@ -8,7 +8,7 @@ from geometry.kept import keeping
 from .hexahedron import TWENTY, gauss, shapes
 from .tetrahedron import EDGES, INNER, OUTER
 
-LEFT = 0.05  # a bent tet keeps at least such a part of the straight one's Jacobian
+LEFT = 0.05  # least Jacobian of a bent tet over that of the straight one
 NEAR = 0.975  # of the way to a hexahedron's corner: quads with a straight angle there are no fault
 HALVINGS = 5  # of a bend, before the edge is left straight
 

@@ -25,7 +25,7 @@ REFRESH = 5.0  # s between two looks at how many workers a scheduler has
 
 @dataclass(slots=True)
 class Tally:
-    """How many of `total` are done, said to whoever listens (`gearfe.steps`) and to `progress`, called with (done, total)."""
+    """Counts how many of `total` are done, and reports it to listeners (`gearfe.steps`) and to ``progress(done, total)``."""
 
     noun: str
     total: int
@@ -33,7 +33,7 @@ class Tally:
     done: int = 0
 
     def add(self, count: int) -> None:
-        """So many more are done."""
+        """Count `count` more as done, and report it."""
         self.done += count
         reached(f"{self.done} of {self.total} {self.noun}", self.done / self.total)
         if self.progress is not None:
@@ -85,7 +85,7 @@ def results(
 
 
 def _until_broken(work, waiting, suspects, workers, own):
-    """Results of the `waiting` jobs; ends early, with those under way in `suspects`, if a process does."""
+    """Results of the `waiting` jobs; if a process dies, the jobs under way are put into `suspects`, and the results end."""
     running = {}
     with processes(workers, own=own) as pool:
         try:

@@ -80,7 +80,7 @@ def _solid_case(material, cracks, options):
 
 
 def unsolved(gear, material, cracks=(), *, cache=True, **options):
-    """What `solved_solid` of the same would solve: `gearfe.elements.solver.Plan` by key, nothing that is kept or on the disk.
+    """`gearfe.elements.solver.Plan` by key of what `solved_solid` would solve now, without what is kept or on the disk.
 
     RuntimeError, with the numbers, if one of them does not fit into memory.
     """

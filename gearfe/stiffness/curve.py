@@ -229,6 +229,6 @@ def joined(curves: Sequence[StiffnessCurve]) -> StiffnessCurve:
 
 
 def _meta_of(curves: Sequence[StiffnessCurve]) -> dict[str, Any]:
-    """What is said of the first, and of the phases of all of them."""
+    """`meta` of the first curve, with the marked phases of all of them."""
     marked = [name for name in MARKS if any(name in curve.meta for curve in curves)]
     return curves[0].meta | {name: [at for curve in curves for at in curve.meta.get(name, ())] for name in marked}

@@ -26,7 +26,7 @@ DENTED = 0.035  # largest pressure, of the contact modulus E*
 
 
 def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Material, Material]) -> None:
-    """Refuse or warn of a curve beyond small strains, and refuse numbers that are none.
+    """Reject NaN and non-positive stiffness; reject, or warn of, a curve beyond small strains.
 
     ValueError if the gears approach by more than `REFUSE` modules, or k is not positive and finite. UserWarning if they approach
     by more than `WARN` modules at the median phase, or the pressure is larger than `DENTED` E* there.
@@ -35,7 +35,7 @@ def check_plausible(curve: StiffnessCurve, pair: GearPair, materials: tuple[Mate
     if not (np.isfinite(curve.k).all() and (curve.k > 0).all()):
         bad = curve.phase[~(np.isfinite(curve.k) & (curve.k > 0))][0]
         raise ValueError(f"k at phase {bad:.6g} is not positive and finite: no model holds for these gears at {force:g} N")
-    lte = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth, that shafts carry along
+    lte = curve.lte if curve.lte_supports is None else curve.lte - curve.lte_supports  # of the teeth alone, without their shafts
     ratio = float(np.median(lte)) * 1e3 / module
     message = f"under {force:g} N the gears approach by {1e3 * ratio * module:.3g} um, {100 * ratio:.3g} % of the module"
     if ratio > REFUSE:

@@ -74,7 +74,7 @@ def _flanks(row, case, method):
 
 
 def _options(row, how, method):
-    """Options that a method has not: none is ignored in silence."""
+    """Options that the method does not have: refused, not ignored."""
     if how.teeth is not None and not row.teeth:
         yield f"teeth = {how.teeth} with {method}: only {having('teeth')!r} can leave teeth out"
     if how.variants and not row.variants:

@@ -19,7 +19,7 @@ from .own_flexibility import flexibility_of
 from .provenance import provenance
 from .supported import yielding
 
-# of k: what the section's contact was off the pressed whole outlines where no mesh is to blame, in nine of ten phases
+# error of the section's contact against pressed whole outlines where no mesh is to blame, as a part of k, in nine of ten phases
 MODEL = 1e-3
 
 

@@ -113,8 +113,8 @@ def transmission_error(
     ...     for name, gear in (("pinion", pair.gear_1), ("wheel", pair.gear_2))
     ... }
     >>> for given in (None, flanks):
-    ...     found = gf.transmission_error(pair, [1000.0, 3000.0], steel, flanks=given, phases=32)
-    ...     print([round(1e6 * float(span), 1) for span in found.peak_to_peak])
+    ...     error = gf.transmission_error(pair, [1000.0, 3000.0], steel, flanks=given, phases=32)
+    ...     print([round(1e6 * float(span), 1) for span in error.peak_to_peak])
     [1.3, 3.6]
     [2.6, 0.4]
     """

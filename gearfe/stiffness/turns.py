@@ -48,7 +48,7 @@ def over_turns(solve, phase, pair, span, differs):
 
 
 def _later(curve, phase, cycles):
-    """The same curve so many cycles later: its tooth pairs are those so many behind."""
+    """The same curve a number of mesh `cycles` later; the numbers of its tooth pairs are as many lower."""
     if not cycles:
         return curve
     meta = curve.meta | {name: [at + cycles for at in curve.meta[name]] for name in MARKS if name in curve.meta}

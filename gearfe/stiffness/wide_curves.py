@@ -17,9 +17,9 @@ from .provenance import provenance
 
 # resolutions of the layers for the error estimate of finite elements, against the curve's; the first that carries the patches
 COARSER = (0.7, 0.76, 0.83)
-LESS = 2  # axial degrees less in it
-# of the errors of finite elements in the edge length, at least: layers are regular; the quads of a section are not, and from one
-# resolution to the next those at a hat may stay as they are
+LESS = 2  # axial degrees less in that estimate
+# least order of convergence of finite elements in the edge length: layers are regular; the quads of a section are not, and from
+# one resolution to the next those at a hat may stay as they are
 ORDER = {"layers": 2, "section": 1}
 # P. J. Roache, J. Fluids Eng. 116 (1994) 405-413: 3 where two meshes are compared (layers), 1.25 where the order was seen (of
 # sections on three resolutions: tests/elements/test_section_error.py)

@@ -132,7 +132,7 @@ def _edges(points, cells):
 
 
 def _own(pair, side, face, groove, pits):
-    """The gear as it is drawn, the half of it that is (0 or 1), and its pits there; half 1 is seen in the mirror."""
+    """The gear as it is drawn, which half of it that is (0 or 1), and its pits there; half 1 is drawn as its mirror image."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     if face != "herringbone":
         return replace(gear, beta=sense * pair.gear_1.beta), 0, pits
@@ -175,7 +175,7 @@ def contact_of(case, phases, order, *, extended=True):
 
 
 def _lines(pair, cells, side, tooth, half):
-    """Contact lines by tooth of the sector: lists of (z, width, roll, load)."""
+    """Contact lines by tooth of the sector: lists of (z [mm], width [mm], roll length [mm], load [N]) of their cells."""
     gear, sense = (pair.gear_1, pair.gear_2)[side], (1, -1)[side]
     offset = (gear.b - min(pair.gear_1.b, pair.gear_2.b)) / 2
     out = {}

@@ -111,7 +111,7 @@ def render_contact(case, path, *, phase=None, title=""):
 
 
 def _check_size(wide, refine):
-    """Refuse a picture whose solve does not fit into memory, before it is meshed; a tooth in 3-D by a low guess."""
+    """Refuse a picture whose solve does not fit into memory, before it is meshed; of a tooth in 3-D by a low estimate."""
     if not wide:
         check_section(refine)
     elif refine > 1:

@@ -39,7 +39,7 @@ class PairModel:
     function: Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be called."""
+        """Raise ValueError for what is not a function."""
         if not callable(self.function):
             raise ValueError(f"PairModel({self.function!r}): give a function f(radius_1, radius_2) -> k [N/m]")
 

@@ -92,8 +92,8 @@ def face_load(contact: Contact3D) -> tuple[NDArray[np.float64], NDArray[np.float
     >>> pair = gf.GearPair(gf.Gear(z=24, r_bore=15.0, **rack), gf.Gear(z=30, r_bore=18.0, **rack))
     >>> for askew in (0.0, 0.02):  # mm, wider open at z = b than at z = 0
     ...     shape = gf.Misalignment(F_beta=askew)
-    ...     found = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=shape, phases=4)
-    ...     z, load = gf.face_load(found)
+    ...     contact = gf.contact_pattern(pair, 2000.0, gf.Material(E=207e3, nu=0.3), misalignment=shape, phases=4)
+    ...     z, load = gf.face_load(contact)
     ...     print(f"{load.mean():.0f} N/mm, face load factor {load.max() / load.mean():.2f}")
     167 N/mm, face load factor 1.02
     167 N/mm, face load factor 3.04

@@ -57,8 +57,8 @@ def iso_root_stress(pair: GearPair, force: float, side: str = "pinion") -> IsoRo
     >>> import math, gearfe as gf
     >>> rack = dict(m_n=2.0, alpha_n=math.radians(20), b=20.0)
     >>> pair = gf.GearPair(gf.Gear(z=21, r_bore=9.2, **rack), gf.Gear(z=31, r_bore=14.2, **rack))
-    >>> found = gf.iso_root_stress(pair, 2000.0)
-    >>> print(f"{found.stress:.1f} MPa, Y_F {found.Y_F:.3f}, Y_S {found.Y_S:.3f}")
+    >>> nominal = gf.iso_root_stress(pair, 2000.0)
+    >>> print(f"{nominal.stress:.1f} MPa, Y_F {nominal.Y_F:.3f}, Y_S {nominal.Y_S:.3f}")
     136.6 MPa, Y_F 1.599, Y_S 1.818
     """
     if side not in ("pinion", "wheel"):

@@ -279,7 +279,10 @@ def analyse(signals, mesh, fault=None, *, turning=None, carrier=None, channel="s
 
 
 def _lines(mesh, fault, turning, carrier, resolution):
-    """Lines of the fault twice with two mesh harmonics, of the gear's turning (alone: as of the fault), of the carrier."""
+    """Frequencies of lines by name [Hz]: of the fault, of the turning gear and of the carrier.
+
+    The fault has two harmonics, and two sidebands at two mesh harmonics; the turning gear one of each, or two without a fault.
+    """
     lines = expected_lines(mesh, fault, count=2, harmonics=2)
     if turning is not None:
         turns = expected_lines(mesh, turning, count=1 if fault else 2, harmonics=1 if fault else 2)

@@ -71,7 +71,7 @@ def conditions(plan: Plan) -> list[Condition]:
 
 
 def _sides(plan, rows):
-    """Side of each condition: of each class by shares, or of each operation."""
+    """Side of each condition: dealt by shares within each class, or to whole operations."""
     shares = np.array([plan.split[side] for side in SIDES])
     rng = np.random.default_rng([plan.seed, 7])
     if plan.split["by"] == "operation":

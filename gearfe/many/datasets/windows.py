@@ -74,7 +74,7 @@ def stage_of(machine: Machine) -> Stage:
 
 
 def simulated(plan: Plan, condition: Condition) -> tuple[Machine, Response, int]:
-    """Machine and response of a condition, and how many of its samples make one of a window."""
+    """Machine and response of a condition, and how many samples of the response make one sample of a window."""
     fault = None if condition.fault is None else plan.fault[condition.fault]
     scene = plan.scene_at(condition.values, fault, condition.severity)
     case = CASE if fault is not None and FAULTS[fault["kind"]].damage else None

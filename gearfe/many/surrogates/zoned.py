@@ -81,7 +81,7 @@ def _vanishing(touching, open_, before, force, force_before):
 
 
 def phases_of(breaks: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Phases ``(pieces * (DEGREE + 1),)`` at which k is wanted."""
+    """Phases ``(pieces * (DEGREE + 1),)`` at which k is needed: Chebyshev's nodes of each piece."""
     low, high = breaks[:-1, None], breaks[1:, None]
     return ((low + high) / 2 + (high - low) / 2 * _NODES).ravel()
 

@@ -110,7 +110,7 @@ def rows(study: Study, block: Block) -> list[dict[str, Any]]:
     """Rows of a block's cases; a case that cannot be has its error in its row.
 
     Cases that differ in their load only are computed together. If one of them fails or has something to note, each is computed
-    alone, so that the row says it to which it belongs.
+    alone, so that error and note stand in the row they belong to.
     """
     cases, out = block.cases, []
     built: dict[str, Scene] = {}
@@ -147,7 +147,7 @@ def lost(block: Block) -> list[dict[str, Any]]:
 
 
 def _told(block, i):
-    """What a row says of its case and of the program."""
+    """Columns of a row that name its case and the program's versions."""
     return block.told[i] | block.cases[i] | _program()
 
 

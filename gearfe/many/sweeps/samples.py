@@ -89,7 +89,7 @@ def _finite(value):
 
 
 def _check_within(where, name, spec):
-    """Refuse what is no interval, or leaves nothing of a distribution."""
+    """Raise ValueError unless ``within`` is an interval in which a part of the distribution lies."""
     within = spec["within"]
     if not (isinstance(within, (list, tuple)) and len(within) == 2 and all(map(_finite, within)) and within[0] < within[1]):
         raise ValueError(f"{where}: within = {shown(within)}, but give [low, high] with low < high")

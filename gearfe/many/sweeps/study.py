@@ -20,7 +20,7 @@
     "gear.pinion.r_bore_mm" = [8.0, 10.0]
     "gear.wheel.r_bore_mm" = [12.0, 15.0]
 
-    [sample]                              # drawn anew for no case: every draw meets every combination
+    [sample]                              # drawn once: every draw meets every combination
     method = "sobol"                      # or "random", "latin", "saltelli" (for Sobol indices)
     count = 256
     [sample.of]
