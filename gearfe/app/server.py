@@ -171,7 +171,7 @@ def serve(
     Raises
     ------
     ValueError
-        If the port is taken, or a number is none that can be.
+        If the port is taken, or a number is out of its range.
     """
     for name, value in (("workers", workers), ("users", users), ("tasks", tasks)):
         if value is not None and value < 1:

@@ -28,7 +28,7 @@ def check_count(phases: Any) -> int:
 def check_range(phases: NDArray, pairs: float) -> None:
     """ValueError for phases so large that rounding moves contacts, or over so many cycles that the contacts fill the memory.
 
-    `phases` ``(n,)``; `pairs` is the contact ratio: so many pairs are in contact at each of them.
+    `phases` ``(n,)``; `pairs` is the contact ratio, the mean number of pairs in contact.
     """
     far = float(np.abs(phases).max())
     if far > FURTHEST:

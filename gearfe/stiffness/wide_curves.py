@@ -121,7 +121,7 @@ def _bodies(how):
 
 
 def _foretold(how, bodies, *, neighbours):
-    """Refuse what does not fit before the first body is solved; tell what all take, the coarser ones of an estimate too."""
+    """RuntimeError if a body does not fit, before the first is solved; tell the cost of all, coarser ones of an estimate too."""
     levels = [{"refine": how.refine}, {"refine": COARSER[0] * how.refine, "section": how.refine, "less": LESS}][: 1 + how.error]
     plans = {}
     for level in levels:

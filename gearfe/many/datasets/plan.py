@@ -175,7 +175,7 @@ def _sensor(file, i, table):
 
 
 def _check(plan):
-    """Refuse what contradicts itself or the scene."""
+    """Raise ValueError for a plan that contradicts itself or its scene."""
     if "machine" not in plan.tables:
         raise ValueError(f"scene {plan.scene} has no [machine], so that nothing vibrates: add one, or take another scene")
     if not plan.fault:

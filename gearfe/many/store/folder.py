@@ -79,7 +79,7 @@ def _take(handle, folder):
 
 
 def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str, Any]:
-    """What an existing folder says of its shards, to be compared; a new or empty one is made and says what `about` holds.
+    """The note of an existing folder, to be compared with `about`; a new or empty folder is made and gets `about` as its note.
 
     `about` is JSON, and its ``"format"`` a name such as ``"gearfe sweep 1"``. ValueError if the folder cannot be made or written,
     or holds anything else.
@@ -100,7 +100,7 @@ def begin(folder: str | os.PathLike[str], about: Mapping[str, Any]) -> dict[str,
 
 
 def read_about(folder: str | os.PathLike[str], form: str) -> dict[str, Any]:
-    """What a folder of shards of the format `form` says of itself.
+    """The note of a folder of shards, of the format `form`.
 
     ValueError if it is no such folder; nothing in it is touched.
     """

@@ -48,7 +48,7 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
-    options, and gives a row for each of its loads; `block`: cases in a shard, so many that one takes seconds. `whole`: it needs
+    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
     all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
