@@ -48,7 +48,7 @@ class Kind(NamedTuple):
     """A kind of study.
 
     `options` are checked as a TOML table; `fields` are the columns of its results; `work` is called with a `Case` and the
-    options, and gives a row for each of its loads; `block`: cases in a shard, so many that one takes seconds. `whole`: it needs
+    options, and gives a row for each of its loads; `block`: cases in a shard, which takes seconds. `whole`: it needs
     all pairs of the scene, and `work` is called with the scene, its case of damage (None: healthy) and the options.
     """
 
@@ -102,16 +102,16 @@ def vibration(scene: Scene, case: str | None, options: dict[str, Any]) -> list[d
     machine = build_machine(scene, case, phases=options["phases"], method=options["curves"])
     duration = options["duration_s"]
     rate = options["rate_Hz"] or math.ceil(duration / default_step(machine)) / duration
-    found = recorded(machine, duration, rate, method=options["method"])
+    response = recorded(machine, duration, rate, method=options["method"])
     stage = machine.stages[-1]
-    mesh = next(one for one in machine.meshes if abs(one.frequency - stage.mesh) < 1e-6 * stage.mesh)
+    mesh = next(candidate for candidate in machine.meshes if abs(candidate.frequency - stage.mesh) < 1e-6 * stage.mesh)
     channel = options["channel"] or f"force {mesh.name}"
-    signal = Signal(np.asarray(found[channel], dtype=float), rate, found.unit(channel), name=channel)
+    signal = Signal(np.asarray(response[channel], dtype=float), rate, response.unit(channel), name=channel)
     fault = stage.fault or stage.turning
     seen = signal.indicators(*((stage.mesh, fault) if fault else (None, None)))
     row: dict[str, Any] = {name.replace(" ", "_"): seen.get(name) for name in INDICATORS}
     row |= {"rms": seen["rms"], "peak": seen["peak"], "mesh_line": seen.get("mesh line"), "unit": signal.unit}
-    row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": found.stats["free"]}
+    row |= {"mesh_Hz": stage.mesh, "fault_Hz": fault, "rate": rate, "free": response.stats["free"]}
     return [row | ({"signal": signal.values} if options["signal"] else {})]
 
 
