@@ -70,8 +70,8 @@ class Shaft:
     integral: bool = False
 
     def __post_init__(self) -> None:
-        """Bring all into one form, and refuse what is no shaft."""
-        object.__setattr__(self, "segments", tuple(_segment(i, one) for i, one in enumerate(_rows(self.segments))))
+        """Bring all numbers into one form, and reject a shaft that cannot be."""
+        object.__setattr__(self, "segments", tuple(_segment(i, row) for i, row in enumerate(_rows(self.segments))))
         thick, thin = (pick(segment.diameter for segment in self.segments) for pick in (max, min))
         if thick > THICKEST * thin:
             raise ValueError(
@@ -130,7 +130,7 @@ class Shaft:
         )
 
     def untilted(self) -> Support:
-        """Its springs, of which a force only moves the gear and tilts it no more."""
+        """Its springs without their coupling: a force moves the gear, but does not tilt it."""
         return self.support().untilted()
 
     def support(self) -> Support:
@@ -181,9 +181,9 @@ def _segment(i, row):
 
 def _two(name, values, what, least=-math.inf):
     try:
-        found = tuple(float(value) for value in values)
+        numbers = tuple(float(value) for value in values)
     except (TypeError, ValueError):
-        found = ()
-    if len(found) != 2 or any(math.isnan(value) or not value > least for value in found):
+        numbers = ()
+    if len(numbers) != 2 or any(math.isnan(value) or not value > least for value in numbers):
         raise ValueError(f"shaft: {name} = {values!r}, but give two {what}{' > 0' if least == 0 else ''}")
-    return found
+    return numbers
