@@ -80,8 +80,8 @@ class Sector:
             for local, (a, b) in enumerate(ENDS):
                 wanted = self.triangles[a].astype(np.int64) * count + self.triangles[b]
                 at = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), keys.size - 1)]
-                found = keys[at] == wanted
-                out[local][..., found] = np.moveaxis(along[at[found]], 0, -1)
+                matches = keys[at] == wanted
+                out[local][..., matches] = np.moveaxis(along[at[matches]], 0, -1)
         object.__setattr__(self, "edge_bulges", out)
 
 
@@ -149,8 +149,8 @@ def _apart(side, triangles, doubles):
 
 def _twice_areas(points, triangles):
     """Twice the areas of triangles, negative if their corners run clockwise."""
-    corner, one, two = points[:, triangles].transpose(1, 0, 2)
-    (x, y), (u, v) = one - corner, two - corner
+    corner, second, third = points[:, triangles].transpose(1, 0, 2)
+    (x, y), (u, v) = second - corner, third - corner
     return x * v - y * u
 
 

@@ -50,7 +50,7 @@ class Misalignment:
     length: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no misalignment."""
+        """Reject numbers that are not finite, and deviations of the axes without their length."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name == "length" and value is None:

@@ -118,8 +118,8 @@ class FlankForm:
         at = np.maximum(given, self.low) if self.high > self.low else np.minimum(given, self.low)
         out = self._shaped(at, n)
         if self._scales.size:
-            own = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
-            out = out * own
+            factor = self._scales[0] if self._tooth is None else _along(self._scales[self._tooth % self.gear.z], at)
+            out = out * factor
         if self._worn is not None:
             out = out + self._wear(at, n)
         if self.edge is not None and n == 0:

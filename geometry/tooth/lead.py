@@ -1,4 +1,4 @@
-"""What flanks have less along the width: crowning, slope, end relief, twist, a measured grid."""
+"""Modifications of flanks along the width: crowning, slope, end relief, twist, a measured grid."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""`Flank`: what the loaded flanks of a gear have less (or more) than the involute, and how far each tooth is from its place."""
+"""`Flank`: how the loaded flanks of a gear differ from involutes, and how far each tooth is from its place."""
 
 from dataclasses import dataclass
 from typing import Any
