@@ -107,9 +107,9 @@ def _dealt() -> Iterator[None]:
         before = warnings.showwarning
 
         def show(message, category, filename, lineno, file=None, line=None):
-            for kind, found in reversed(_lists.open):
+            for kind, caught in reversed(_lists.open):
                 if issubclass(category, kind):
-                    found.append(warnings.WarningMessage(message, category, filename, lineno, file, line))
+                    caught.append(warnings.WarningMessage(message, category, filename, lineno, file, line))
                     return
             before(message, category, filename, lineno, file, line)
 
@@ -127,11 +127,11 @@ def own_warnings(kind: type[Warning] = UserWarning) -> Iterator[list[Any]]:
     As ``warnings.catch_warnings(record=True)``, which several threads may not use at once: warnings of another thread would
     come into the list, and filters that one has set could stay for good.
     """
-    found: list[Any] = []
+    caught: list[Any] = []
     with _dealing:
         warnings.simplefilter("always", kind)
-        _lists.open.append((kind, found))
+        _lists.open.append((kind, caught))
         try:
-            yield found
+            yield caught
         finally:
             _lists.open.pop()
