@@ -265,11 +265,11 @@ def check_load(pair: GearPair, force: float, materials: tuple[Material, Material
 def by_gear(pair: GearPair, damage: Any) -> tuple[tuple[tuple[Crack, ...], ...], tuple[tuple[Any, ...], ...]]:
     """What weakens pinion and wheel (cracks) and takes their contact away (pits, spalls), numbered in each gear's own frame."""
     cracks, pits = [], []
-    for (_, sense), gear, given in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
-        for text in filter(None, (defect.doubts(gear) for defect in given)):
+    for (_, sense), gear, defects in zip(SIDES, (pair.gear_1, pair.gear_2), by_side(damage), strict=True):
+        for text in filter(None, (defect.doubts(gear) for defect in defects)):
             warnings.warn(text, stacklevel=5)
-        weakens, removes = split(replace(defect, tooth=sense * defect.tooth) for defect in given)
-        check_apart(gear, split(given)[0])
+        weakens, removes = split(replace(defect, tooth=sense * defect.tooth) for defect in defects)
+        check_apart(gear, split(defects)[0])
         cracks.append(weakens)
         pits.append(removes)
     return tuple(cracks), tuple(pits)

@@ -31,8 +31,8 @@ def whole(name: str, value: Any, least: int) -> int:
     """
     if isinstance(value, bool) or not isinstance(value, Integral) or value < least:
         close = is_number(value) and math.isfinite(value) and value == int(value) and value >= least
-        told = f": give {name} = {int(value)}" if close else f" from {least} on"
-        raise ValueError(f"{name} = {value!r}, but it is a whole number{told}")
+        remedy = f": give {name} = {int(value)}" if close else f" from {least} on"
+        raise ValueError(f"{name} = {value!r}, but it is a whole number{remedy}")
     return int(value)
 
 

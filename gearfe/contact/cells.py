@@ -103,9 +103,9 @@ def cells_of(pair, pieces, bands, slope, sizes, flanks=None, longer=1, fine=None
     *named, count = (np.array(values) for values in zip(*number, strict=True))
     phase, half, order, corner, floor = (np.repeat(values, count) for values in named)
     roll_1, roll_2, gap = nominal.copy(), pair.mate_roll(nominal), np.zeros(z.size)
-    there, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
-    if there.any():
-        roll_1[there], roll_2[there], gap[there], corner[there] = touching(pair, nominal[there])[:4]
+    at_corner, radius = (corner > 0) | _cut(pair, nominal), np.zeros(z.size)
+    if at_corner.any():
+        roll_1[at_corner], roll_2[at_corner], gap[at_corner], corner[at_corner] = touching(pair, nominal[at_corner])[:4]
     if flanks is not None:
         met = first_touch(pair, flanks, nominal, order, gap, z)
         roll_1, roll_2, gap, radius, corner = met.roll_1, met.roll_2, met.gap, met.radius, met.corner

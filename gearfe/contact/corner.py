@@ -140,7 +140,7 @@ def _table(pair, materials, line_load, end, span, cache):
     loads = line_load * LOADS
     loads = loads[loads >= least]
     touches = np.where(mesh.found.corner[:, column] > 0, mesh.found.corner[:, column], corner)
-    there = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
+    meets = np.isfinite(mesh.found.gap[:, column]) & np.isfinite(mesh.found.corner_gap[touches - 1, np.arange(away.size), column])
     rolls = mesh.found.roll_1[:, column], mesh.found.roll_2[:, column]
     radius = plain_radius(pair, *rolls)
     if inside:  # what presses into a hollow changes more with the load
@@ -152,16 +152,16 @@ def _table(pair, materials, line_load, end, span, cache):
     reached = [values[:, column] for values in mesh.corners(line_load, np.isfinite(mesh.found.gap))]
     taking, beside = np.where(mesh.found.corner[:, column] > 0, reached[0], 0), np.where(twofold, reached[2], 0)
     taking = taking.astype(int) | (1 << (touches - 1))
-    at = np.flatnonzero(there).tolist()
+    at = np.flatnonzero(meets).tolist()
     made = mesh.rows([Wanted(i, column, int(taking[i]), zone[i], finest, float(beside[i])) for i in at])
-    there[there] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
+    meets[meets] = [row.gap.size > 0 for row in made]  # else no point near the corner has a flank before it
     rows = [row for row in made if row.gap.size]
-    away = away[there]
+    away = away[meets]
     if away.size < 2:
         return None
-    smooth = sum(_read(*gear_material, roll[there], cache) for gear_material, roll in zip(gears, rolls, strict=True))
-    closing = pressed(rows, loads) - mesh.found.gap[there, column]
-    width = half_width(loads[:, None], radius[there], modulus)
+    smooth = sum(_read(*gear_material, roll[meets], cache) for gear_material, roll in zip(gears, rolls, strict=True))
+    closing = pressed(rows, loads) - mesh.found.gap[meets, column]
+    width = half_width(loads[:, None], radius[meets], modulus)
     out = (closing / loads[:, None] - smooth) / c - np.log(2 / width) - 0.5
     return RectBivariateSpline(np.log(loads), away, out, kx=1, ky=1), loads[0], loads[-1], away[0], away[-1]
 
@@ -169,9 +169,9 @@ def _table(pair, materials, line_load, end, span, cache):
 def pressed(rows, loads):
     """Approach ``(loads, rows)`` [mm] of each `gearfe.contact.rows.Row` under line loads [N/mm]."""
     flexibility, gap = (stacked([getattr(row, name) for row in rows]) for name in ("influence", "gap"))
-    there = np.arange(gap.shape[1]) < np.array([row.gap.size for row in rows])[:, None]
+    filled = np.arange(gap.shape[1]) < np.array([row.gap.size for row in rows])[:, None]
     case = (np.concatenate([values] * loads.size) for values in (flexibility, gap))
-    closing = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([there] * loads.size))
+    closing = approaches(*case, np.repeat(loads, len(rows)), np.concatenate([filled] * loads.size))
     return closing.reshape(loads.size, len(rows))
 
 

@@ -100,12 +100,12 @@ def _table(pair, materials, line_load, flanks, gear, roll, nominal, cache):
     gap, touches = mesh.found.gap[:, column], mesh.found.corner[:, column] == 0
     c, out = sum(half_plane(m) for m in materials), np.zeros(phase.size)
     for numbers, load in zip(np.arange(phase.size).reshape(away.shape), loads.tolist(), strict=True):
-        there = numbers[np.isfinite(gap[numbers]) & touches[numbers]]
-        rows = kink_rows(mesh, np.array([there, np.full(there.size, column)]).T, load)
+        on_flanks = numbers[np.isfinite(gap[numbers]) & touches[numbers]]
+        rows = kink_rows(mesh, np.array([on_flanks, np.full(on_flanks.size, column)]).T, load)
         if rows:
-            closing = pressed([rows[phase, column] for phase in there.tolist()], np.array([load]))[0] - gap[there]
-            width = half_width(load, mesh.radius[there, column], mesh.modulus)
-            out[there] = (closing / load - _straight(mesh, there, column)) / c - np.log(2 / width) - 0.5
+            closing = pressed([rows[phase, column] for phase in on_flanks.tolist()], np.array([load]))[0] - gap[on_flanks]
+            width = half_width(load, mesh.radius[on_flanks, column], mesh.modulus)
+            out[on_flanks] = (closing / load - _straight(mesh, on_flanks, column)) / c - np.log(2 / width) - 0.5
     out = out.reshape(away.shape)
     return unit, stays, (RectBivariateSpline(np.log(loads), places, out, kx=1, ky=1), loads[0], loads[-1])
 

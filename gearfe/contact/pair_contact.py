@@ -128,14 +128,14 @@ class PairContact:
         """
         names = ("flexibility", "gap", "coefficient", "radius", "column", "tilt")
         flexibility, gap, coefficient, radius, column, tilt = (stacked([contacts[name] for contacts in sets]) for name in names)
-        there = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
-        radius[~there] = 1.0
+        filled = stacked([np.ones(contacts["gap"].size, dtype=bool) for contacts in sets])
+        radius[~filled] = 1.0
         row = np.broadcast_to(np.arange(len(sets))[:, None], column.shape)
         least = np.full(smooth.shape, np.inf)
-        np.minimum.at(least, (row[there], column[there]), gap[there])
+        np.minimum.at(least, (row[filled], column[filled]), gap[filled])
         close = gap - least[row, column] <= sum(self.coefficients) * smooth[row, column]
         case = LineContacts(flexibility, gap, coefficient, radius, self.modulus, tilt)
-        force, approach, tangent, settled = line_contacts(case, line_load, there, there & ((coefficient > 0) | close))
+        force, approach, tangent, settled = line_contacts(case, line_load, filled, filled & ((coefficient > 0) | close))
         closed, fillet = [], []
         for k, contacts in enumerate(sets):
             carried = force[k, : contacts["gap"].size]
@@ -148,7 +148,7 @@ class PairContact:
                 fillet.append(k)
         line, pressure = np.zeros((2, len(sets), self.found.order.size))
         np.add.at(line, (row, column), force)
-        single, hat = coefficient > 0, there & (coefficient == 0)
+        single, hat = coefficient > 0, filled & (coefficient == 0)
         pressure[row[hat], column[hat]] = np.nan
         pressure[row[single], column[single]] = peak_pressure(force[single], radius[single], self.modulus)
         pressure[(line == 0) & np.isnan(pressure)] = 0.0
@@ -222,12 +222,12 @@ class PairContact:
         with np.errstate(invalid="ignore"):
             reached = away < CORNER * width
             second = (excess < pressed) & ((points.corner > 0) | (excess < SMOOTH * away**2 / (2 * radius)))
-        there = possible & np.isfinite(points.corner_gap)
-        corner = ((there & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
+        meets = possible & np.isfinite(points.corner_gap)
+        corner = ((meets & (reached | second)) * (1 << np.arange(4))[:, None, None]).sum(axis=0)
         smooth = (corner > 0) & (points.corner == 0)
         also = (corner > 0) & (points.corner > 0) & (points.nominal > start) & (points.nominal < end) & (-points.gap < pressed)
-        apart = also | (smooth & ~(there & reached).any(axis=0))  # the flanks touch on the path, besides
-        further = np.where(there & reached, away, 0.0).max(axis=0) + BEYOND * width
+        apart = also | (smooth & ~(meets & reached).any(axis=0))  # the flanks touch on the path, besides
+        further = np.where(meets & reached, away, 0.0).max(axis=0) + BEYOND * width
         zone = np.where(smooth, np.maximum(further, TIP_ZONE * gear.m_n), TIP_ZONE * gear.m_n)
         return corner, zone, np.where(apart, width, 0.0)
 
@@ -283,8 +283,8 @@ class PairContact:
         opening = self.opening_at(values["roll_1"], values["roll_2"], order)
         if opening is not None:
             total = total + opening @ self.stiffness @ np.swapaxes(opening, -1, -2)
-        out, there = [], np.isfinite(values["gap"])
-        for k, on in enumerate(there):
+        out, meets = [], np.isfinite(values["gap"])
+        for k, on in enumerate(meets):
             unknowns = {name: values[name][k, on] for name in ("gap", "coefficient", "radius", "tilt", "fillet")}
             unknowns |= {"column": column[on], "flexibility": total[k][on][:, on]}
             out.append(unknowns | {"opening": None if opening is None else opening[k, on]})

@@ -165,15 +165,15 @@ def hat_rows(contact, at, knots, kernels, host, tips):
     gap, other, way = met(contact, at_hats, roll, host)
     values = np.array([*(roll, other)[:: 1 if host == 0 else -1], gap, *way.turns, way.rate, *np.concatenate(way.parts)])
     cuts = np.cumsum(count)[:-1]
-    there = np.split(np.isfinite(gap), cuts)
-    parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), there, strict=True)]
+    meets = np.split(np.isfinite(gap), cuts)
+    parts = [row[:, on] for row, on in zip(np.split(values, cuts, axis=1), meets, strict=True)]
     order = points.order[[column for _, column in at]]
     bodies = [
         flexible.within([part[k] for part in parts], (sign * order).tolist())
         for k, (flexible, sign) in enumerate(zip(contact.flexibility, (1, -1), strict=True))
     ]
     made, log = [], np.log(gear.m_n)  # local is what happens within about a module
-    rows = zip(knots, kernels, there, parts, tips, order.tolist(), *bodies, strict=True)
+    rows = zip(knots, kernels, meets, parts, tips, order.tolist(), *bodies, strict=True)
     for hats, kernel, on, part, reach, tooth, *within in rows:
         roll_1, roll_2, gaps, *turns, rate = part[:6]
         kernel = hat_logarithm(hats[:, on], hats[:, on]) if kernel is None else kernel[np.ix_(on, on)]

@@ -109,9 +109,9 @@ def _numbered(dofs, part, n, stays, held, height):
 def _put_together(local, numbers, loads, n, place):
     """Front of a few elements and the loads ``(unknown, load, force)`` on them."""
     at, column, force = loads
-    there = np.zeros(place.size, dtype=bool)
-    there[numbers], there[column], there[n] = True, True, False
-    ids = there.nonzero()[0]
+    present = np.zeros(place.size, dtype=bool)
+    present[numbers], present[column], present[n] = True, True, False
+    ids = present.nonzero()[0]
     size = ids.size + 1  # what is held is put into a last row and column, which are dropped
     place[ids], place[n] = np.arange(ids.size), ids.size
     rows = place[numbers]

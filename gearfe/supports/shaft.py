@@ -80,8 +80,8 @@ class Shaft:
             )
         object.__setattr__(self, "bearings", _two("bearings", self.bearings, "positions [mm]"))
         stiff = self.bearing_stiffness
-        both = (stiff, stiff) if isinstance(stiff, Real) else stiff
-        object.__setattr__(self, "bearing_stiffness", _two("bearing_stiffness", both, "stiffnesses [N/mm]", least=0.0))
+        stiffnesses = (stiff, stiff) if isinstance(stiff, Real) else stiff
+        object.__setattr__(self, "bearing_stiffness", _two("bearing_stiffness", stiffnesses, "stiffnesses [N/mm]", least=0.0))
         if not hasattr(self.material, "shear_modulus"):
             raise ValueError(f"shaft: material = {self.material!r}, but give a Material")
         at = {"gear": self.gear, "bearings": self.bearings[0], "bearings ": self.bearings[1]}

@@ -165,8 +165,8 @@ def _numbers(name, values, counts):
     except TypeError:
         values = (values,)
     if len(values) not in counts or not all(map(is_finite, values)):
-        more = ", or three with the one half-way" if 3 in counts else ""
-        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{more}")
+        third = ", or three with the one half-way" if 3 in counts else ""
+        raise ValueError(f"{name} = {values!r}, but give two finite numbers, one for each end{third}")
     return tuple(float(value) for value in values)
 
 

@@ -107,8 +107,8 @@ class Front:
         """Parts of the width where the crack is open: ``((low, high), ...)`` [mm]."""
         places = [self.ends[0], *self.crossings(END * self.least), self.ends[1]]
         middles = (np.array(places[1:]) + places[:-1]) / 2
-        there = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
-        return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], there, strict=True) if inside)
+        deep = front(self.crack, self.width, middles)[0] > END * self.least * deepest(self.crack)
+        return tuple((a, b) for a, b, inside in zip(places[:-1], places[1:], deep, strict=True) if inside)
 
     def runs_out(self, end):
         """Whether the crack becomes shallow towards the height `end` of one of its parts, instead of ending deep."""

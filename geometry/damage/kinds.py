@@ -54,7 +54,7 @@ def _listed(damage, side):
 def split(damage: Iterable[Damage]) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
     """What weakens the body, and what takes contact away: two tuples."""
     damage = tuple(damage)
-    weakens, removes = (tuple(defect for defect in damage if defect.removes_contact is there) for there in (False, True))
+    weakens, removes = (tuple(defect for defect in damage if defect.removes_contact is removing) for removing in (False, True))
     return weakens, removes
 
 

@@ -158,8 +158,8 @@ class Spall:
             at = (p - i * (1 - rounded[0])) / rounded[0], (q - j * (1 - rounded[1])) / rounded[1]
             parts.append(in_circle(*at, dp / rounded[0], dq / rounded[1], 1e-24))
         low, high = np.array(parts).transpose(1, 0, 2, 3)
-        there = high > low
-        low, high = np.where(there, low, np.inf).min(axis=0), np.where(there, high, -np.inf).max(axis=0)
+        hit = high > low
+        low, high = np.where(hit, low, np.inf).min(axis=0), np.where(hit, high, -np.inf).max(axis=0)
         return np.where(high > low, low, 0.0), np.where(high > low, high, 0.0)
 
     def crossing(self, gear: Gear, roll: Sequence[float], z: Sequence[float]) -> list[tuple[float, float]]:
@@ -177,9 +177,9 @@ class Spall:
         roots = np.concatenate([_roots(limit) for limit in limits])
         places = np.unique([-1.0, *roots[np.abs(roots) < 1], 1.0])
         middles = (places[1:] + places[:-1]) / 2
-        there = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
+        covered = self.covers(np.polynomial.polynomial.polyval(middles, u), reach * middles)
         ends: list[list[float]] = []
-        for first, last, inside in zip(places[:-1], places[1:], there, strict=True):
+        for first, last, inside in zip(places[:-1], places[1:], covered, strict=True):
             if inside and ends and ends[-1][1] == first:
                 ends[-1][1] = last
             elif inside:

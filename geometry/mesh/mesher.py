@@ -87,8 +87,8 @@ def triangulate(loops, chains, ring, free=()):
 
     Nodes keep their order: loops, chains, free points, then those that gmsh adds.
     """
-    given = np.hstack([*loops, *(points for _, points in chains), np.reshape(free, (-1, 2)).T])
-    unit = np.abs(given).max() / SEEN
+    nodes = np.hstack([*loops, *(points for _, points in chains), np.reshape(free, (-1, 2)).T])
+    unit = np.abs(nodes).max() / SEEN
     loops, free = [np.round(points / unit, DECIMALS) for points in loops], np.round(np.asarray(free) / unit, DECIMALS)
     chains = [(start, np.round(points / unit, DECIMALS)) for start, points in chains]
     with gmsh_session() as gmsh:
@@ -122,7 +122,7 @@ def triangulate(loops, chains, ring, free=()):
     place = np.empty(int(tags.max()) + 1, dtype=np.int64)
     place[tags[order]] = np.arange(tags.size)
     points = unit * coords.reshape(-1, 3)[order, :2].T
-    points[:, : given.shape[1]] = given
+    points[:, : nodes.shape[1]] = nodes
     return points, place[triangles].T
 
 

@@ -160,11 +160,11 @@ class _Draft:
         """Lines along points ``(2, 4 k + 1)``: every fourth an end, in between quarter, middle, quarter; numbers from 1."""
         numbers, end = [], points.shape[1] - 1
         for i in range(0, points.shape[1], 2):
-            known = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
-            if known is None:
-                known = len(self.points)
+            number = numbers[0] if closed and i == end else {0: first, end: last}.get(i)
+            if number is None:
+                number = len(self.points)
                 self.points.append(points[:, i])
-            numbers.append(known)
+            numbers.append(number)
         for i, pair in enumerate(zip(numbers[:-1], numbers[1:], strict=True)):
             self.middles[tuple(sorted(pair))] = points[:, 2 * i + 1]
         start = len(self.lines)

@@ -153,10 +153,10 @@ def touching(pair: GearPair, nominal: NDArray, *, extended: bool = True) -> Touc
         corner_gap[:, near], corner_roll[:, :, near] = gaps, np.array([rolls_1, rolls_2])
         nearest = (least := np.argmin(gaps, axis=0), np.arange(least.size))
         first = gaps[nearest] < np.where(path[near], -ROUNDING * pair.gear_1.m_n, np.inf)
-        there, chosen = near.copy(), tuple(index[first] for index in nearest)
-        there[near] = first
-        roll_1[there], roll_2[there], corner[there] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
-        gap[there] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
+        at_corner, chosen = near.copy(), tuple(index[first] for index in nearest)
+        at_corner[near] = first
+        roll_1[at_corner], roll_2[at_corner], corner[at_corner] = rolls_1[chosen], rolls_2[chosen], chosen[0] + 1
+        gap[at_corner] = np.where(np.abs(gaps[chosen]) < ROUNDING * pair.gear_1.m_n, 0.0, gaps[chosen])
     radius = pair.relative_radius(roll_1, roll_2)
     radius = np.where(np.isfinite(gap) & (radius > 0), radius, 1.0)
     return Touch(roll_1, roll_2, gap, corner, corner_gap, corner_roll, radius)
@@ -246,8 +246,8 @@ def approach(
             break
     if mate is not None:
         arms = distances(sense * (gap / 2 - back), mate.slope(met))[2:]
-    there = np.abs(step) < SETTLED * pair.p_bt
-    return Met(*(np.where(there, values, np.nan) for values in (gap, met, *arms)))
+    settled = np.abs(step) < SETTLED * pair.p_bt
+    return Met(*(np.where(settled, values, np.nan) for values in (gap, met, *arms)))
 
 
 def opposite(pair: GearPair, roll: ArrayLike, nominal: ArrayLike, *, driver: bool = True) -> tuple[NDArray, NDArray]:

@@ -41,14 +41,14 @@ def flank_contacts(
     plain = contacts(pair, phase, extended=extended)
     if flanks is None:
         return plain
-    there, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
-    touch = first_touch(pair, flanks, plain.nominal[there], np.broadcast_to(plain.order, there.shape)[there], plain.gap[there])
+    meets, empty = np.isfinite(plain.gap), np.full(plain.gap.shape, np.inf)
+    touch = first_touch(pair, flanks, plain.nominal[meets], np.broadcast_to(plain.order, meets.shape)[meets], plain.gap[meets])
     out = Touch(
-        plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(there.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
-        np.full_like(plain.corner_roll, np.nan), np.ones(there.shape),
+        plain.roll_1.copy(), plain.roll_2.copy(), empty, np.zeros(meets.shape, dtype=int), np.full_like(plain.corner_gap, np.inf),
+        np.full_like(plain.corner_roll, np.nan), np.ones(meets.shape),
     )  # fmt: skip
     for values, met in zip(out, touch, strict=True):
-        values[..., there] = met
+        values[..., meets] = met
     return Contacts(plain.order, plain.nominal, *out)
 
 
@@ -87,7 +87,7 @@ def first_touch(
     """
     common = min(pair.gear_1.b, pair.gear_2.b)
     own_z = [None if z is None else z + (gear.b - common) / 2 for gear in (pair.gear_1, pair.gear_2)]
-    here = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
+    sections = forms[0].at(own_z[0]).of(order), forms[1].at(own_z[1]).of(order)
     rolls_1, rolls_2, gap = nominal.copy(), pair.mate_roll(nominal), np.full(nominal.shape, np.inf)
     near, corner = start < FAR * pair.gear_1.m_n, np.zeros(nominal.shape, dtype=int)
     never, start = ~np.isfinite(start), np.where(np.isfinite(start), start, 0.0)
@@ -98,12 +98,12 @@ def first_touch(
         if number in TIP and forms[number - 1].edge is not None:
             continue
         host, met = (rolls_1, rolls_2) if driver else (rolls_2, rolls_1)
-        distance, facing_roll, *_ = approach(pair, roll, nominal, driver=driver, start=start, flanks=here, order=order)
+        distance, facing_roll, *_ = approach(pair, roll, nominal, driver=driver, start=start, flanks=sections, order=order)
         gaps[number - 1] = np.where(np.isnan(distance) | never, np.inf, distance)
         places[:, number - 1] = (np.full(nominal.size, roll), facing_roll)[:: 1 if driver else -1]
         first = np.isfinite(gaps[number - 1]) & (gaps[number - 1] <= gap + 1e-12)
         host[first], met[first], gap[first], corner[first] = roll, facing_roll[first], distance[first], number
-    return Touch(rolls_1, rolls_2, gap, corner, gaps, places, _radius(pair, here, rolls_1, rolls_2, np.isfinite(gap)))
+    return Touch(rolls_1, rolls_2, gap, corner, gaps, places, _radius(pair, sections, rolls_1, rolls_2, np.isfinite(gap)))
 
 
 def _radius(pair, forms, roll_1, roll_2, there):

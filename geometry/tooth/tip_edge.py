@@ -95,8 +95,8 @@ class TipEdge:
             d = np.maximum(gear.outward * (gear.roll_a**2 - roll**2) / (gear.r_a + radius), 0.0)
             return middle + 2 * np.arcsin(np.sqrt(d * np.maximum(2 * self.rounding - d, 0.0) / (4 * radius * away)))
         first, cut = self._line
-        up, more = first @ cut, roll**2 - self.start**2
-        t = more / (up + gear.outward * np.sqrt(np.maximum(up**2 + more, 0.0)))
+        up, rise = first @ cut, roll**2 - self.start**2
+        t = rise / (up + gear.outward * np.sqrt(np.maximum(up**2 + rise, 0.0)))
         return np.arctan2(first[0] + t * cut[0], first[1] + t * cut[1])
 
     def removed(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -194,8 +194,8 @@ def _eliminated(body, plan, turn, room):
     if parts:
         ids = np.append(gone, rest)
         for part in parts:
-            others, matrix = _eliminated(body, part, turn, room)
-            _add(blocks, matrix, places(body, ids, others), first)
+            part_ids, matrix = _eliminated(body, part, turn, room)
+            _add(blocks, matrix, places(body, ids, part_ids), first)
     else:
         leaf(body, triangles, gone, rest, blocks)
     inside, across, matrix = blocks

@@ -172,12 +172,12 @@ def _apart(sector, chain, count):
         lengths = np.hypot(*ahead)
         normal = np.array([-ahead[1], ahead[0]]) / lengths
         pairs = np.array([chain(left), chain(right)])[:, :-1]
-        each = pairs.shape[1] // lengths.size
+        per_edge = pairs.shape[1] // lengths.size
         to_tip = np.cumsum(lengths[::-1])[::-1]
         for k in range(pairs.shape[1]):
-            if to_tip[k // each] > NEAR_TIP * lengths.sum():
+            if to_tip[k // per_edge] > NEAR_TIP * lengths.sum():
                 force = np.zeros((count, 3))
-                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // each], -normal[:, k // each]
+                force[pairs[0, k], :2], force[pairs[1, k], :2] = normal[:, k // per_edge], -normal[:, k // per_edge]
                 columns.append(force)
                 owner.append(i)
     return (np.stack(columns, axis=2) if columns else np.zeros((count, 3, 0))), owner

@@ -41,11 +41,11 @@ def _half(body, parity):
     """
     nodes = set(body.kind[: body.first_load].tolist())
     factors = {}
-    for (row_kind, column_kind), known in body.factors.items():
-        padded = np.zeros((4, known.shape[1] + 1, known.shape[2] + 1))
-        padded[:, :-1, :-1] = known
+    for (row_kind, column_kind), factor in body.factors.items():
+        padded = np.zeros((4, factor.shape[1] + 1, factor.shape[2] + 1))
+        padded[:, :-1, :-1] = factor
         padded[0, -1, -1] = row_kind in nodes and column_kind in nodes
-        (flat, axial), (flat_2, axial_2) = (_functions(n, parity) for n in known.shape[1:])
+        (flat, axial), (flat_2, axial_2) = (_functions(n, parity) for n in factor.shape[1:])
         terms = ((0, flat, flat_2), (0, axial, axial_2), (1, flat, axial_2), (1, axial, flat_2))
         terms += ((2, flat, axial_2), (2, axial, flat_2), (3, flat, flat_2), (3, axial, axial_2))
         factors[row_kind, column_kind] = np.array([padded[k][np.ix_(rows, columns)] for k, rows, columns in terms])
