@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geometry.checks import is_number
 
 COARSEST = 0.2  # at 0.4 sections are off by 0.2 %, at 0.2 by 0.5 %, below they follow no mesh any more (25 % at 1e-9)
-FINEST = 64.0  # edges of a 64th: k changes by less than rounding and contact leave
+FINEST = 64.0  # edges 64 times shorter: beyond, k changes by less than the errors of rounding and contact
 
 
 def number(name: str, value: Any) -> float:

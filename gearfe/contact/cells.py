@@ -15,7 +15,7 @@ from .pieces import cut
 
 BESIDE = 0.25  # modules from an end face: edge contact
 END = 0.25  # length of the cells at the ends of contact, where the pressure rises, against that of the longest
-GROWTH = 0.6  # of their length per length
+GROWTH = 0.6  # of a cell's length per length, away from the ends
 BEYOND = 12  # cells at least on the part of a line that is beyond the path of contact: gaps open there
 CARRYING = 20  # cells of a phase at least that carry load where the flanks' gaps change along the width
 SETTLED = 0.7  # the search for the carrying part of a line ends when a step leaves at least this much of its length

@@ -13,7 +13,7 @@ from ..flexibility.halfspace import pair_kernel, pair_slope, strip
 from ..flexibility.hertz import half_width
 
 SMOOTH = 8.0  # half widths over which the line load is averaged before the width of the strip follows it
-FLOOR = 1e-9  # of the load: least load of a cell where its logarithm is taken
+FLOOR = 1e-9  # least load of a cell, in parts of the whole load, where its logarithm is taken
 NEAR = 25.0  # strip distances within which the kernel follows the strips' widths; further away it no longer knows them
 
 

@@ -7,11 +7,11 @@ from geometry.tooth.profile import arc_at
 from ..flexibility.hertz import half_width
 from .rows import hat_rows
 
-REACH = 1.3  # a contact with a kink within so many half widths of the whole load is resolved hat by hat
+REACH = 1.3  # a contact with a kink within this many half widths of the whole load is resolved hat by hat
 ZONE = 1.8  # half length of the row, in half widths of the whole load
 FINEST, GROWTH = 5e-4, 0.5  # of hats: next to a kink [m_n], and how they grow by their distance from it
 WITHIN = 4.0  # hats over a half width
-STEEP = 20.0  # hats next to a kink that a wedge with its angle presses at least
+STEEP = 20.0  # hats at least over what is pressed of a wedge with the angle of the kink
 SHALLOW = 1e-3  # slopes of kinks below which no hat need be shorter
 
 

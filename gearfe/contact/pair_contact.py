@@ -22,9 +22,9 @@ from .rows import LEAST, RESOLVED, SHARP, Row, Wanted, corner_rows, finest_hat
 from .sharing import LineContacts, line_contact, line_contacts, stacked
 from .sliding import bounded, left_out, sliding
 
-CORNER = 1.0  # a contact whose middle is closer to a corner than so many half widths of the whole load is resolved hat by hat
-BEYOND = 1.5  # half widths on from its middle that such a row reaches at least
-KINK = 16  # of a pair whose contact reaches a kink of a flank; less: the corners of a row, bit n - 1 for corner n
+CORNER = 1.0  # a contact whose middle is closer to a corner than this many half widths of the whole load is resolved hat by hat
+BEYOND = 1.5  # such a row reaches at least this many half widths on from its middle
+KINK = 16  # mark of a pair whose contact reaches a kink of a flank; smaller: the corners of a row, bit n - 1 for corner n
 SMOOTH = 0.5  # of a smooth contact's parabola: a corner with a smaller gap than that is a second place of contact
 UNKNOWN = ("roll_1", "roll_2", "gap", "coefficient", "radius", "tilt", "turn_1", "turn_2", "fillet")  # of a contact
 OVERLAP = 1e-3  # crack faces overlapping by less than this part of the largest opening are left alone

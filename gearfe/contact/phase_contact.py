@@ -21,7 +21,7 @@ from .joined_lines import System
 from .kink_law import KinkLaw
 from .pieces import beyond, gaps, pieces_of
 
-FINEST = 1.5  # shortest cell, in Hertz half widths: a load finer than it is wide is no line
+FINEST = 1.5  # shortest cell, in Hertz half widths: the load on a shorter one would not be a line any more
 ALIKE = 1e-9  # largest difference of the cells of two halves that are solved once, in base pitches
 DEEPEST = 0.01  # modules: how deep the floor of a pit that covers a whole line is looked for
 FINE, ROUNDS = 9, 2  # places along the cell with the least gap, and how often they are looked for more closely
@@ -211,7 +211,7 @@ class PhaseContact:
         return [whole.some(slice(a, b)) if b > a else None for a, b in zip(ends[:-1], ends[1:], strict=True)]
 
     def _half_width(self, length):
-        """Hertz's, of the force on so much of a line [mm]."""
+        """Hertz's half width under the force on a contact line of a `length` [mm]."""
         return float(half_width(self.sized / length, self.radius, self.modulus))
 
     def _close(self, pieces, sizes):

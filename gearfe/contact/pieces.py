@@ -72,7 +72,7 @@ def beyond(pair, reach):
 
 
 def pieces_of(pair, phase, pits, bands, beta_b, further=(0.0, 0.0), closing=0.0):
-    """`Piece` of all contact lines of one phase that pits leave, up to so far beyond the path [mm].
+    """`Piece` of all contact lines of one phase that pits leave, on the path and up to `further` beyond it [mm].
 
     Pits deeper than `closing` take their pieces away: nothing can reach their floor. Those of others stay, on the floor. Line by
     line, from the end that touches first to the other.

@@ -24,7 +24,7 @@ from .directions import met
 FINEST, LONGEST, GROWTH = 5e-4, 0.1, 0.5  # of hats: next to a corner and at most [m_n], and how they grow per length
 RESOLVED = 4.0  # hats at a corner that a half width must span: a narrower contact falls between them
 SHARP = 100.0  # hats at a corner that the half width of a smooth contact spans: what an edge presses is as much narrower
-LEAST = 7.5e-6  # of hats, as long as a half width spans `RESOLVED` of them [m_n]
+LEAST = 7.5e-6  # length of the shortest hats, while a half width spans `RESOLVED` of them [m_n]
 WITHIN = 4.0  # hats over a half width where Hertz's contact shares a row with a corner
 
 

@@ -9,7 +9,7 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS = 20  # of the active set before non-negative least squares
+STEPS = 20  # steps of the active set before non-negative least squares are tried
 ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
 
 

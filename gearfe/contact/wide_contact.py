@@ -22,7 +22,7 @@ from .corner import in_fillet
 from .phase_contact import PhaseContact
 
 STEP = 0.2  # longest cell along the width [m_n]
-LONGER = 2  # cells that are one in what the estimate compares with
+LONGER = 2  # cells that become one in the coarser solution that the error estimate compares with
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 FAR = 4.0  # distance along the width, in lengths of the patches across it, from which plain quadrature is used
-PIECES = 20  # of `graded`
+PIECES = 20  # intervals of `graded`
 
 
 def half_space(material):

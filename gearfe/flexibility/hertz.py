@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-FAR = 30.0  # hats further apart than so many of their lengths act like forces at their centroids
+FAR = 30.0  # hats further apart than this many of their lengths act like forces at their centroids
 
 
 def half_plane(material, state="plane strain"):

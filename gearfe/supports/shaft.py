@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..material import Material
 
 THICKEST = 100  # largest diameter of a shaft over its smallest: more is a slip, and too much for the rounding of the solve
-NONE = 1e-10  # of the largest coupling possible: rounding
+NONE = 1e-10  # of the largest coupling possible: a smaller one is rounding
 
 
 @dataclass(frozen=True, slots=True)

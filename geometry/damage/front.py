@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 
 from .crack import SLACK, Crack, deepest, extremes, front
 
-# Down to where a mesh follows a front that runs out, in the largest depth: the first at which it does not fold.
+# Depths, in parts of the largest, down to which a mesh follows a front that runs out: the first at which it does not fold.
 LEAST = 0.1, 0.15, 0.2, 0.25
-# A front that runs out ends at that part of the least depth: what is lost beyond, int depth**2 dz to the first order, is added
-# before if the front is straight there.
+# A front that runs out ends at this part of the least depth: then as much of int depth**2 dz is added before as is lost beyond,
+# if the front is straight there.
 END = 2 / 3
 STEEP = 3.0  # how many times deeper a front gets, at most, over the height of a layer of elements where it is shallowest
 SAMPLES = 801  # heights at which a front is looked at first

@@ -20,7 +20,7 @@ from .outline import spaced
 # largest crack edge, crack tip
 SIZES = {"flank": 0.2, "corner": 0.1, "fillet": 0.2, "root": 0.4, "near": 0.5, "far": 1.2, "crack": 0.3, "crack tip": 0.06}
 ATTEMPTS = tuple((finer, algorithm) for own in ((5, 6), (8,)) for finer in (1.0, 1.07, 1.15, 1.24, 1.4, 1.6) for algorithm in own)
-# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last, for it gives one section now this mesh, now that
+# finer, gmsh's algorithm: it may leave triangles, or fold quads; 8 comes last: it does not always give the same mesh
 GROWTH = 0.4  # of the edge length per length, away from fine places
 BELOW = 2  # of the pieces of half a tooth: the one below the flank
 

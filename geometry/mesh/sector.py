@@ -29,7 +29,7 @@ SIZES = {
     "crack": 0.5,
     "crack tip": 0.004,
 }
-FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one of nothing
+FLAT = 1e-6  # least area of a triangle, in squares of its longest edge: three points of a straight crack make one without area
 ON_LINE = 0.05  # points of a ring closer to the line of a crack than this part of the ring's radius lie on it
 CHECKED = 6  # order at whose quadrature points the maps are checked
 GROWTH = 1.2  # of the edge length per length, away from fine places

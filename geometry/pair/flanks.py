@@ -9,7 +9,7 @@ from ..checks import by_gear, is_finite
 from ..tooth.flank_form import FlankForm
 from ..tooth.modified import Flank
 
-STEEPEST = 0.01  # misalignment by width: more is no gear pair with parallel axes
+STEEPEST = 0.01  # largest misalignment per width: with more the axes are not parallel
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,8 @@ from .relief import relief_start
 from .tables import covering, each_tooth
 from .tip_edge import TipEdge
 
-LARGEST = 0.1  # m_n: the tooth's flexibility is that of the unmodified tooth
-STEP = 1e-6  # m_n: over which a slope is taken
+LARGEST = 0.1  # most that may be removed [m_n]: the tooth's flexibility is that of the unmodified tooth
+STEP = 1e-6  # roll length over which a slope is taken [m_n]
 
 
 class FlankForm:

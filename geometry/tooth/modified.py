@@ -123,7 +123,7 @@ class Flank:
     eccentric_tooth: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse contradictory descriptions."""
+        """Reject contradictory descriptions."""
         for name in self.__slots__:
             value = getattr(self, name)
             if name in LISTS or (value is None and "_start_" in name) or name.startswith("end_"):

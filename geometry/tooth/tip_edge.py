@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 from .gear import Gear
 from .profile import cartesian, flank, flank_normal
 
-LARGEST = 0.3  # m_n: what is left of the flank must still be one
-FROM_FLANK = math.pi / 4  # between a chamfer and the flank it cuts
+LARGEST = 0.3  # largest rounding or chamfer [m_n]: enough of the flank must be left
+FROM_FLANK = math.pi / 4  # angle between a chamfer and the flank it cuts [rad]
 SOFT = -1e-9  # "kink" at the start of a rounding: no sudden bend, but a curvature so much larger that contact is resolved there
 
 

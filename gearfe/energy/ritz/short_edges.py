@@ -12,7 +12,7 @@ from geometry.mesh.triangle import ENDS, lobatto
 
 ORDER = 3  # of the triangles this is for
 SHORT = 0.8  # edges shorter than this are quadratic [m_n]
-TIP = 0.2  # but not so close to the tip of a crack [m_n]
+TIP = 0.2  # edges closer than this to the tip of a crack stay cubic [m_n]
 
 
 def quadratic_edges(gear, sector):
