@@ -98,6 +98,6 @@ def _impulsive(y, apart):
     product = late.prod(axis=0)
     slope = np.zeros_like(y)
     for i, m in enumerate(apart):
-        own = product * np.delete(late, i, axis=0).prod(axis=0)
-        slope += np.concatenate([own[m:], np.zeros(m)])
+        partial = product * np.delete(late, i, axis=0).prod(axis=0)
+        slope += np.concatenate([partial[m:], np.zeros(m)])
     return float((product**2).sum() / (y**2).sum() ** len(apart)), slope

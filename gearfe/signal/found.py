@@ -61,8 +61,8 @@ class Found:
 
     def told(self) -> str:
         """Channels with their units, and what else there is, in words."""
-        found = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
-        return ", ".join(found + self.other) or "nothing"
+        channels = [f"{name!r}{f' [{self.units[name]}]' if self.units.get(name) else ''}" for name in self.channels()]
+        return ", ".join(channels + self.other) or "nothing"
 
 
 def plain(name: str) -> str:

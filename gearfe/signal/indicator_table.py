@@ -60,11 +60,11 @@ def indicator_table(
                 f"{case}: {signal.values.size} samples at {signal.rate:g} Hz in {signal.unit}, but {healthy} has "
                 f"{first.values.size} at {first.rate:g} Hz in {first.unit}: compare like with like"
             )
-    found = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
-    reference = found[healthy]
+    indicators = {case: signal.indicators(mesh_frequency, fault_frequency, **options) for case, signal in signals.items()}
+    reference = indicators[healthy]
     return {
         case: {name: (value, increment(value, reference[name]) if reference[name] else math.nan) for name, value in row.items()}
-        for case, row in found.items()
+        for case, row in indicators.items()
     }
 
 
@@ -74,7 +74,7 @@ def table_text(table):
     What is a millionth or less in the healthy signal is taken for none there.
     """
     names = list(next(iter(table.values())))
-    grown = {case for case, row in table.items() if any(more and not math.isnan(more) for _, more in row.values())}
+    grown = {case for case, row in table.items() if any(growth and not math.isnan(growth) for _, growth in row.values())}
     lines = [["indicator", *table], ["---"] * (len(table) + 1)]
     lines += [[LABELS.get(name, name), *(_cell(*row[name], case in grown) for case, row in table.items())] for name in names]
     return "\n".join(map(table_row, lines))

@@ -174,7 +174,7 @@ def _split_antoni(x, parts):
     if parts == 3:
         return [upfirdn(first * np.exp(2j * np.pi * i * k / 6), x, down=1)[2 : x.size : 3] for i in range(3)]
     high = first[-2::-1] * (-1.0) ** k[1:]
-    low, upper = (upfirdn(one, x, down=1)[1 : x.size : 2] for one in (first, high))
+    low, upper = (upfirdn(kernel, x, down=1)[1 : x.size : 2] for kernel in (first, high))
     return [low, upper * (-1.0) ** (1 + np.arange(upper.size))]
 
 

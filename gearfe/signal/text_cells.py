@@ -25,8 +25,8 @@ def cells_of(line, separator, count=None):
         cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=separator))]
     else:
         cells = [cell.strip().strip('"').strip() for cell in whole.split(separator)]
-    more = 0 if count is None or separator is None else min(count - len(cells), line[len(whole) :].count(separator))
-    return cells + [""] * more
+    empty = 0 if count is None or separator is None else min(count - len(cells), line[len(whole) :].count(separator))
+    return cells + [""] * empty
 
 
 def plain_number(cell, mark, group=""):
@@ -47,9 +47,9 @@ def is_number(cell, mark, group=""):
 
 def numbers(line, separator, mark, group=""):
     """Count of the cells of a row if they are numbers, or numbers beside dates and times of a clock; else 0."""
-    found = cells_of(line, separator)
-    rest = [cell for cell in found if not is_number(cell, mark, group)]
-    return len(found) if len(rest) < len(found) and all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest) else 0
+    cells = cells_of(line, separator)
+    rest = [cell for cell in cells if not is_number(cell, mark, group)]
+    return len(cells) if len(rest) < len(cells) and all(CLOCK.fullmatch(cell) or DATE.fullmatch(cell) for cell in rest) else 0
 
 
 def value(cell, mark, group=""):

@@ -41,23 +41,23 @@ def text_table(path: str | os.PathLike[str], lines: list[str], header: str | Non
     numbered = [(i, line.strip()) for i, line in enumerate(lines, 1) if line.strip()]
     comments = [line.lstrip("#% ") for _, line in numbered if line[0] in "#%"]
     rows = [(i, line) for i, line in numbered if line[0] not in "#%"]
-    given = None if header is None else re.split(r"[,;\t]", header)
-    way = _way(rows, given)
+    columns = None if header is None else re.split(r"[,;\t]", header)
+    way = _way(rows, columns)
     if way is None:
         first = f"; its first line is {numbered[0][1][:60]!r}" if numbered else ": it is empty"
         raise ValueError(f"{path}: no rows of numbers{first}")
     titles = [line for _, line in rows[: way.above]]
-    found = Found({})
-    names = given or _names(titles, comments, way, found)
+    recording = Found({})
+    names = columns or _names(titles, comments, way, recording)
     pairs = [named(cell) for cell in names]
     if len({name for name, _ in pairs}) < len(pairs):
         raise ValueError(f"{path}: two columns have the same name ({', '.join(name for name, _ in pairs)})")
     table = _table(path, rows[way.above :], way, len(names))
-    found.vectors, found.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
-    _clocks(path, found, cells_of(rows[way.above][1], way.separator, len(names)))
+    recording.vectors, recording.units = dict(zip([name for name, _ in pairs], table.T, strict=True)), dict(pairs)
+    _clocks(path, recording, cells_of(rows[way.above][1], way.separator, len(names)))
     for line in (*titles, *comments):
-        _state(path, found, line, way.mark)
-    return found
+        _state(path, recording, line, way.mark)
+    return recording
 
 
 def named(cell: str) -> tuple[str, str]:
@@ -71,11 +71,11 @@ def _way(rows, given):
     best, most = _ways(rows, [(mark, "") for mark in ".,"], 0)
     fitting = _fitting(rows, best, given)
     if most < len(rows[-LOOKED:]) or not fitting:  # some rows are no numbers, unless thousands are parted
-        grouped, more = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
-        found = _fitting(rows, grouped, given)
-        if more > most:
-            best, fitting = grouped, found
-        fitting = fitting or found
+        grouped, grouped_most = _ways(rows, [(mark, group) for mark in GROUPS for group in GROUPS[mark]], most)
+        grouped_fitting = _fitting(rows, grouped, given)
+        if grouped_most > most:
+            best, fitting = grouped, grouped_fitting
+        fitting = fitting or grouped_fitting
     return next(iter(fitting or best), None)
 
 
@@ -153,9 +153,9 @@ def _by_cell(path, rows, way, count):
         shown = line if len(line) <= 80 else f"{line[:80]}..."
         raise ValueError(f"{path}, line {rows[wrong][0]}: {shown!r} is not a row of {count} numbers")
     if way.group:
-        one = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
-        told = f"thousands are taken to be parted: {one!r} is {plain_number(one, way.mark, way.group)}"
-        warnings.warn(f"{path}: {told}", stacklevel=6)
+        example = next((cell for row in cells for cell in row if GROUPS[way.mark][way.group].fullmatch(cell)), cells[0][0])
+        meaning = f"thousands are taken to be parted: {example!r} is {plain_number(example, way.mark, way.group)}"
+        warnings.warn(f"{path}: {meaning}", stacklevel=6)
     empty = [i for (i, _), row in zip(rows, cells, strict=True) if "" in row]
     if empty:
         warnings.warn(f"{path}: {len(empty)} rows have empty cells, the first in line {empty[0]}: read as missing", stacklevel=6)

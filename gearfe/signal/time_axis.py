@@ -32,22 +32,24 @@ def step_of(path: Any, time: NDArray[np.float64], rate: float | None = None) -> 
         return step
     printed = rounding(time)
     coarse, i = float(printed.max()), int(np.argmax(off)) if step > 0 else time.size - 1
-    told = f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
+    problem = f"{path}: times must rise in equal steps, but sample {i} at {time[i]:.9g} s does not fit a step of {step:.6g} s: "
     if not step > 0 or coarse < UNEVEN * step or (np.diff(time) < 0).any():
         gap = _gap(time)
-        raise ValueError(f"{path}: {gap}" if gap else f"{told}a gap, or a varying rate; resample first")
+        raise ValueError(f"{path}: {gap}" if gap else f"{problem}a gap, or a varying rate; resample first")
     if rate is None and coarse > BLURRED * (time[-1] - time[0]):
-        raise ValueError(f"{told}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
-    found, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
+        raise ValueError(f"{problem}they are rounded to {coarse:g} s; print them with more digits, or give rate= too")
+    fitted, miss = _fitted(time, step, printed / 2) if rate is None else (1 / rate, _missed(time, 1 / rate, printed / 2))
     if miss > 1 + CLOSE:
-        more = "" if rate is None else f", or another rate than {rate:g} Hz"
-        raise ValueError(f"{told}more than their rounding to {coarse:g} s: a gap, or a varying rate{more}; resample first")
+        other_rate = "" if rate is None else f", or another rate than {rate:g} Hz"
+        raise ValueError(
+            f"{problem}more than their rounding to {coarse:g} s: a gap, or a varying rate{other_rate}; resample first"
+        )
     warnings.warn(
-        f"{path}: times are rounded to {coarse:g} s; all of them fit {1 / found:.6g} Hz, which is assumed (a sample lost near an "
-        "end would not be seen)",
+        f"{path}: times are rounded to {coarse:g} s; all of them fit {1 / fitted:.6g} Hz, which is assumed (a sample lost near "
+        "an end would not be seen)",
         stacklevel=6,
     )
-    return found
+    return fitted
 
 
 def _gap(time):
@@ -59,9 +61,9 @@ def _gap(time):
         return ""
     worst = int(leaps[np.argmax(steps[leaps])])
     lost = round(steps[worst] / usual) - 1
-    more = f", the widest of {leaps.size} gaps" if leaps.size > 1 else ""
+    widest = f", the widest of {leaps.size} gaps" if leaps.size > 1 else ""
     between = f"between {time[worst]:.9g} and {time[worst + 1]:.9g} s"
-    return f"{lost} samples are missing {between}{more}; cut the file there, or fill the gap"
+    return f"{lost} samples are missing {between}{widest}; cut the file there, or fill the gap"
 
 
 def rounding(time: NDArray[np.float64]) -> NDArray[np.float64]:
