@@ -159,12 +159,12 @@ def _each(what, depth, rate, k, c, law):
     kinds = set(law.kind.tolist()) or {0}
     if len(kinds) == 1:
         return getattr(LAWS[kinds.pop()], what)(depth, rate, k, c, law)
-    given = np.broadcast_arrays(depth, rate, k, c)
-    out = np.empty(given[0].shape if what == "force" else (2, *given[0].shape))
+    arguments = np.broadcast_arrays(depth, rate, k, c)
+    out = np.empty(arguments[0].shape if what == "force" else (2, *arguments[0].shape))
     for kind in kinds:
         mine = law.kind == kind
-        some = SimpleNamespace(**{name: values[mine] for name, values in vars(law).items()})
-        out[..., mine] = getattr(LAWS[kind], what)(*(one[..., mine] for one in given), some)
+        selected = SimpleNamespace(**{name: values[mine] for name, values in vars(law).items()})
+        out[..., mine] = getattr(LAWS[kind], what)(*(argument[..., mine] for argument in arguments), selected)
     return out
 
 

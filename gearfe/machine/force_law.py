@@ -165,7 +165,7 @@ class ForceLaw:
             raise ValueError(
                 "a law of force needs a list of StiffnessCurve, each with its load: mesh_stiffness(pair, [F1, F2, ...])"
             )
-        curves = sorted(curves, key=lambda one: float(one.meta["force_N"]))
+        curves = sorted(curves, key=lambda loaded: float(loaded.meta["force_N"]))
         if any(curve.phase.shape != curves[0].phase.shape or not np.allclose(curve.phase, curves[0].phase) for curve in curves):
             raise ValueError("the curves of a law of force must have the same phases: solve all loads in one call")
         order = np.argsort(curves[0].phase, kind="stable")
@@ -201,15 +201,15 @@ class ForceLaw:
         k, depths = self.secant.k, self.secant.depths
         depth = np.array([np.interp(force, row * depths, depths) for row in k])
         phase = np.asarray(self.secant.start + self.secant.width * np.arange(len(k)), dtype=np.float64)
-        found = self.secant(phase, depth)[0]
-        return (phase[1:-2], found[1:-2]) if self.periodic else (phase, found)
+        secant = self.secant(phase, depth)[0]
+        return (phase[1:-2], secant[1:-2]) if self.periodic else (phase, secant)
 
 
 def _table(law):
     """`Secant` of a law: at each phase over depth, then over phase by monotone cubics (F. N. Fritsch, J. Butland, 1984)."""
     deepest = float(law.depth.max())
     depth = deepest * np.linspace(0.0, 1.0, COLUMNS) ** 2
-    k = np.array([_secant(*one, law.load, depth) for one in zip(law.depth, law.tangent, law.pairs, strict=True)])
+    k = np.array([_secant(*row, law.load, depth) for row in zip(law.depth, law.tangent, law.pairs, strict=True)])
     phase = law.phase
     if not law.periodic:
         rows = max(3, round((phase[-1] - phase[0]) * ROWS) + 1)
@@ -285,13 +285,13 @@ def force_law(
         raise ValueError(f"span = {span!r}, but a law of force is of a 'cycle', or of the engagement of a damaged 'tooth'")
     case, how = asked("force_law", pair, list(forces), material, options | {"phases": phases, "span": span})
     curves = solve(case, how)
-    own = ForceLaw.of([curve.without_supports() for curve in curves], force)
-    counts = np.concatenate([own.pairs, own.pairs[:1]]) if span == "cycle" else own.pairs
-    ends = np.append(own.phase, own.phase[0] + 1) if span == "cycle" else own.phase
+    law = ForceLaw.of([curve.without_supports() for curve in curves], force)
+    counts = np.concatenate([law.pairs, law.pairs[:1]]) if span == "cycle" else law.pairs
+    ends = np.append(law.phase, law.phase[0] + 1) if span == "cycle" else law.phase
     changing = (np.maximum(counts[:-1], counts[1:]).max(axis=1) != np.minimum(counts[:-1], counts[1:]).min(axis=1)).nonzero()[0]
     if not changing.size:
-        return own
+        return law
     parts = np.arange(1, BETWEEN + 1) / (BETWEEN + 1)
-    more = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
-    finer = solve(case, replace(how, phases=more, span="cycle"))
+    extra = (ends[changing, None] + np.diff(ends)[changing, None] * parts).ravel()
+    finer = solve(case, replace(how, phases=extra, span="cycle"))
     return ForceLaw.of([joined(both).without_supports() for both in zip(curves, finer, strict=True)], force)

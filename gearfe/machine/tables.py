@@ -48,14 +48,14 @@ class Load:
 
     def __post_init__(self) -> None:
         """Refuse what is no load."""
-        given: Any = self.value
-        if callable(given):
+        value: Any = self.value
+        if callable(value):
             return
-        if not isinstance(given, (tuple, list)) and np.ndim(given) == 0:
-            if not math.isfinite(given):
-                raise ValueError(f"load {self.name} = {given}, but it must be finite")
+        if not isinstance(value, (tuple, list)) and np.ndim(value) == 0:
+            if not math.isfinite(value):
+                raise ValueError(f"load {self.name} = {value}, but it must be finite")
             return
-        times, values = (np.asarray(part, dtype=float) for part in given)
+        times, values = (np.asarray(part, dtype=float) for part in value)
         if times.ndim != 1 or times.shape != values.shape or not times.size:
             raise ValueError(f"load {self.name}: give as many times as values, got shapes {times.shape} and {values.shape}")
         if not (np.isfinite(times).all() and np.isfinite(values).all()):
@@ -66,21 +66,21 @@ class Load:
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
         """Value at times `t`."""
-        given: Any = self.value
-        if callable(given):
-            found = np.broadcast_to(np.asarray(given(t), dtype=float), np.shape(t))
-            if not np.isfinite(found).all():
+        value: Any = self.value
+        if callable(value):
+            values = np.broadcast_to(np.asarray(value(t), dtype=float), np.shape(t))
+            if not np.isfinite(values).all():
                 raise ValueError(f"load {self.name}: its function gives a value that is not finite (nan or inf)")
-            return found
-        if np.ndim(given) == 0:
-            return np.full(np.shape(t), float(given))
-        return np.interp(np.asarray(t, dtype=float), *given)
+            return values
+        if np.ndim(value) == 0:
+            return np.full(np.shape(t), float(value))
+        return np.interp(np.asarray(t, dtype=float), *value)
 
     @property
     def breaks(self) -> NDArray[np.float64]:
         """Times at which the history bends or jumps [s]."""
-        given: Any = self.value
-        return np.unique(given[0]) if not callable(given) and np.ndim(given) else np.empty(0)
+        value: Any = self.value
+        return np.unique(value[0]) if not callable(value) and np.ndim(value) else np.empty(0)
 
 
 def pulses(
@@ -190,9 +190,9 @@ class Machine:
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
         rows: tuple[Spring | GearMesh | Load, ...] = (*self.springs, *self.meshes, *self.loads)
-        for one in rows:
-            if np.shape(one.row) != (n,) or not np.isfinite(one.row).all():
-                raise ValueError(f"{one.name}: its row needs {n} finite numbers, one per degree of freedom")
+        for element in rows:
+            if np.shape(element.row) != (n,) or not np.isfinite(element.row).all():
+                raise ValueError(f"{element.name}: its row needs {n} finite numbers, one per degree of freedom")
         for s in self.springs:
             if not (math.isfinite(s.k) and math.isfinite(s.c) and s.k >= 0 and s.c >= 0):
                 raise ValueError(f"spring {s.name}: k = {s.k}, c = {s.c}, but they must be finite and not negative")
@@ -213,7 +213,7 @@ class Machine:
 
     def __repr__(self):
         """One line: how many of everything."""
-        meshes = ", ".join(one.name for one in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
+        meshes = ", ".join(mesh.name for mesh in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
         speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (
             f"<Machine: {len(self.dofs)} degrees of freedom, {len(self.springs)} springs, {len(self.meshes)} meshes ({meshes}), "
@@ -291,7 +291,7 @@ class Machine:
 
     def load(self, t: float = 0.0) -> NDArray[np.float64]:
         """Sum of the loads at time `t` ``(n,)``."""
-        return sum((one.row * float(one(t)) for one in self.loads), np.zeros(len(self.dofs)))
+        return sum((load.row * float(load(t)) for load in self.loads), np.zeros(len(self.dofs)))
 
     def rest(self, t: float | None = None) -> NDArray[np.float64]:
         """Displacements ``(n,)`` under the loads of time `t` (0 if None) at the mean mesh stiffnesses, errors disregarded.
