@@ -71,23 +71,23 @@ def _filtered(run, machine, flat, plan, z, steps, start, counts):
     width = excitation.changing(machine, flat)[0].size + (2 * m if flat.error_mesh.size else m)
 
     def pieces():
-        now = z
+        state = z
         for first in range(0, steps, PIECE):
             count = min(PIECE, steps - first)
             acting = np.empty((count + 1, width))
-            states, stats = run(now, count, 1, start=start + plan.h * first, acting=acting)
-            now, new = states[-1].copy(), slice(1 if first else 0, None)
+            states, stats = run(state, count, 1, start=start + plan.h * first, acting=acting)
+            state, new = states[-1].copy(), slice(1 if first else 0, None)
             for name in total:
                 total[name] += stats[name]
-            some = states[-first % every :: every]
+            sampled = states[-first % every :: every]
             at = -(-first // every)
-            kept[at : at + len(some)] = some
+            kept[at : at + len(sampled)] = sampled
             yield np.concatenate([states[new], acting[new]], axis=1)
 
     done, whole = 0, _channels(machine, flat, plan)
-    for told in thinned_pieces(pieces(), counts):
-        channels[done : done + len(told)] = whole(told)
-        done += len(told)
+    for piece in thinned_pieces(pieces(), counts):
+        channels[done : done + len(piece)] = whole(piece)
+        done += len(piece)
     return kept, total, channels
 
 

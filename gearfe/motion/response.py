@@ -87,8 +87,8 @@ class Response:
     def names(self) -> list[str]:
         """Names of all channels."""
         dofs = self.machine.dofs
-        own = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
-        return [*own, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
+        motions = [*dofs, *(f"{name} {kind}" for kind in KINDS for name in dofs)]
+        return [*motions, *(f"{kind} {mesh.name}" for kind in MESH for mesh in self.machine.meshes)]
 
     def unit(self, name: str) -> str:
         """Unit of a channel."""
@@ -164,13 +164,13 @@ class Response:
         save_as(".mat", path, self._content(names))
 
     def _content(self, names):
-        found = self._columns(names)
-        units = [self.unit(name) for name in found]
-        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(found.items(), units, strict=True)}
-        values = np.array(list(found.values())).T
-        arrays = {"time": self.time, "values": values, "names": np.array(list(found)), "units": np.array(units)}
-        told = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
-        return Content("gearfe response, version 1", columns, arrays, self.stats, told)
+        channels = self._columns(names)
+        units = [self.unit(name) for name in channels]
+        columns = {"time [s]": self.time} | {f"{name} [{u}]": v for (name, v), u in zip(channels.items(), units, strict=True)}
+        values = np.array(list(channels.values())).T
+        arrays = {"time": self.time, "values": values, "names": np.array(list(channels)), "units": np.array(units)}
+        array_units = {"time": "s", "values": "by row of units", "names": "-", "units": "-"}
+        return Content("gearfe response, version 1", columns, arrays, self.stats, array_units)
 
     def _columns(self, names):
         names = [*self.machine.dofs, *(f"force {m}" for m in self._meshes)] if names is None else list(names)

@@ -60,7 +60,7 @@ def unseen(machine, start, duration, h):
     A run knows them at quarters of its steps and draws straight lines between. Asked at times by chance over the whole run, not
     on a stretch: a burst, or a tone far above the meshes, shows.
     """
-    functions = [one for one in machine.loads if callable(one.value)]
+    functions = [applied for applied in machine.loads if callable(applied.value)]
     if not functions:
         return 0.0
     t = start + duration * np.random.default_rng(0).random(PROBES)
@@ -137,23 +137,23 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
 
     def error(h):
         try:
-            found = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
+            assessed = estimate(machine, duration, h, initial, begin=begin, adapt=adapt)
         except RuntimeError:
             if h < 0.9 * low:
                 raise
             return Estimate(math.inf, False, length, 0.0, math.inf)
         if watch is not None:
-            watch(found.cost)
-        return found
+            watch(assessed.cost)
+        return assessed
 
     length = stretch(machine, duration, begin)[1]
     h = min(default_step(machine), length, longest)
     low = h / 2**HALVINGS
-    found = error(h)
-    while found.error > (WANTED_OPEN if found.lost else WANTED) and h > low:
-        h *= max(0.25, min(0.8, 0.9 * (WANTED / found.error) ** 0.25)) if not found.lost else 0.5
-        found = error(h)
-    return h, found
+    assessed = error(h)
+    while assessed.error > (WANTED_OPEN if assessed.lost else WANTED) and h > low:
+        h *= max(0.25, min(0.8, 0.9 * (WANTED / assessed.error) ** 0.25)) if not assessed.lost else 0.5
+        assessed = error(h)
+    return h, assessed
 
 
 class Estimate(NamedTuple):
@@ -198,9 +198,9 @@ def estimate(machine, duration, h, initial=None, *, begin=0.0, adapt=False, at=N
         one = fixed_steps(machine, length, steps, initial, **options).stats["seconds"]
     cost = max(two - one, 0.0) / length
     *coarse, fine = runs
-    more = ROUGH if rough else SMOOTH
-    error = more * max(max(difference(one, fine)) for one in coarse)
-    acceleration = more * max(acceleration_difference(one, fine) for one in coarse)
+    margin = ROUGH if rough else SMOOTH
+    error = margin * max(max(difference(one, fine)) for one in coarse)
+    acceleration = margin * max(acceleration_difference(one, fine) for one in coarse)
     return Estimate(error, runs[1].stats["losses"] > 0, length, cost, acceleration)
 
 
@@ -229,7 +229,7 @@ def estimate_along(response, found):
         left = np.abs(values[values.imag > 0]).max(initial=0.0) ** (2 * length / h)  # of a squared error, after a stretch
         grown = math.sqrt(sum(left**i for i in range(math.ceil(duration / length))))
     state = np.concatenate([response.q, response.v], axis=1)
-    told = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), one)) for i, one in places]
-    error, acceleration = (max(getattr(one, key) for one in (found, *told)) * grown for key in ("error", "acceleration"))
-    lost = any(one.lost for one in (found, *told))
-    return Estimate(error, lost, sum(one.length for one in told), found.cost, acceleration)
+    estimates = [estimate(machine, duration, h, state[i], adapt=True, at=(float(time[i]), span)) for i, span in places]
+    error, acceleration = (max(getattr(span, key) for span in (found, *estimates)) * grown for key in ("error", "acceleration"))
+    lost = any(span.lost for span in (found, *estimates))
+    return Estimate(error, lost, sum(span.length for span in estimates), found.cost, acceleration)
