@@ -60,8 +60,8 @@ def pads_on(whole: WholeGear, support: RimSupports, width: float, moved: NDArray
         local.append(_sharper(whole, support.width, number * edge, edge, weight)[np.ix_(held, held)])
     p = len(held) * terms
     total = np.zeros((support.count * p,) * 2)
-    for k, own in enumerate(local):
-        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = own.transpose(0, 2, 1, 3).reshape(p, p)
+    for k, pad in enumerate(local):
+        total[k * p : (k + 1) * p, k * p : (k + 1) * p] = pad.transpose(0, 2, 1, 3).reshape(p, p)
     load = np.concatenate(columns, axis=1).reshape(z, 2 * nodes, -1)
     return Pads(load, np.concatenate(turns, axis=1), total + np.diag(np.concatenate(compliance)), moved)
 
@@ -130,5 +130,5 @@ def among(pads):
 def by_teeth(pads):
     """Displacement ``(p, z, PLACES)`` [mm per N/mm] of pads under loads on the teeth."""
     z, waves = pads.load.shape[0], _series(pads.load)
-    found = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
-    return np.fft.irfft(found.conj(), n=z, axis=0).transpose(1, 0, 2)
+    spectrum = np.einsum("hrp,hra->hpa", waves.conj(), pads.moved[:, :, :PLACES], optimize=True)
+    return np.fft.irfft(spectrum.conj(), n=z, axis=0).transpose(1, 0, 2)
