@@ -71,8 +71,8 @@ def checked_machine(file, table):
 def checked_bodies(file, tables):
     """Masses [kg] and inertias [kg m2] by body, of none or of all."""
     if not isinstance(tables, dict) or (tables and set(tables) != set(BODIES)):
-        told = f"{', '.join(tables)}" if isinstance(tables, dict) else shown(tables)
-        raise ValueError(f"{file} [machine.bodies]: {told}, but give a table for each of {', '.join(BODIES)}, or none")
+        names = f"{', '.join(tables)}" if isinstance(tables, dict) else shown(tables)
+        raise ValueError(f"{file} [machine.bodies]: {names}, but give a table for each of {', '.join(BODIES)}, or none")
     rows = {name: checked(file, f"machine.bodies.{name}", table, BODY) for name, table in tables.items()}
     for name, row in rows.items():
         if not min(row.values()) > 0:

@@ -41,7 +41,7 @@ def checked(file, where, table, keys, extra=()):
 
 def named_tables(file, kind, tables):
     """Refuse what is no table of tables by name, as ``[flank.NAME]`` writes them."""
-    if isinstance(tables, list) and all(isinstance(one, dict) for one in tables):
+    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
         raise ValueError(f"{file}: [[{kind}]] is a list of tables, but they have names: write [{kind}.NAME]")
     if not isinstance(tables, dict):
         raise ValueError(f"{file}: {kind} = {shown(tables)}, but give tables with names: [{kind}.NAME]")
@@ -113,9 +113,9 @@ def known_path(file, where, key, tables):
     """
     value = tables
     for part in key.split("."):
-        if isinstance(value, list) and all(isinstance(one, dict) and part in one for one in value):
-            found = [one[part] for one in value]
-            value = found[0] if all(one == found[0] for one in found) else found
+        if isinstance(value, list) and all(isinstance(entry, dict) and part in entry for entry in value):
+            values = [entry[part] for entry in value]
+            value = values[0] if all(entry == values[0] for entry in values) else values
         elif isinstance(value, dict) and part in value:
             value = value[part]
         else:
