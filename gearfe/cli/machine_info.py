@@ -30,7 +30,7 @@ def lines():
 
     yield f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     yield from (f"{name} {version(name) or 'is not installed'}" for name in ("gearfe", *requirements().get("", ())))
-    yield from (f"{name} {found}" for name in OPTIONAL if (found := version(name)))
+    yield from (f"{name} {installed}" for name in OPTIONAL if (installed := version(name)))
     yield f"threads: {os.environ.get('OMP_NUM_THREADS', 'all')} of {os.cpu_count()} cores (OMP_NUM_THREADS)"
     yield f"memory: {free_memory() / 1e9:.1f} GB free"
     ordered = "by METIS" if dissects() else "by least degree: pip install pymetis, where there is one, for an order twice as good"

@@ -22,7 +22,7 @@ STEERING = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u20
 
 def harmless(text):
     """Text in which characters that steer a terminal are spelled out; line ends and tabs stay."""
-    return STEERING.sub(lambda found: ascii(found[0])[1:-1], text)
+    return STEERING.sub(lambda control: ascii(control[0])[1:-1], text)
 
 
 class Harmless:
@@ -58,8 +58,8 @@ def as_options(error, options):
     text, names = str(error), "|".join(map(re.escape, options))
     if not names:
         return text
-    text = re.sub(rf"\b({names})_frequency = ", lambda found: f"--{found[1]} ", text)  # of the verb `signal`: --mesh, --fault
-    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda found: f"--{found[1]}", text)
+    text = re.sub(rf"\b({names})_frequency = ", lambda match: f"--{match[1]} ", text)  # of the verb `signal`: --mesh, --fault
+    return re.sub(rf"(?<![\w.-])({names})=(?![=\w]),?", lambda match: f"--{match[1]}", text)
 
 
 def run(work, options=()):
