@@ -80,7 +80,7 @@ def cache(place):
 
 
 def advice():
-    """What would make it faster, or is not possible yet."""
+    """Lines on what would make gearfe faster on this machine, or what it cannot do yet."""
     for name, (module, good) in OPTIONAL.items():
         if importlib.util.find_spec(module) is None:
             yield f"not installed: {name}, for {good}: {command(name)}"

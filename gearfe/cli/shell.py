@@ -3,8 +3,8 @@
 Texts of files (titles, names of cases and columns, paths) are printed by every verb; all of it passes here, where characters
 that would steer the terminal are spelled out.
 
-0: done. 1: something given cannot be, or cannot be written; standard error says what. 2: wrong options (argparse). 130:
-interrupted. 141: whoever read the output has gone (as of a program ended by SIGPIPE).
+0: done. 1: an input is impossible, or a file cannot be written; standard error says which. 2: wrong options (argparse). 130:
+interrupted. 141: the program that read the output has ended (as after SIGPIPE).
 """
 
 import codecs
@@ -96,7 +96,7 @@ def run(work, options=()):
 
 
 def _forget_output():
-    """What is still buffered can go nowhere: keep the interpreter from trying again at its end."""
+    """Send what is still buffered nowhere, so that the interpreter does not try again to write it when it ends."""
     if sys.stdout is not None:
         with contextlib.suppress(OSError, ValueError):
             nowhere = os.open(os.devnull, os.O_WRONLY)

@@ -39,7 +39,7 @@ def signal(arguments):
 
 
 def _told(one):
-    """What a record is: samples, rate, length, and the turns of its shaft."""
+    """One line on a record: samples, rate, length, and the turns of its shaft."""
     import numpy as np
 
     text = f"{one.name}: {one.values.size} samples at {one.rate:.7g} Hz, {one.duration:.4g} s"

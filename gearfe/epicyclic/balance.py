@@ -17,10 +17,10 @@ from scipy.optimize import nnls
 
 from ..flexibility.hertz import half_width
 
-STEPS, SINGLE = 40, 400  # of Newton and the active set, changed all at once and one by one
+STEPS, SINGLE = 40, 400  # most steps of Newton and the active set, changed all at once; then one by one
 HOLD = 1e-11  # of the load, by mm: springs on all motions, so that a planet out of mesh stays somewhere
 ROUNDING = 1e-12  # of the largest distance: overlaps below it are rounding
-SETTLED = 1e-11  # last change of a force, in those of all
+SETTLED = 1e-11  # largest last change of a force, as a part of the load
 STIFF = 1e6  # of the balance in the start by non-negative least squares
 
 

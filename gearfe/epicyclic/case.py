@@ -19,7 +19,7 @@ from .rim_supports import check_support
 from .standing import assembled
 
 GEARS = ("sun", "planet", "ring")
-LARGEST = 0.1  # modules: position errors beyond are no errors of a gear that runs
+LARGEST = 0.1  # modules: larger position errors are probably given in another unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ class PlanetaryCase:
     Raises
     ------
     ValueError
-        If the set cannot be; the message says what to change.
+        If the set is impossible; the message says what to change.
     """
 
     gears: PlanetarySet
@@ -76,7 +76,7 @@ class PlanetaryCase:
     pairs: tuple[GearPair, GearPair] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Bring all into one form, and refuse what cannot be."""
+        """Bring all values into one form; raise ValueError for a set that is impossible."""
         if not isinstance(self.gears, PlanetarySet):
             raise ValueError(f"gears = {self.gears!r}, but give a PlanetarySet")
         put = object.__setattr__

@@ -77,7 +77,7 @@ class Mesh:
 
 
 class Met(NamedTuple):
-    """`Contacts` of a mesh at one position; tooth of the pinion in pair 0, and so many pairs are ahead of the newest one."""
+    """`Contacts` of a mesh at one position, pinion tooth `first` of pair 0, and how many pairs are ahead of the newest one."""
 
     contacts: Contacts
     first: int

@@ -90,7 +90,7 @@ def _nodal(angle, which, step, count):
 
 
 def _sharper(whole, width, tops, edge, weight):
-    """What a pad's own tractions move it more than those that the hats spread ``(2, 2, terms, terms)`` [mm per N/mm].
+    """How much more a pad's own tractions move it than the hats that stand for them ``(2, 2, terms, terms)`` [mm per N/mm].
 
     Both differ only near by, where the rim is a half-plane. On it tractions ``T_n(s) / (pi sqrt(1 - s**2))`` move the surface
     along themselves by c ``ln(4 / width)`` (n = 0) or ``c T_n(s) / n``, and across by the jump of Flamant's field.

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from .modes import natural_frequencies
 from .tables import Machine
 
-FASTEST = 50.0  # times the speed of the machine: larger numbers are meant in other units
+FASTEST = 50.0  # times the speed of the machine: a larger number is probably meant in rpm
 
 
 class Crossing(NamedTuple):
@@ -68,7 +68,7 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     Raises
     ------
     ValueError
-        If the speeds do not rise or are none of this machine, or an order is not positive.
+        If the speeds do not rise or exceed `FASTEST`, or an order is not positive.
 
     References
     ----------
@@ -80,8 +80,8 @@ def campbell(machine: Machine, speeds: ArrayLike, *, harmonics: int = 3, orders:
     at half of that:
 
     >>> import gearfe as gf
-    >>> found = campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=2)
-    >>> [(one.order, round(one.speed, 3), round(one.frequency, 1)) for one in found.crossings]
+    >>> diagram = campbell(gf.single_mesh(1.0, 1e8, 500.0), [0.5, 4.0], harmonics=2)
+    >>> [(crossing.order, round(crossing.speed, 3), round(crossing.frequency, 1)) for crossing in diagram.crossings]
     [('2 mesh', 1.592, 1591.5), ('mesh', 3.183, 1591.5)]
     """
     speed = np.asarray(speeds, dtype=float)

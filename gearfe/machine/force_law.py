@@ -22,7 +22,7 @@ from ..stiffness.solve import asked, solve
 
 ROWS, COLUMNS = 1024, 64  # of a law as a table: rows in a mesh cycle, depths
 TINY = 1e-30  # depth [m]: a mesh just touching
-BETWEEN = 7  # phases solved besides between two where a pair comes in or leaves, at any of the loads
+BETWEEN = 7  # extra phases solved between two, where a pair comes in or leaves between them at any of the loads
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ class Secant:
         return self.deepest * np.linspace(0.0, 1.0, self.k.shape[1]) ** 2
 
     def less(self, healthy: "Secant") -> "Secant":
-        """What it is beyond a `healthy` cycle, zero in two rows beyond either end."""
+        """Its difference from a `healthy` cycle, with two rows of zeros beyond either end."""
         phase = self.start + self.width * np.arange(len(self.k))
         change = self.k - healthy((phase % 1.0)[:, None], self.depths)[0]
         none = np.zeros((2, self.k.shape[1]))
@@ -91,7 +91,7 @@ class Secant:
 
 @dataclass(frozen=True, slots=True)
 class ForceLaw:
-    """Force of a mesh over depth and phase, for `gearfe.machine.gear_mesh.GearMesh` where a stiffness stands otherwise.
+    """Force of a mesh over depth and phase, which `gearfe.machine.gear_mesh.GearMesh` takes instead of a stiffness.
 
     Between two loads solved the force follows a cubic through their values and tangents; where a pair comes in between them, the
     two tangents up to where they meet, which is the place of the kink. Below the smallest load the secant stiffness is that of
@@ -126,7 +126,7 @@ class ForceLaw:
     secant: Secant = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the table; refuse what is no law."""
+        """Make the table; ValueError if loads, phases or depths do not rise."""
         if self.load.size < 2 or not (np.diff(self.load) > 0).all() or not self.load[0] > 0:
             raise ValueError(f"loads {self.load} N: a law of force needs two or more, each once and above 0")
         if self.phase.size < 2 or not (np.diff(self.phase) > 0).all():

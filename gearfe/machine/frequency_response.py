@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .tables import Machine
 
-KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # times derived by time
+KINDS = {"receptance": 0, "mobility": 1, "accelerance": 2}  # derivatives by time
 
 
 def frequency_response(

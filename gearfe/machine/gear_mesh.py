@@ -198,7 +198,7 @@ class GearMesh:
     average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the tables; refuse what cannot be."""
+        """Make the tables; raise ValueError for values that are out of range or do not go together."""
         self._check()
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
@@ -240,7 +240,7 @@ class GearMesh:
         return float(z), float((hurt.tooth - self.first[hurt.body]) % z), change
 
     def _secants(self) -> tuple[Secant, ...]:
-        """`Secant` of the healthy cycle, then what each damage is beyond it; none without a `ForceLaw`."""
+        """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
         laws = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
         if any(laws) != all(laws):
             raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")

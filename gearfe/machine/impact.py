@@ -15,7 +15,7 @@ from .pitted_planetary import pitted_planetary
 from .scene_curves import speed_of, stage_of
 from .tables import pulses
 
-PULSED = 100.0  # s: for so long the load on the carrier has pulses
+PULSED = 100.0  # s: how long the load on the carrier has pulses
 PLAY = 1e-4  # m
 
 

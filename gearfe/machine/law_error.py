@@ -1,4 +1,4 @@
-"""How far a law of force may be off between the loads and phases it was solved for: told from those it was solved for."""
+"""How far a law of force may be off between the loads and phases it was solved for: estimated by leaving some of them out."""
 
 from dataclasses import dataclass
 

@@ -36,7 +36,7 @@ def with_errors(
     Raises
     ------
     ValueError
-        If there is no such body or mesh, or an error is none.
+        If there is no such body or mesh, or a profile error has none of these forms.
     """
     names = [mesh.name for mesh in machine.meshes]
     for name in profile if isinstance(profile, Mapping) else ():

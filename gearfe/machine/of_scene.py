@@ -30,7 +30,7 @@ MACHINES: dict[str, dict[str, Callable[..., Machine]]] = {  # by model, how it i
     "herringbone_planetary": {"linear": scene_herringbone},
 }
 EVEN = 1e-9  # how far phases may lie from equal distances
-ROUGH = 8  # phases of the curves that tell these forces
+ROUGH = 8  # phases per cycle of the curves from which the forces at rest are computed
 STATED = ("herringbone_planetary",)  # models that take masses and inertias from the scene
 
 
@@ -104,7 +104,7 @@ def with_flanks(machine):
 
 
 def _unloaded(curve):
-    """Unloaded error at the phases of a curve; of a law at those equally spaced, without what is solved where pairs come in."""
+    """Unloaded error at the phases of a curve; of a law without the extra phases where pairs come in."""
     phase = curve.phase
     if isinstance(curve, ForceLaw):
         at = phase[0] + np.arange(round(1 / np.diff(phase).max())) * np.diff(phase).max()

@@ -47,7 +47,7 @@ class Load:
     value: History
 
     def __post_init__(self) -> None:
-        """Refuse what is no load."""
+        """Raise ValueError if the value is not finite, or the times of a history do not rise."""
         value: Any = self.value
         if callable(value):
             return
@@ -99,7 +99,7 @@ def pulses(
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """One stage of a machine: who drives whom, and what is heard of it.
+    """One stage of a machine: which bodies drive which, and its frequencies.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Machine:
     notes : dict
         What had to be assumed, and derived numbers to be printed (phases, frequencies).
     stages : tuple of Stage
-        What spectra and errors of the machine ask for; the last one is the driven one.
+        Their frequencies and bodies are those that spectra and errors of the machine use; the last one is the driven one.
     speed : Speed, optional
         A speed that changes (`gearfe.with_speed`); None: the frequencies stated, for ever.
     spin : float
@@ -185,7 +185,7 @@ class Machine:
     frame: NDArray[np.float64] = field(init=False)
 
     def __post_init__(self) -> None:
-        """Assemble; refuse masses that are not, rows that do not fit."""
+        """Assemble; ValueError for masses that are not positive, springs that are negative, or rows of another length."""
         n, mass = len(self.dofs), np.asarray(self.mass, dtype=float)
         if mass.shape != (n,) or not (np.isfinite(mass).all() and (mass > 0).all()):
             raise ValueError(f"mass: give {n} positive numbers, one per degree of freedom ({', '.join(self.dofs[:4])}, ...)")
@@ -212,7 +212,7 @@ class Machine:
         object.__setattr__(self, "law", law | {"damping": law["damping"] + np.array(extra)})
 
     def __repr__(self):
-        """One line: how many of everything."""
+        """One line: numbers of degrees of freedom, springs, meshes and loads."""
         meshes = ", ".join(mesh.name for mesh in self.meshes[:4]) + (", ..." if len(self.meshes) > 4 else "")
         speeds = ", ".join(f"{stage.mesh:.4g} Hz" for stage in self.stages)
         return (

@@ -16,8 +16,8 @@ from .exponential import UNSTABLE
 from .loop_forces import changed, forces, loads, losses, note, records
 from .loop_parts import compiled, kept, lookup, stage
 
-GROW = 0.05  # of what is allowed: below it the next step is twice as long (the estimate grows as its fourth power)
-TINY = 1e-300  # N: a mesh that never carries anything
+GROW = 0.05  # part of the allowed estimate below which the next step is twice as long (the estimate grows as its fourth power)
+TINY = 1e-300  # N: least scale of the estimate, for meshes that never carry anything
 CHUNK = 64  # steps whose stiffnesses are looked up at once
 
 
@@ -95,7 +95,7 @@ def _matrices(plan, kept, still):
 
 @compiled
 def _largest(out, none, W, level, apart, size):
-    """Largest of the mesh forces that forces `apart` at the end of a step make; `size` if that is larger."""
+    """Largest mesh force that the forces `apart` at the end of a step cause, or `size` if that is larger."""
     stage(out, none, np.int64(0), W, level, apart, np.int64(0))
     for i in range(out.size):
         size = max(size, abs(out[i]))
@@ -130,13 +130,13 @@ def _propagate(new, E, level, z):
 
 @compiled
 def _copy(out, values, first):
-    """``out = values[first:]``, as many as there is room for and values."""
+    """``out = values[first:]``, as many numbers as both have."""
     for i in range(min(out.size, values.size - first)):
         out[i] = values[first + i]
 
 
 @compiled
-def _write(states, row, z):  # written out: numba takes 2 s to compile what it says of arrays that do not fit
+def _write(states, row, z):  # written out: numba takes 2 s to compile its message on arrays that do not fit
     for i in range(z.size):
         states[row, i] = z[i]
 
@@ -193,7 +193,10 @@ def _of_part(flat, now, follows, start, h, low, high):
 
 @kept
 def _run(given, z, clock, states, counts, acting):
-    """Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic."""
+    """Take the steps, filling `states`, `counts` and `acting`; returns how many were done while the state was finite.
+
+    Inside the loops no array is cut or taken out of a tuple: counting its references costs as much as the arithmetic.
+    """
     matrices, laws, parts, flat, edges = given
     E, Y, S, T, PF, add, push, W, P = matrices
     start, h, every, allowed, scale = clock

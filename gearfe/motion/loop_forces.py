@@ -16,7 +16,7 @@ def records(**columns):
 
 
 def _chain(first):
-    """Force of the law of a row of `LAWS` from row `first` on."""
+    """Function of the force by the law that ``law.kind`` names: a row of `LAWS`, from row `first` on."""
     force = compiled(LAWS[first].force)
     if first + 1 == len(LAWS):
         return force

@@ -16,7 +16,7 @@ compiled = njit(error_model="numpy")  # at the first call
 def kept(function):
     """Compile at the first call; the result is kept on the disk where numba finds a folder in which it may write.
 
-    It holds what the function calls, in other files and laws of contact too: any edit of these makes it anew.
+    The result contains the functions it calls, in other files and contact laws too: any edit of these files compiles it anew.
     """
     try:
         dispatcher = njit(cache=True, error_model="numpy")(function)
@@ -35,7 +35,7 @@ def _stamp():
 
 
 class _Announcer(event.Listener):
-    """Tells once that something is being compiled."""
+    """Reports once that something is being compiled."""
 
     def __init__(self, tell):
         self.tell = tell
@@ -101,7 +101,7 @@ def _paced(pace, t):
 
 @compiled
 def _row(now, row, at, shape, which, place, inside):
-    """Write into two places from `at` on where the row `place` of the table `which` is, how far beyond its middle; or -1."""
+    """Write into ``now[row, at:at + 2]`` the row at `place` of table `which`, and the place in that row; -1 if not `inside`."""
     if not inside:
         now[row, at] = -1.0
         return

@@ -9,8 +9,8 @@ from scipy.linalg import eig
 from ..machine.contact_law import closed
 from ..machine.modes import modal, natural_frequencies
 
-LEVELS, DEEPER = 6, 8  # a step is halved at most so often: about changes of contact; and where it is adapted
-LOCAL = 1e-5  # of the largest mesh force, at the default step: what `Plan.allowed` is there
+LEVELS, DEEPER = 6, 8  # most halvings of a step: about changes of contact; where the step is adapted
+LOCAL = 1e-5  # `Plan.allowed` at the default step, as a part of the largest mesh force
 STEPS = 80  # per mesh cycle, at first
 SHARE = 0.35  # of the period of the stiffest mesh, at first
 CONDITION = 1e8  # of the eigenvectors: above it the linear part is kept full
@@ -44,9 +44,9 @@ class Plan:
         off their straight lines within the step, times the forces, that of Simpson's rule to the trapezoidal one. The larger of
         both is the estimate of the step.
     allowed : float
-        How large that may be, part of the largest mesh force so far; inf: it is not asked.
+        Largest estimate of a step that is taken, as a part of the largest mesh force so far; inf: none is made.
     scale : float
-        That force at first, at rest [N].
+        The largest mesh force at rest, to start with [N].
     """
 
     basis: np.ndarray

@@ -12,7 +12,7 @@ from . import excitation
 from .response import Response, acceleration
 
 SOLVERS = ("RK45", "RK23", "DOP853", "Radau", "BDF", "LSODA")
-EVENTS = 100_000  # in one run
+EVENTS = 100_000  # most changes of contact in one run
 LOOKS = np.concatenate([[0.0], 2.0 ** np.arange(-20, -4), np.arange(2, 17) / 16])  # parts of a step: a flight may be as short
 TOGETHER = 1e-12  # of a run: changes of contact closer in time than this are one
 
@@ -34,7 +34,7 @@ def reference(machine, duration, count, state, method, rtol, start=0.0):
     method : str
         One of `SOLVERS`.
     rtol : float
-        Its atol is a thousandth of that of the largest value at rest.
+        Relative tolerance; the absolute one is a thousandth of it, times the largest value at rest.
 
     Returns
     -------
@@ -77,7 +77,7 @@ class _Run:
         self.side = sides(self.compression(start, scale * state), self.law)
 
     def compression(self, t, y):
-        """Of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
+        """Compressions of all meshes ``(m,)`` [m], or at many times ``(m, t)``."""
         return self.machine.G @ (y.T / self.scale).T[: self.n] - excitation.errors(self.flat, np.asarray(t))[0].T
 
     def rate(self, t, y):
@@ -98,7 +98,10 @@ class _Run:
         return y, states
 
     def _smooth(self, solver, inside, found):
-        """Step until a contact changes or the end; its time and the flanks then touched. States at `inside` go to `found`."""
+        """Step until a contact changes, or to the end: that time, and the flanks touched from then on (None at the end).
+
+        States at the times `inside` are appended to `found`.
+        """
         while True:
             message = solver.step()
             if solver.status == "failed" or not np.isfinite(solver.y).all():

@@ -54,7 +54,7 @@ class Response:
     filtered: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse times, states and filtered channels of different lengths."""
+        """Raise ValueError for times, states and filtered channels of different lengths."""
         counts = {len(self.time), len(self.states), len(self.time if self.filtered is None else self.filtered)}
         if len(counts) > 1:
             raise ValueError("a response needs as many times as states and filtered channels: cut it by part")
@@ -152,7 +152,7 @@ class Response:
         save_as(suffix, path, self._content(names))
 
     def to_csv(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:
-        """Write a table of repr-exact numbers under comment lines with the solver's statistics (JSON)."""
+        """Write a table of numbers with all their digits under comment lines with the solver's statistics (JSON)."""
         save_as(".csv", path, self._content(names))
 
     def to_npz(self, path: str | os.PathLike[str], names: Sequence[str] | None = None) -> None:

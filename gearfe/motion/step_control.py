@@ -1,8 +1,8 @@
 """The step of the fast path: what two runs of different steps differ by, and a step for which that is small.
 
 The error of a step is set by the mesh cycles, by the modes the meshes excite, by how steep the stiffness curves are and by the
-damaged tooth; no frequency alone tells it. So a short stretch of the motion is run at a step and at half of it, and the step
-changed until both agree.
+damaged tooth: no frequency alone determines it. So a short stretch of the motion is run at a step and at half of it, and the
+step changed until both agree.
 """
 
 import math
@@ -13,9 +13,9 @@ import numpy as np
 from .fixed_step import fixed_steps
 from .propagator import default_step, is_bent, plan
 
-WANTED, WANTED_OPEN = 7e-4, 5e-3  # of the range, while the meshes stay closed and where contact is lost
+WANTED, WANTED_OPEN = 7e-4, 5e-3  # largest error, as a part of the range, while the meshes stay closed and where contact is lost
 CYCLES = 3.5  # of the slowest mesh, in a stretch
-SPREAD = 4  # stretches of a run under a law of contact that is not linear; a run as short as they are is told on whole
+SPREAD = 4  # stretches on which a run under a law of contact that is not linear is repeated; all of it if it is no longer
 HALVINGS = 6
 SMOOTH, ROUGH = 1.2, 2.0  # error over the difference to a shorter step: of order four, and where local halving rules
 SEEN = 3e-3  # of the spread of a load that is a function: how well it must be known between the samples of a run
@@ -86,7 +86,7 @@ def longest_seen(machine, start, duration):
 
 
 def stretch(machine, duration, begin=0.0):
-    """Start and length [s] of a stretch of a run from time `begin` on to tell the error on.
+    """Start and length [s] of the stretch of a run from time `begin` on, on which its error is estimated.
 
     `CYCLES` mesh cycles, with the worst damaged tooth among them; of a speed that changes: where it is fastest.
     """
@@ -132,7 +132,8 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
     -------
     dt : float
         [s]
-    found : Estimate
+    assessed : Estimate
+        Of that step.
     """
 
     def error(h):
@@ -157,7 +158,7 @@ def chosen_step(machine, duration, initial=None, *, begin=0.0, adapt=False, watc
 
 
 class Estimate(NamedTuple):
-    """What a run at a step and one at half of it say on a stretch.
+    """Error and cost of a step, from a run with it and one with half of it on a stretch.
 
     Attributes
     ----------
@@ -168,7 +169,7 @@ class Estimate(NamedTuple):
     length : float
         Of the stretch [s].
     cost : float
-        Seconds for a simulated second at this step, from what the run at half of it took longer.
+        Wall time for a simulated second at this step [s], from how much longer the run at half of it took.
     acceleration : float
         Error of the accelerations, likewise.
     """
@@ -208,7 +209,7 @@ def estimate_along(response, found):
     """`Estimate` of a run whose flanks meet under a law of contact that is not linear, from what it went through.
 
     Its error depends on where its own steps happen to lie when pairs come in, so that one stretch says too little: the whole of
-    a run as short as `SPREAD` stretches is run again, of a longer one so many stretches spread over it, each from the state
+    a run as short as `SPREAD` stretches is run again, of a longer one `SPREAD` stretches spread over it, each from the state
     that the run had there. What those cannot know is what was wrong before: errors of stretches one after the other add up
     as independent ones do, until the least damped vibration forgets them.
 

@@ -15,8 +15,8 @@ LOOK = {
     "legend": {"orientation": "h", "y": -0.22, "x": 0},
     "hovermode": "x unified",
 }
-CLEAR = "rgba(0,0,0,0)"  # the page's own ground, dark or light
-POINTS = 4000  # of a spectrum that is drawn
+CLEAR = "rgba(0,0,0,0)"  # transparent: the page's own background, dark or light
+POINTS = 4000  # most points drawn of a spectrum
 K = "mesh stiffness k [N/µm]"
 
 

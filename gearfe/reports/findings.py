@@ -40,7 +40,7 @@ class Findings:
 
 
 def find(scene, case=None, *, duration=0.2, phases=64):
-    """Compute all `Findings` that a report shows; what is given is that of `gearfe.report`."""
+    """Compute all `Findings` that a report shows; arguments are those of `gearfe.report`."""
     if duration != 0:
         check_run(duration)
     scene = load_scene(scene) if not hasattr(scene, "pairs") else scene

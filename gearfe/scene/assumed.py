@@ -10,8 +10,8 @@ An ``[[assumption]]`` may list the values it speaks of, and ``[given]`` those th
     why = "the article gives none"
     holds = { "gear.sun.b_mm" = 20.0 }
 
-In a copy in which the face width is another one, that assumption is no longer told; where a value of the source was changed, its
-printed results are no longer compared with.
+In a copy with another face width that assumption is no longer listed; where a value of the source was changed, the results that
+the source prints are no longer compared.
 """
 
 import re
@@ -43,7 +43,7 @@ def split(file, assumptions, given, tables):
 
 
 def _away(file, where, values, tables):
-    """Values that differ: key to (found, wanted)."""
+    """Values that differ, by key: (the present one, that of `values`)."""
     present = {key: known_path(file, where, key, tables) for key in values}
     return {key: (present[key], value) for key, value in values.items() if present[key] != value}
 

@@ -47,7 +47,7 @@ IMPACT = {
     "pulse_width_s": (NUMBER, 0.05),
 }
 BODY = {"mass_kg": (NUMBER, REQUIRED), "inertia_kgm2": (NUMBER, REQUIRED)}
-LIMITS = {  # smallest and largest value of a machine that can be; a length in um reaches 100 mm
+LIMITS = {  # smallest and largest value that a machine may have; a length in um reaches 100 mm
     "speed_rpm": (1e-3, 1e6),
     "torque_Nm": (0.0, 1e9),
     "n_planets": (1, 100),

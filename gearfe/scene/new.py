@@ -115,7 +115,7 @@ def new_scene(
     Raises
     ------
     ValueError
-        If the file exists or cannot be written, or if such a pair cannot be.
+        If the file exists or cannot be written, or if such a pair is impossible.
     """
     path = Path(path)
     if path.suffix != ".toml":

@@ -46,7 +46,7 @@ class Printed:
 
     `kind` is ``"input"``: ours was put in, or found from this very value; ``"arithmetic"``: follows from printed numbers without
     a model of the machine; ``"model"``: a result that could have come out otherwise. `set_by` names an assumption of the scene,
-    or choice of ours, that sets our value: agreement is then none, and is called so.
+    or choice of ours, that sets our value: agreement then proves nothing, and the verdict says so.
     """
 
     case: str

@@ -9,7 +9,7 @@ from ..units import NEWTON_PER_UM
 REPRODUCED, CORRECTED, TREND = "reproduced", "reproduced after a stated correction", "trend only"
 NOT, NEVER, FORMULA = "not reproduced", "not reproducible", "no number printed"
 ASSUMED = "set by an assumption"  # within the tolerance, or in order, but by a value of ours
-DISTINCT = 1e-3  # two of our values closer than this part of each other have no order
+DISTINCT = 1e-3  # two of our values whose relative difference is smaller have no order
 SHOWN_AS = {"N/m": "N/um"}  # units of the sources that are shown in ours
 COLUMNS = ("id", "case", "pair", "printed", "corrected", "ours", "difference", "verdict", "kind", "run")
 

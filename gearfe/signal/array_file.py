@@ -12,7 +12,7 @@ from ..matlab_file import MOST_PACKED, Unread
 from .found import ANGLES, TIMES, Found, numeric, plain
 
 PARTS = 64  # entries of a cell array or a struct array, and columns of a matrix, that are taken for channels
-LONGER = 2  # a matrix must have so many times more samples than channels, so that it is plain which is which
+LONGER = 2  # least ratio of samples to channels in a matrix, so that it is plain which are which
 MATLAB_CLASS = "MATLAB_class"
 HDF = b"\x89HDF\r\n\x1a\n"
 
@@ -68,7 +68,7 @@ def hdf_file(path: str | os.PathLike[str]) -> Found:
 
 
 def _check_links(file, h5py):
-    """ValueError if a name stands for something in another file."""
+    """ValueError if a name is a link to another file."""
 
     def first(name, link):
         return f"{name!r} is a link to another file, {link.filename}" if isinstance(link, h5py.ExternalLink) else None
@@ -81,7 +81,7 @@ def _check_links(file, h5py):
 def _hdf_values(item):
     """Values of a dataset that stands in the file itself.
 
-    ValueError if it is read from other files, or says it is larger than what is stored of it can be.
+    ValueError if it is read from other files, or announces more values than the bytes stored can hold.
     """
     if item.external or item.is_virtual:
         kind = "in other files" if item.external else "put together from datasets, maybe of other files"
@@ -178,7 +178,7 @@ def _open(found: Found, name: str, value: NDArray[Any]) -> None:
 
 
 def _axes(found: Found) -> None:
-    """Times are in s and angles in rad where a file of arrays says nothing else."""
+    """Times are in s and angles in rad where the file states no other unit."""
     for kind, unit in ((TIMES, "s"), (ANGLES, "rad")):
         found.units |= {name: found.units.get(name) or unit for name in found.axes(kind)}
 

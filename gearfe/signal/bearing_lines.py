@@ -26,7 +26,7 @@ def bearing_lines(
     turns : float
         Turns of the inner ring per second [Hz].
     rollers : int
-        How many balls or rollers.
+        Number of balls or rollers.
     roller, pitch : float
         Diameter d of a roller and of the circle of their centres D, in one unit.
     contact_angle : float
@@ -44,7 +44,7 @@ def bearing_lines(
     Raises
     ------
     ValueError
-        If sizes or angles can be of no bearing, or both rings turn alike.
+        If sizes or angles are impossible for a bearing, or both rings turn at the same speed.
 
     References
     ----------

@@ -27,7 +27,7 @@ GEAR_SOURCES = {
     "energy ratio": "rms of the difference signal over rms of the regular signal; Vecer 2005",
     "sideband level factor": "sum of the first sidebands' amplitudes f_m +- f_shaft over the rms of the average; Vecer 2005",
 }
-EMPTY = 1e-9  # of the average: a rest that small is rounding
+EMPTY = 1e-9  # part of the average below which a remainder is rounding
 
 
 def gear_indicators(
@@ -148,7 +148,7 @@ def _rms(x):
 
 
 def _moment(x, power, floor):
-    """Even moment over that power of the root mean square: the kurtosis for 4; nan of rounding."""
+    """Even moment over the same power of the root mean square, for 4 the kurtosis; nan if x is below `floor`, rounding."""
     spread = _rms(x)
     return float(np.mean((x / spread) ** power)) if spread > floor else math.nan
 

@@ -16,8 +16,8 @@ LABELS = {  # in tables: words; rms may be larger than the peak, of a signal wit
     "SC (S0)": "centre of the sidebands' energy, Hz (article S0)",
     "SC (S1)": "mean amplitude around the mesh frequency (article S1)",
 }
-TENFOLD = 900.0  # percent: from here on growth is told as a factor
-GREAT = 1e8  # percent: beyond, there was nothing to grow from
+TENFOLD = 900.0  # percent: growth from here on is printed as a factor
+GREAT = 1e8  # percent: growth beyond it means that the healthy value is rounding
 
 
 def increment(value, healthy):
@@ -71,7 +71,7 @@ def indicator_table(
 def table_text(table):
     """`indicator_table` as Markdown: a row for each indicator, a column for each case, increments over healthy in brackets.
 
-    What is a millionth or less in the healthy signal is taken for none there.
+    A healthy value that is a millionth or less of the faulty one is printed as none.
     """
     names = list(next(iter(table.values())))
     grown = {case for case, row in table.items() if any(growth and not math.isnan(growth) for _, growth in row.values())}

@@ -12,7 +12,7 @@ from ..checks import whole
 from .given import hertz
 from .series import Signal
 
-WIDTH = 4  # bins of a line with Hann's window: how far a line may move from one window to the next half
+WIDTH = 4  # bins of a line with Hann's window, and how far it may move between windows that overlap by half
 FINE = 4  # speeds tried for each bin of the highest harmonic
 ROUNDS = 3  # of phase demodulation
 
@@ -47,7 +47,7 @@ def with_own_speed(
     Raises
     ------
     ValueError
-        If the range is none, or the line lies above half of the rate there, or the record is too short.
+        If the range is empty, the line lies above half of the rate in it, or the record is too short.
 
     References
     ----------

@@ -89,7 +89,7 @@ def _uff_set(found: Found, one: dict[str, Any]) -> None:
 
 
 def _free(found, name):
-    """Name, with a number behind it if it is taken."""
+    """Name, with a number appended if it is already used."""
     taken = [vector for vector in found.vectors if vector == name or vector.startswith(f"{name} (")]
     return f"{name} ({len(taken) + 1})" if taken else name
 
@@ -122,7 +122,7 @@ def tdms_file(path: str | os.PathLike[str]) -> Found:
 
 @contextmanager
 def _no_log():
-    """Without what the library logs about damage, which is told otherwise."""
+    """Silence the log of the library about damage, which is raised as an error instead."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
     try:

@@ -24,7 +24,7 @@ TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6}
 TURN = {"rad": 1.0, "deg": math.pi / 180}
 HERTZ = {"": 1.0, "hz": 1.0, "khz": 1e3}
 LONGEST = 60  # characters of a unit
-AGREE = 1e-3  # between a stated rate and the time column
+AGREE = 1e-3  # largest relative difference between a stated rate and the time column
 SAME = {"m/s²": "m/s^2", "m/s2": "m/s^2", "m/s**2": "m/s^2", "m/s/s": "m/s^2", "µm": "um", "μm": "um"}  # spellings of a unit
 READERS = {
     ".npz": array_file, ".mat": array_file, ".h5": hdf_file, ".hdf5": hdf_file, ".wav": wav_file, ".uff": uff_file,
@@ -115,7 +115,7 @@ def read_signals(
         Of all channels, or by channel; where the file states none.
     tachometer : str, optional
         Channel of pulses of the shaft, from which all others get their `angle`: see `gearfe.with_tachometer`. If its unit is
-        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, which is told; its integral is the angle.
+        ``rpm`` or ``1/min`` it is taken for the speed of the shaft, with a warning, and its integral for the angle.
     pulses : int
         Of the tachometer, in a turn.
     level : float, optional
@@ -148,7 +148,7 @@ def read_signals(
 def channels(path: str | os.PathLike[str], header: str | None = None) -> Found:
     """What a file holds: its channels, their units and rates.
 
-    ValueError if its suffix is of no format, it cannot be read or is damaged, or holds no channel.
+    ValueError if its suffix is unknown, or if it cannot be read, is damaged, or holds no channel.
     """
     suffix = suffix_of(path, "signal", reading=True)
     if header is not None and suffix in READERS:

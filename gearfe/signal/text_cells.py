@@ -19,9 +19,9 @@ DAY = 86400.0  # s
 
 
 def cells_of(line, separator, count=None):
-    """Cells of a row: of a known `count`, also the empty ones at its end; else separators at the end part nothing."""
+    """Cells of a row: with a known `count` also the empty ones at its end, otherwise separators at the end are dropped."""
     whole = line if separator is None else line.rstrip(f"{separator} ")
-    if separator is not None and '"' in line:  # a separator between quotes parts nothing
+    if separator is not None and '"' in line:  # a separator between quotes ends no cell
         cells = [cell.strip() for cell in next(csv.reader([whole], delimiter=separator))]
     else:
         cells = [cell.strip().strip('"').strip() for cell in whole.split(separator)]
@@ -53,7 +53,7 @@ def numbers(line, separator, mark, group=""):
 
 
 def value(cell, mark, group=""):
-    r"""What a cell says: a number, of a clock the seconds of its day, nan if it is empty or a date; None if it is something else.
+    r"""Value of a cell: its number, the seconds of the day of a clock time, nan if it is empty or a date; None for anything else.
 
     >>> value("1.234,5", ",", r"\."), value("10:00:01,5", ",")
     (1234.5, 36001.5)
