@@ -241,8 +241,8 @@ class GearMesh:
 
     def _secants(self) -> tuple[Secant, ...]:
         """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
-        laws = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
-        if any(laws) != all(laws):
+        lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
+        if any(lawful) != all(lawful):
             raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
         if not isinstance(self.stiffness, ForceLaw):
             return ()
