@@ -76,9 +76,9 @@ def planetary_stiffness(
     solved = time.perf_counter() - started
     meshes = Meshes(case, stand, refine, kept)
     of = Set(case, bodies, stand, coupled)
-    found = [_position(of, meshes, i) for i in steps(range(at.size))]
+    solutions = [_position(of, meshes, i) for i in steps(range(at.size))]
     seconds = {"seconds_flexibility": solved, "seconds_contact": time.perf_counter() - started - solved}
-    return SetCurves.of(of, meshes, at, found, seconds)
+    return SetCurves.of(of, meshes, at, solutions, seconds)
 
 
 def _positions(positions, cycles):
@@ -97,12 +97,12 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
     nominal = of.case.force / of.case.width
     loads = np.full((2, of.case.planets), nominal)
     for _ in range(PASSES):
-        found = of.solved(i, meshes.at(i, loads))
-        new = np.array([[near_load(one, nominal) for one in row] for row in found.loads])
+        position = of.solved(i, meshes.at(i, loads))
+        new = np.array([[near_load(load, nominal) for load in row] for row in position.loads])
         if (new == loads).all():
             break
         loads = new
-    return found
+    return position
 
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
@@ -111,5 +111,5 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
     rim = solved_gears(cache).get(("rim", ring.gear, case.material[2], case.ring, case.width, refine),
                                   lambda: ring_on(ring, case.ring, case.width))  # fmt: skip
-    both = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(between_teeth(sun.held()), both, between_teeth(ring.held()), rim)
+    across = planet.held()[:, :PLACES, PLACES:]
+    return Bodies(between_teeth(sun.held()), across, between_teeth(ring.held()), rim)

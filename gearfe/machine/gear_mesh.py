@@ -121,8 +121,8 @@ class ToothDamage:
 
     def change(self, healthy: Table) -> Table:
         """`Table` of the difference from the `healthy` cycle, zero one cell beyond either end."""
-        given = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) else self.curve
-        phase, k = np.asarray(given.phase, dtype=float), np.asarray(given.k, dtype=float)
+        curve = Samples(*self.curve.at(self.curve.force)) if isinstance(self.curve, ForceLaw) else self.curve
+        phase, k = np.asarray(curve.phase, dtype=float), np.asarray(curve.k, dtype=float)
         if phase.size < 2 or not (np.diff(phase) > 0).all():
             raise ValueError("the phases of a damaged tooth's curve must rise: use mesh_stiffness(..., span='tooth')")
         width = np.diff(phase).min()
@@ -198,7 +198,7 @@ class GearMesh:
     average: Secant | None = field(init=False)
 
     def __post_init__(self) -> None:
-        """Make the tables; refuse what cannot be."""
+        """Make the tables; raise ValueError for values that are out of range or do not go together."""
         self._check()
         object.__setattr__(self, "row", np.asarray(self.row, dtype=float))
         object.__setattr__(self, "contact", self.law or law_of(self.power, self.depth))
@@ -216,31 +216,33 @@ class GearMesh:
                 raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
         if not self.backlash >= 0 or not 0 <= self.film <= 1 or not self.power >= 1:
             raise ValueError(f"mesh {self.name}: needs backlash >= 0, 0 <= film <= 1 and power >= 1")
-        for one in self.error:
-            if len(one) != 3 or not all(map(math.isfinite, one)):
-                raise ValueError(f"mesh {self.name}: error {one}, but give (amplitude [m], frequency [Hz], phase [rad]), finite")
+        for sinusoid in self.error:
+            if len(sinusoid) != 3 or not all(map(math.isfinite, sinusoid)):
+                raise ValueError(
+                    f"mesh {self.name}: error {sinusoid}, but give (amplitude [m], frequency [Hz], phase [rad]), finite"
+                )
 
     def _check_contact(self) -> None:
-        given, power = self.contact, self.contact.power
-        if type(given) not in LAWS:
-            raise ValueError(f"mesh {self.name}: law = {given!r} is not in LAWS of gearfe.machine.contact_law: add its row there")
+        law, power = self.contact, self.contact.power
+        if type(law) not in LAWS:
+            raise ValueError(f"mesh {self.name}: law = {law!r} is not in LAWS of gearfe.machine.contact_law: add its row there")
         if self.law and (self.power != 1 or self.depth):
-            raise ValueError(f"mesh {self.name}: power and depth besides law = {given!r}, which has parameters of its own")
+            raise ValueError(f"mesh {self.name}: power and depth besides law = {law!r}, which has parameters of its own")
         if power != 1 and self.backlash == 0:
             raise ValueError(f"mesh {self.name}: power = {power} needs a backlash > 0 (inf: no back flank)")
         if power != 1 and isinstance(self.stiffness, ForceLaw):
             raise ValueError(f"mesh {self.name}: power = {power} besides a law of force, which says itself how force rises")
 
     def _change(self, hurt: ToothDamage) -> tuple[float, float, Table]:
-        z, made = self.teeth[hurt.body], hurt.change(self.cycle)
-        if made.end - made.start > z:
+        z, change = self.teeth[hurt.body], hurt.change(self.cycle)
+        if change.end - change.start > z:
             raise ValueError(f"mesh {self.name}: the damaged tooth's curve is longer than the {z} cycles until it returns")
-        return float(z), float((hurt.tooth - self.first[hurt.body]) % z), made
+        return float(z), float((hurt.tooth - self.first[hurt.body]) % z), change
 
     def _secants(self) -> tuple[Secant, ...]:
-        """`Secant` of the healthy cycle, then what each damage is beyond it; none without a `ForceLaw`."""
-        given = [isinstance(one, ForceLaw) for one in (self.stiffness, *(hurt.curve for hurt in self.damage))]
-        if any(given) != all(given):
+        """`Secant` of the healthy cycle, then the change by each damage; none without a `ForceLaw`."""
+        lawful = [isinstance(stiffness, ForceLaw) for stiffness in (self.stiffness, *(hurt.curve for hurt in self.damage))]
+        if any(lawful) != all(lawful):
             raise ValueError(f"mesh {self.name}: give laws of force for the healthy mesh and for all its damage, or for none")
         if not isinstance(self.stiffness, ForceLaw):
             return ()
@@ -257,9 +259,9 @@ class GearMesh:
         """Stiffness at running phases."""
         out = self.cycle(phase - np.floor(phase))
         for z, first, change in self.changes:
-            own = phase - first - change.start
-            own = own - z * np.floor(own / z) + change.start
-            out = out + np.where(own < change.end, change(np.minimum(own, change.end)), 0.0)
+            tooth_phase = phase - first - change.start
+            tooth_phase = tooth_phase - z * np.floor(tooth_phase / z) + change.start
+            out = out + np.where(tooth_phase < change.end, change(np.minimum(tooth_phase, change.end)), 0.0)
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

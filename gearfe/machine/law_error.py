@@ -1,4 +1,4 @@
-"""How far a law of force may be off between the loads and phases it was solved for: told from those it was solved for."""
+"""How far a law of force may be off between the loads and phases it was solved for: estimated by leaving some of them out."""
 
 from dataclasses import dataclass
 
@@ -72,8 +72,8 @@ def _part(law, phases, loads):
 
 def _off(fewer: ForceLaw, law: ForceLaw, phases: NDArray[np.int64], loads: NDArray[np.int64]) -> NDArray[np.float64]:
     """How far the force of a law of fewer loads or phases is off at some of those of the whole one, over the force."""
-    wanted = law.load[loads]
-    return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / wanted - 1))
+    exact = law.load[loads]
+    return np.asarray(np.abs(fewer(law.depth[np.ix_(phases, loads)], law.phase[phases, None]) / exact - 1))
 
 
 def _rms(values):

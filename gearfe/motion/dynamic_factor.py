@@ -56,7 +56,7 @@ def dynamic_factors(response: Response) -> dict[str, float]:
     for mesh, static in zip(machine.meshes, most, strict=True):
         if not static > 1e-9 * max(most.max(), 1e-30):
             raise ValueError(f"mesh {mesh.name} carries nothing at rest: it has no dynamic factor; give its load")
-    return {mesh.name: float(own / static) for mesh, own, static in zip(machine.meshes, largest, most, strict=True)}
+    return {mesh.name: float(dynamic / static) for mesh, dynamic, static in zip(machine.meshes, largest, most, strict=True)}
 
 
 def _change(machine):

@@ -91,8 +91,8 @@ def vocabulary(pair: GearPair, force: float, relief: tuple[float, float] | None 
 
 def _relieved(words, amount, length):
     """The commented lines with those of a tip relief in force, of both gears."""
-    given = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
+    keys = f"tip_relief_um = {amount:g}", f"tip_start_length_mm = {length:g}"
     words = re.sub(r"^#(\[flank\.\w+\].*)\n#(gear = )", r"\1\n\2", words, flags=re.M)
-    for line in given:
+    for line in keys:
         words = re.sub(rf"^#{line.split(' ')[0]} = [\d.]+", line, words, flags=re.M)
     return words
