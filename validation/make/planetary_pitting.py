@@ -11,6 +11,7 @@ from ..shared.simulated import amplitude, own_law, record, scene, signal, spectr
 from . import centroid
 from .planetary_numbers import CASES, NAME, QUICK, lengths, speeds  # noqa: F401
 from .planetary_repeats import (  # noqa: F401
+    JUDGED_ON,
     PRINTED,
     about_impacts,
     about_spectra,
