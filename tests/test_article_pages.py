@@ -131,3 +131,29 @@ def test_power_of_mesh_lines_is_found_in_records_of_any_length():
     made = gf.Signal(x, 52416.0, "rad/s2")
     assert_allclose(compound_numbers.of_mesh_lines(made), 2 / 2.04, rtol=1e-3)
     assert_allclose(compound_numbers.of_mesh_lines(replace(made, values=x[: round(20 / 14 * 52416)])), 2 / 2.04, rtol=1e-3)
+
+
+def test_folded_lines_do_not_hide_what_pits_raise():
+    """At S0's 10 kHz the healthy force has lines where the pits' are; sampled finer it has none, and the verdict follows."""
+    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
+    finer, folded = (
+        {row["case"]: float(row["impact law"]) for row in rows if row["quantity"] == quantity}
+        for quantity in ("the same, sampled 71680 times a second [N]", "sidebands f_m +- 40 Hz [N]")
+    )
+    said = {row.case: row.ours for row in table_rows.read("planetary_pitting")}
+    assert finer["healthy"] == 0 < finer["mild"] < finer["moderate"] < finer["severe"]
+    assert folded["mild"] < 10 * folded["healthy"]
+    word = "pits raise sidebands 40 Hz beside 280 Hz"
+    assert [said[word], said[f"{word}, sampled finer"]] == [0, 1]
+
+
+@pytest.mark.slow
+def test_a_finer_sampled_sideband_is_computed_again():
+    from validation.make import planetary_runs
+
+    found = planetary_runs.finer("mild")
+    mesh, fault = planetary_runs.speeds()[2:]
+    side = (simulated.amplitude(found, mesh - fault) + simulated.amplitude(found, mesh + fault)) / 2
+    rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
+    (row,) = (row for row in rows if row["quantity"].startswith("the same, sampled") and row["case"] == "mild")
+    assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation machines planetary_pitting")
