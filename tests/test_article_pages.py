@@ -157,3 +157,12 @@ def test_a_finer_sampled_sideband_is_computed_again():
     rows = table_rows.rows_of(places.TABLES / "planetary_pitting_laws.csv")
     (row,) = (row for row in rows if row["quantity"].startswith("the same, sampled") and row["case"] == "mild")
     assert_allclose(side, float(row["impact law"]), rtol=0.02, err_msg="run python -m validation machines planetary_pitting")
+
+
+def test_dominant_frequencies_are_judged_of_what_s2_simulates_too():
+    rows = table_rows.rows_of(places.TABLES / "compound_planetary_laws.csv")
+    (power,) = (row for row in rows if row["quantity"].startswith("power of the healthy signal below"))
+    said = {row.case: row.ours for row in table_rows.read("compound_planetary")}
+    word = "dominant frequencies are below 2000 Hz"
+    assert said[word] == (float(power["ring.theta acceleration"]) > 50)
+    assert said[f"{word}, of sun 2's velocity"] == (float(power["sun2.theta velocity"]) > 50)

@@ -143,6 +143,11 @@ def statements(law=HEARD, channel=SENSOR):
     }
 
 
+def further():
+    """Statements of `sources/statements.toml`."""
+    return statements() | {"dominant frequencies are below 2000 Hz, of sun 2's velocity": below(channel=SUN) > 0.5}
+
+
 def below(law=HEARD, channel=SENSOR):
     """Part of the healthy signal's power below `HIGHEST`, as simulated, without noise and filter."""
     found = spectrum(_whole(None, law, channel))
@@ -287,6 +292,6 @@ SIMULATED = {
     "kurtogram_level": kurtogram_level,
     "kurtogram_centre": kurtogram_centre,
     "statements": statements,
-    "further": statements,
+    "further": further,
 }
 RUN_OF = dict.fromkeys(SIMULATED, HEARD)
