@@ -230,7 +230,7 @@ def test_what_other_pages_say():
     says("faq.md", "Values of other codes and standards: {} of {} within a tolerance", *map(int, found))
     for page, sentence in (
         ("planetary_pitting", "S0 and S1 {} of {} are reproduced and {} in their order"),
-        ("herringbone_machine", "of S4 {} of {} and {} in their order"),
+        ("herringbone_machine", "of S4's vibration {} of {} and {} in their order"),
     ):
         told = re.search(r"(\d+) results of a model: (\d+) reproduced, (\d+) trend only", words_of(PAGES / f"{page}.md")).groups()
         says("faq.md", sentence, int(told[1]), int(told[0]), int(told[2]))
@@ -239,7 +239,7 @@ def test_what_other_pages_say():
 def test_the_frequent_questions_count_the_articles_results():
     """Results of models, by the rows of the pages."""
     from gearfe.scene import verdicts
-    from validation.shared import table_rows
+    from validation.shared import herringbone_page, table_rows
 
     shown = []
     for name in ("planetary_pitting", "herringbone_machine"):
@@ -248,6 +248,10 @@ def test_the_frequent_questions_count_the_articles_results():
         shown.insert(-1, len(rows))
     says(
         "faq.md",
-        "in the articles S0 and S1 {} of {} are reproduced and {} in their order, of S4 {} of {} and {} in their order",
+        """in the articles S0 and S1 {} of {} are reproduced and {} in their order, of S4's vibration {} of {} and {} in their
+        order""",
         *shown,
     )
+    solid = [row.verdict for row in herringbone_page.judged()[1] if row.kind == "model"]
+    found = (len(solid), solid.count(verdicts.REPRODUCED) + solid.count(verdicts.CORRECTED), solid.count(verdicts.ASSUMED))
+    says("faq.md", "of its {} stiffnesses and reductions {}, and {} agree by what the scene assumes", *found)

@@ -4,6 +4,7 @@ import importlib
 import time
 import tomllib
 import warnings
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -48,9 +49,20 @@ FURTHER = places.SOURCES / "statements.toml"
 
 def references(page):
     """References of its scene that the page computes, and further statements."""
-    more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))[page]
+    more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
-    return [*own, *read_references(FURTHER.name, more, {})]
+    changes = [one for one in more["amended"] if one["page"] == page]
+    return [*(amended(one, changes) for one in own), *read_references(FURTHER.name, more[page], {})]
+
+
+def amended(reference, changes):
+    """A reference with the words of the ``[[amended]]`` tables on its rows, of a case or of all."""
+    rows = reference.rows
+    for one in changes:
+        words = {key: one[key] for key in ("reason", "set_by") if key in one}
+        if one["id"] == reference.id:
+            rows = [replace(row, **words) if one.get("case", row.case) == row.case else row for row in rows]
+    return replace(reference, rows=tuple(rows))
 
 
 def functions(page, *, quick=False):
@@ -123,7 +135,7 @@ def text(page):
 
 def with_draws(page, table):
     """The table with the share of joint draws in which a statement holds beside its verdict."""
-    found = {name: next(iter(channels.values())) for name, channels in joint.said(page).items()}
+    found = joint.judged(page)
     out = []
     for line in table.splitlines():
         cells = line.split(" | ")
