@@ -23,8 +23,9 @@ def animate_planetary_set(
 ) -> Path:
     """Write a moving picture of a loaded set: one frame for each of its positions, all gears bent and coloured by stress.
 
-    Over one mesh cycle, of a ring on pads over a pitch of the pads, the last frame goes on into the first. What is drawn and what
-    is left out is that of `plot_planetary_set`; magnification and colours are the same in all frames.
+    The carrier stands still, the ring turns with its pads. Over one mesh cycle, of a ring on pads over a pitch of the pads, the
+    last frame goes on into the first. What is drawn and what is left out is that of `plot_planetary_set`; magnification and
+    colours are the same in all frames.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def animate_planetary_set(
     if curves.position.size > MOST:
         raise ValueError(f"{curves.position.size} positions make too many frames: give curves of at most {MOST}")
     with part("gears", 0.0, 0.3):
-        positions, supports = loaded_shapes(curves, range(curves.position.size))
+        positions = loaded_shapes(curves, range(curves.position.size))
     with part("frames", 0.3, 1.0):
-        draw_motion(positions, supports, path, magnified=magnified, rate=rate, dpi=dpi)
+        draw_motion(positions, path, magnified=magnified, rate=rate, dpi=dpi)
     return Path(path)

@@ -73,14 +73,15 @@ def plot_planetary_set(
         check_output(path, "picture")
     if magnified is not None and not (is_number(magnified) and 0 < magnified < math.inf):
         raise ValueError(f"magnified = {magnified!r}, but give a finite number > 0, or leave it out")
-    (shapes,), supports = loaded_shapes(curves, [at])
+    ((shapes, supports),) = loaded_shapes(curves, [at])
     return draw_set(shapes, supports, path, magnified=magnified, dpi=dpi)
 
 
-def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> tuple[list[list[Shape]], NDArray[np.float64] | None]:
-    """`Shape` of every gear at these positions, by their numbers, and where the ring is held ``(2, n)`` [mm], None: all around.
+def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> list[tuple[list[Shape], NDArray[np.float64] | None]]:
+    """At each of these positions, by their numbers: `Shape` of every gear, and where the ring is held ``(2, n)`` [mm].
 
-    Each gear is meshed and factored once. ValueError as of `gearfe.epicyclic.loaded_gears.drawable`.
+    The latter is None if it is held all around; pads turn with the ring, since the carrier stands still. Each gear is meshed and
+    factored once. ValueError as of `gearfe.epicyclic.loaded_gears.drawable`.
     """
     sides, bodies = [], []
     for at in positions:
@@ -90,10 +91,10 @@ def loaded_shapes(curves: SetCurves, positions: Sequence[int]) -> tuple[list[lis
     made = []
     for k, same in enumerate(steps(list(zip(*bodies, strict=True)))):
         made.append(_shapes(case, same, [[side for side in one if side["body"] == k] for one in sides]))
-    supports = None
+    pads: list[NDArray[np.float64] | None] = [None] * len(bodies)
     if case.ring != "held":
-        supports = cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + bodies[0][-1][3])
-    return [list(one) for one in zip(*made, strict=True)], supports
+        pads = [cartesian(1.03 * case.ring_gear.r_rim, case.ring.middles + there[-1][3]) for there in bodies]
+    return [(list(one), held) for one, held in zip(zip(*made, strict=True), pads, strict=True)]
 
 
 def _shapes(case, bodies, sides):

@@ -24,8 +24,7 @@ def check_moving(path: Any) -> None:
 
 
 def draw_motion(
-    positions: list[list[Any]],
-    supports: NDArray[np.float64] | None,
+    positions: list[tuple[list[Any], NDArray[np.float64] | None]],
     path: str | os.PathLike[str],
     *,
     magnified: float | None,
@@ -38,7 +37,7 @@ def draw_motion(
     """
     from matplotlib.animation import PillowWriter
 
-    every = [shape for shapes in positions for shape in shapes]
+    every = [shape for shapes, _ in positions for shape in shapes]
     radius = max(float(np.hypot(*one.place).max()) for one in every)
     largest = max(float(np.hypot(*one.moved).max()) for one in every)
     top = max(float(np.percentile(one.stress, BRIGHT)) for one in every)
@@ -46,7 +45,7 @@ def draw_motion(
     reach = AROUND * (radius + times * largest)
     writer = PillowWriter(fps=rate)
     with written(path) as name:
-        for i, shapes in enumerate(steps(positions)):
+        for i, (shapes, supports) in enumerate(steps(positions)):
             figure = draw_set(shapes, supports, None, magnified=times, dpi=dpi)
             (axes, _) = figure.axes
             axes.set(xlim=(-reach, reach), ylim=(-reach, reach), title=f"displacements {times:g} times as large")

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..epicyclic.case import PlanetaryCase
 from ..epicyclic.curves import SetCurves
 from ..epicyclic.of_scene import build_set
 from ..epicyclic.shape import plot_planetary_set
@@ -20,13 +21,16 @@ DPI = {"loads": 90, "bent": 110}
 
 def find_set(scene: Scene, case: str | None) -> tuple[dict[str, SetCurves], list[str]]:
     """Curves of a scene's set, healthy and in a case of damage, at the same positions; and what could not be solved, and why."""
-    made, notes = {}, []
+    made: dict[str, PlanetaryCase] = {}
+    notes = []
     for which in dict.fromkeys((case, None)):
         try:
             made[which or "healthy"] = build_set(scene, which)
         except ValueError as error:
             notes.append(f"the set is not shown {'healthy' if which is None else f'in case {which}'}: {error}")
-    at = spread(next(iter(made.values())), POSITIONS) if made else []
+    if not made:
+        return {}, list(dict.fromkeys(notes))
+    at = spread(next(iter(made.values())), POSITIONS)
     return {name: planetary_stiffness(one, at) for name, one in reversed(made.items())}, notes
 
 

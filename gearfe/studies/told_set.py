@@ -19,12 +19,13 @@ HEAD = (
     "k mean [N/um]",
     "least",
     "largest",
-    "alone, mean [N/um]",
+    "alone [N/um]",
     "difference",
     "load, least [N]",
     "largest [N]",
 )
 
+MOST = 10_000  # positions, and cycles that they are spread over
 ENGAGED = 2  # mesh cycles after which the damaged tooth 0 has been through its mesh
 
 
@@ -33,8 +34,9 @@ def spread(case: PlanetaryCase, count: int, cycles: int | None = None) -> NDArra
 
     Default: one cycle; of damaged sets two, in which tooth 0 goes through its mesh; of a ring on pads, a pitch of these.
     """
-    if whole("positions", count, 1) and cycles is not None:
-        whole("cycles", cycles, 1)
+    for name, value in (("positions", count), ("cycles", 1 if cycles is None else cycles)):
+        if whole(name, value, 1) > MOST:
+            raise ValueError(f"{name} = {value}, but give at most {MOST}")
     pads = case.ring.count if isinstance(case.ring, RimSupports) else case.gears.ring.z
     span = cycles or (ENGAGED if case.damage else max(1, round(case.gears.ring.z / pads)))
     while math.gcd(count, span) > 1:
