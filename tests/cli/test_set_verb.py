@@ -67,3 +67,28 @@ def test_what_cannot_be_is_refused_before_work_begins(scene, tmp_path, monkeypat
     assert main(["set", "herringbone"]) == 1
     assert "has no [set] table: add one with n_planets or angles_deg" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["my_set.toml"]
+
+
+@pytest.mark.parametrize(
+    ("support", "told"),
+    [
+        ('kind = "held"', "held all around"),
+        (
+            'kind = "bed"\nradial_MPa_per_mm = 1e4\ntangential_MPa_per_mm = 5e3',
+            "on an elastic bed of 10000 (radial) and 5000 MPa/mm",
+        ),
+        ('kind = "pads"\ncount = 4\nwidth_mm = 8\nradial_N_per_um = 40', "on 4 pads of 8 mm, radial 40 N/um"),
+        (
+            'kind = "lugs"\ncount = 5\nwidth_mm = 8\ntangential_N_per_um = 50',
+            "on 5 lugs, which only push, of 8 mm, tangential 50",
+        ),
+        ('kind = "pads"\ncount = 400\nwidth_mm = 8', "set that cannot be solved: my_set.toml [set]: ring: 400 pads of 8 mm"),
+    ],
+)
+def test_check_tells_the_set(scene, capsys, support, told):
+    pads = SCENE[SCENE.index("[ring.support]") : SCENE.index("[pin.first]")]
+    scene.write_text(SCENE.replace(pads, f"[ring.support]\n{support}\n"))
+    assert main(["check", str(scene)]) == 0
+    said = capsys.readouterr().out
+    assert told in said
+    assert "cannot be" in said or "set: 3 planets at 0, 120, 240 degrees, pins of 300 N/um, 1 of 3 off their places; 2027" in said
