@@ -15,9 +15,11 @@ from .decks.contact_inp import write_contact_inp as write_contact_inp
 from .decks.deck import write_inp as write_inp
 from .decks.line_deck import write_line_inp as write_line_inp
 from .decks.mesh_file import export_mesh as export_mesh
+from .epicyclic.animation import animate_planetary_set as animate_planetary_set
 from .epicyclic.case import PlanetaryCase as PlanetaryCase
 from .epicyclic.curves import SetCurves as SetCurves
 from .epicyclic.deck import write_set_inp as write_set_inp
+from .epicyclic.of_scene import build_set as build_set
 from .epicyclic.rim_supports import RimBed as RimBed
 from .epicyclic.rim_supports import RimSupports as RimSupports
 from .epicyclic.shape import plot_planetary_set as plot_planetary_set

@@ -175,6 +175,7 @@ def _rest(scene: Scene, tables: dict[str, Any], pair: str | None, case: str | No
     cases = [name for name in names if name != case] if case is not None or len(names) > 1 else []
     out = [f"{noun} {', '.join(left)}" for noun, left in (("pairs", others), ("cases", cases)) if left]
     out += [f"machine {scene.machine['model']}"] if scene.machine and not _runs(tables) else []
+    out += ["the planetary set"] if scene.set is not None else []
     used = {row[key] for row in tables["pair"].values() for key in ("gear_1", "gear_2")}
     spare = [gear for gear in scene.gears if gear not in used]
     out += [f"gears in no pair {', '.join(spare)}"] if spare else []

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..files import save
 from ..pictures.set_plot import draw_curves
 from ..units import NEWTON_PER_UM
 from .rim import rim_angles, rim_moved
 from .rim_supports import RimSupports
+from .set_file import MESHES, content
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-MESHES = ("sun-planet", "planet-ring")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +91,10 @@ class SetCurves:
         """`k` without the share of `rim` [N/m]: for machines in which the ring is a body on springs of its own."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(self.k > 0, self.force / (self.force / self.k - self.rim), 0.0)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write to `path`; its suffix decides: ``.csv``, ``.npz``, ``.mat`` or ``.json``."""
+        save(path, "curve", content(self))
 
     def plot(self, path: str | os.PathLike[str] | None = None, *, dpi: int = 120) -> "Figure":
         """Draw stiffness and load of every mesh and the transmission error; save to `path` if given."""

@@ -10,6 +10,7 @@ from ..stress.holed import pressed_tooth, tooth_field
 from ..studies.by_zone import compare
 from ..studies.vibration import Analysis, analysis, check_run, responses
 from ..threads import own_warnings
+from .whole_set import find_set
 
 
 @dataclass(slots=True)
@@ -22,6 +23,7 @@ class Findings:
     tooth: tuple | None = None  # (name of the pair, `Pressed`, `Field`): the tooth in three dimensions
     vibration: Analysis | None = None
     responses: dict = field(default_factory=dict)  # `Response` by case
+    sets: dict = field(default_factory=dict)  # `SetCurves` of the scene's planetary set by case
     notes: list = field(default_factory=list)  # warnings, and what could not be shown and why
     seconds: dict = field(default_factory=dict)  # wall time by part
 
@@ -58,6 +60,10 @@ def find(scene, case=None, *, duration=0.2, phases=64):
                 findings.comparisons[name, which] = compare(scene, name, case=which, phases=phases)
     with part("loaded tooth", 0.7 * done, done), _counted(findings, "tooth in three dimensions"):
         findings.tooth = _tooth(findings)
+    if scene.set is not None:
+        with _counted(findings, "planetary set"):
+            findings.sets, notes = find_set(scene, findings.case)
+        findings.notes += notes
     if moves:
         with part("vibration", done, 1.0), _counted(findings, "vibration of the machine"):
             motions = responses(scene, findings.case, duration=duration)

@@ -12,7 +12,12 @@ from .figures import BAND, blank, part_of_page, style
 from .template import page_maker
 
 SIZE = {"height": 420, "hovermode": "closest"}
-SHOWN = {"stiffness": ("k_mean", "k"), "transmission error": ("te_peak_to_peak", "te"), "vibration": ("rms", None)}
+SHOWN = {  # by kind of study: the output whose effects are drawn, and the curve whose bands are
+    "stiffness": ("k_mean", "k"),
+    "transmission error": ("te_peak_to_peak", "te"),
+    "set": ("k_planet_ring", None),
+    "vibration": ("rms", None),
+}
 
 
 def sweep_report(runs: Runs | str | os.PathLike[str], path: str | os.PathLike[str]) -> Path:

@@ -64,6 +64,9 @@ MACHINE = """\
 # Of the model "planetary" only: friction = [0.08, 0.05], static and dynamic, at slips of friction_speeds_mm_per_s = [0.1, 10.0];
 # pulses of the load on the carrier: pulse_Nm = 250.0, pulse_period_s = 0.5, pulse_width_s = 0.05.
 # Of "herringbone_planetary": [machine.bodies.sun], planet, ring, carrier with mass_kg and inertia_kgm2; else from the gears.
+
+# A whole planetary set, for `gearfe set`, needs pairs of sun and planet and of planet and ring; then: [set], [ring.support],
+# [pin.NAME]. See the how-to page on planetary sets.
 """
 
 

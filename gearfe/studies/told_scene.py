@@ -7,6 +7,7 @@ from dataclasses import fields
 from geometry.tooth.gear import Gear
 from geometry.tooth.modified import Flank
 
+from ..epicyclic.of_scene import build_set
 from ..scene.load import Scene, ScenePair
 from ..stiffness.curve import StiffnessCurve
 from ..stiffness.solve import Solve
@@ -14,6 +15,7 @@ from ..supports.shaft import Shaft
 from ..supports.support import Support
 from ..units import in_newton_per_um
 from .losses import told_damage
+from .told_set import told_set
 
 SIDES = ("pinion", "wheel")
 WORDS = {  # for amounts of a flank, in um, whose names do not say enough
@@ -33,7 +35,7 @@ def told(scene: Scene) -> list[str]:
         lines += ["", f"gear {name}: {told_gear(gear)}"]
     for name, chosen in scene.pairs.items():
         lines += ["", *_pair(name, chosen)]
-    lines += ["", _machine(scene)]
+    lines += ["", _machine(scene), *_set(scene)]
     lines += [f"assumed: {note['what']}" for note in scene.assumptions]
     return lines + [f"changed: {text}" for text in scene.changed]
 
@@ -148,6 +150,16 @@ def _machine(scene: Scene) -> str:
     run = scene.machine
     law = "Hertz's impact law" if run["contact"] == "impact" else "stiffness curves"
     return f"machine: {run['model']}, {run['speed_rpm']:g} rpm, {run['torque_Nm']:g} N m, contact by {law}"
+
+
+def _set(scene: Scene) -> Iterator[str]:
+    """The set of a scene, or why it cannot be solved."""
+    if scene.set is None:
+        return
+    try:
+        yield f"set: {told_set(build_set(scene))}"
+    except ValueError as error:
+        yield f"set that cannot be solved: {error}"
 
 
 def told_supports(curve: StiffnessCurve) -> str:

@@ -18,11 +18,16 @@ def flat(tables, path=()):
     """Values of nested tables by dotted key; a table of `SPEC` keys is a value."""
     out = {}
     for name, value in tables.items():
-        if isinstance(value, dict) and not (value and set(value) <= SPEC):
+        if isinstance(value, dict) and not _says_values(value):
             out |= flat(value, (*path, name))
         else:
             out[".".join((*path, name))] = value
     return out
+
+
+def _says_values(table):
+    """Whether a table says values of one key: `SPEC` keys only, of which ``count`` may be a key of a scene that varies itself."""
+    return bool(table) and set(table) <= SPEC and not isinstance(table.get("count"), (list, dict))
 
 
 def axes(file, vary, along):

@@ -2,7 +2,7 @@
 
 import copy
 
-from ...scene import machine_table
+from ...scene import machine_table, set_table
 from ...scene.load import DAMAGE, TABLES, read_tables
 
 OUTSIDE = ("pair", "case")  # keys by themselves: which pair, which case of damage ("healthy": none)
@@ -46,8 +46,18 @@ def _known(parts, tables, options):
         if parts[1:2] == ["bodies"]:
             return [["bodies"], list(tables["machine"].get("bodies", {})), list(machine_table.BODY)]
         return [[*machine_table.MACHINE, "impact", "bodies"]]
-    kinds = [name for name in (*TABLES, *DAMAGE, "machine") if tables.get(name)]
+    if first in set_table.NAMES and "set" in tables:
+        return _known_of_set(first, tables)
+    kinds = [name for name in (*TABLES, *DAMAGE, "machine", *set_table.NAMES) if tables.get(name)]
     raise ValueError(f"{'.'.join(parts)!r}: a key begins with {', '.join(kinds)} or options, or is pair or case")
+
+
+def _known_of_set(first, tables):
+    if first == "set":
+        return [list(set_table.SET)]
+    if first == "ring":
+        return [["support"], list(set_table.SUPPORT)]
+    return [list(tables.get("pin", {})), list(set_table.PIN)]
 
 
 def placed(tables, values):
