@@ -1,6 +1,5 @@
 """Pages of the articles: the simulations they name are those behind their numbers, and no two pages disagree."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -74,21 +73,6 @@ def test_verdicts_follow_from_the_numbers_on_file(page):
         ours = {(row.case, row.pair) if row.pair else row.case: None if np.isnan(row.ours) else row.ours for row in rows}
         assert [row.verdict for row in verdicts.judge(one, ours)] == [row.verdict for row in rows], one.id
     assert {row.id for row in own} == {one.id for one in machines.references(page)}
-
-
-def test_amended_rows_are_there_and_others_stay():
-    more = tomllib.loads(machines.FURTHER.read_text(encoding="utf-8"))["amended"]
-    for change in more:
-        old = next(one for one in gf.load_scene(machines.PAGES[change["page"]]).references if one.id == change["id"])
-        new = machines.amended(old, [change])
-        touched = [row.case for was, row in zip(old.rows, new.rows, strict=True) if row != was]
-        assert touched == [row.case for row in old.rows if change.get("case", row.case) == row.case] != []
-        assert all(
-            getattr(row, word) == change[word]
-            for row in new.rows
-            for word in ("set_by", "reason")
-            if row.case in touched and word in change
-        )
 
 
 def test_what_the_raised_cosine_sets_does_not_hold_on_the_other_path():

@@ -90,8 +90,8 @@ def test_places_that_cannot_be_name_the_table(tmp_path):
     angles = SCENE.replace("n_planets = 3 ", "angles_deg = [0, 121, 240] #")
     with pytest.raises(ValueError, match=r"s.toml \[set\]: planets at 0, 121, 240 degrees cannot be assembled"):
         gf.build_set(loaded(tmp_path, angles))
-    with pytest.raises(ValueError, match=r"scene planetary_pitting has no \[set\] table"):
-        gf.build_set(gf.load_scene("planetary_pitting"))
+    with pytest.raises(ValueError, match=r"scene helical_pitting has no \[set\] table"):
+        gf.build_set(gf.load_scene("helical_pitting"))
 
 
 def test_files_hold_the_curves(tmp_path):

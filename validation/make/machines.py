@@ -4,7 +4,6 @@ import importlib
 import time
 import tomllib
 import warnings
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -51,18 +50,7 @@ def references(page):
     """References of its scene that the page computes, and further statements."""
     more = tomllib.loads(FURTHER.read_text(encoding="utf-8"))
     own = [one for one in gf.load_scene(PAGES[page]).references if one.id not in ELSEWHERE]
-    changes = [one for one in more["amended"] if one["page"] == page]
-    return [*(amended(one, changes) for one in own), *read_references(FURTHER.name, more[page], {})]
-
-
-def amended(reference, changes):
-    """A reference with the words of the ``[[amended]]`` tables on its rows, of a case or of all."""
-    rows = reference.rows
-    for one in changes:
-        words = {key: one[key] for key in ("reason", "set_by") if key in one}
-        if one["id"] == reference.id:
-            rows = [replace(row, **words) if one.get("case", row.case) == row.case else row for row in rows]
-    return replace(reference, rows=tuple(rows))
+    return [*own, *read_references(FURTHER.name, more[page], {})]
 
 
 def functions(page, *, quick=False):
