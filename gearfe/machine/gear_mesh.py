@@ -168,6 +168,8 @@ class GearMesh:
         Part of the damping that acts while no flank touches (1: all of it, as A. Kahraman, R. Singh, J. Sound Vib. 142 (1990)).
     friction : tuple of (ndarray, Table)
         Rows and their weights over the phase: friction acts with ``-row weight(phase) F``.
+    gap : float
+        How far the flanks are apart where ``row @ q - e`` is 0 [m]: the play before back flanks of their own touch.
     law : Law, optional
         Another contact law than `power` and `depth` state, with its parameters (`gearfe.machine.contact_law`).
     """
@@ -190,6 +192,7 @@ class GearMesh:
     backlash: float = 0.0
     film: float = 1.0
     friction: tuple[tuple[NDArray[np.float64], Table], ...] = ()
+    gap: float = 0.0
     law: Law | None = None
     contact: Law = field(init=False)
     cycle: Table = field(init=False)
@@ -210,7 +213,7 @@ class GearMesh:
         object.__setattr__(self, "changes", tuple(self._change(hurt) for hurt in self.damage))
 
     def _check(self) -> None:
-        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth"):
+        for name in ("frequency", "phase", "damping", "beta", "zeta", "depth", "gap"):
             value = getattr(self, name)
             if not math.isfinite(value) or (value < 0 and name not in ("phase", "frequency")):
                 raise ValueError(f"mesh {self.name}: {name} = {value}, but it must be finite and not negative")
@@ -249,6 +252,11 @@ class GearMesh:
         healthy = self.stiffness.secant
         return healthy, *(hurt.curve.secant.less(healthy) for hurt in self.damage if isinstance(hurt.curve, ForceLaw))
 
+    @property
+    def openings(self) -> tuple[tuple[float, float, float], ...]:
+        """Its errors, and its gap as one that stays."""
+        return (*self.error, (self.gap, 0.0, math.pi / 2)) if self.gap else self.error
+
     def k(self, t: ArrayLike) -> NDArray[np.float64]:
         """Stiffness at times `t` [N/m^power], never below zero."""
         return self.at_phase(self.phase + self.frequency * np.asarray(t, dtype=float))
@@ -263,9 +271,9 @@ class GearMesh:
         return np.maximum(out, 0.0) if self.changes else out
 
     def e(self, t: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Mesh error and its rate at times `t` [m], [m/s]."""
+        """Mesh error with the gap, and its rate, at times `t` [m], [m/s]."""
         out, rate = np.zeros(np.shape(t)), np.zeros(np.shape(t))
-        for amplitude, frequency, angle in self.error:
+        for amplitude, frequency, angle in self.openings:
             turn = 2 * math.pi * frequency * np.asarray(t) + angle
             out = out + amplitude * np.sin(turn)
             rate = rate + amplitude * 2 * math.pi * frequency * np.cos(turn)
