@@ -80,6 +80,10 @@ def build_machine(
         raise ValueError(f"[machine] contact = 'impact': the model {model!r} has linear contact only")
     if scene.machine.get("bodies") and model not in STATED:
         raise ValueError(f"[machine.bodies]: the model {model!r} takes masses and inertias from its gears; leave the table out")
+    if contact == "impact" and tuple(loads) != (1.0,):
+        raise ValueError(
+            f"loads = {tuple(loads)}: the impact law has a coefficient and no curves under loads; take contact = 'linear'"
+        )
     if contact == "impact":
         return with_scene_errors(scene, MACHINES[model][contact](scene, case))
     if not len(loads) or not all(math.isfinite(one) and one > 0 for one in loads):

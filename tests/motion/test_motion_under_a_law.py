@@ -5,6 +5,7 @@ integrator.
 """
 
 import math
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -198,3 +199,20 @@ def test_forces_above_the_loads_of_a_law_are_told():
     curve = gf.mesh_stiffness(PAIR, 2000.0, STEEL)
     told = gf.simulate(mass(curve, 100.0, 1600.0), 0.002).stats["loads"]
     assert "its stiffness is that of 2000 N" in told[0]
+
+
+def test_one_curve_says_within_which_loads_it_holds():
+    """A load that swings about that of the curve is told although its mean is right; the loads named change k as much as told."""
+    curve = gf.mesh_stiffness(PAIR, 1600.0, STEEL, phases=32)
+
+    def told(low, high):
+        history = (np.array([0.005, 0.015, 0.025, 0.035]), np.array([low, high, high, low]))
+        return gf.simulate(mass(curve, 2500.0, history), 0.04, rate=25600.0).stats.get("loads", [])
+
+    assert not told(1500.0, 1700.0)
+    (line,) = told(200.0, 3000.0)
+    mean, low, high, stated, least, most = (float(one) for one in re.findall(r"[\d.]+(?= N)|[\d.]+(?= to)", line))
+    assert_allclose((mean, low, high, stated), (1600.0, 200.0, 3000.0, 1600.0), rtol=0.1)
+    for load, change in ((least, -0.01), (most, 0.01)):
+        k = gf.mesh_stiffness(PAIR, load, STEEL, phases=32).k.mean()
+        assert_allclose(k / curve.k.mean() - 1, change, rtol=0.15)
