@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..stiffness.curve import StiffnessCurve
 from .contact_law import LAWS, Law, law_of
 from .force_law import ForceLaw, Secant
+from .phase_table import SMOOTH, Table, smooth_table, table
 
 FINE = 1024  # samples per cycle that curves on uneven phases are brought to
 
@@ -30,59 +31,14 @@ class Samples(NamedTuple):
 Curve = StiffnessCurve | Samples  # stiffness over the phase
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
-    """A function of the phase by monotone cubics over equal cells: a ramp stays a ramp, no overshoot, no staircase.
-
-    Attributes
-    ----------
-    start, width : float
-        Phase of the first sample and width of a cell.
-    cells : ndarray, shape (n, 4)
-        Coefficients of ``1, u, u**2, u**3`` in each cell, u from 0 to 1.
-    """
-
-    start: float
-    width: float
-    cells: NDArray[np.float64]
-
-    @property
-    def end(self) -> float:
-        """Phase at which the last cell ends."""
-        return self.start + self.width * len(self.cells)
-
-    def __call__(self, phase: ArrayLike) -> NDArray[np.float64]:
-        """Value at phases from `start` to `end` (beyond them, of the end cells)."""
-        place = (np.asarray(phase) - self.start) / self.width
-        cell = np.clip(place.astype(np.int64), 0, len(self.cells) - 1)
-        u = place - cell
-        c = self.cells[cell]
-        return c[..., 0] + u * (c[..., 1] + u * (c[..., 2] + u * c[..., 3]))
-
-    @property
-    def mean(self) -> float:
-        """Mean over the table."""
-        return float((self.cells @ (1, 1 / 2, 1 / 3, 1 / 4)).mean())
-
-
 Stiffness = float | NDArray[np.float64] | Curve | ForceLaw | Table  # what `GearMesh` takes
 
 
-def table(values: ArrayLike, start: float, width: float, *, periodic: bool) -> Table:
-    """`Table` through equally spaced `values`; `periodic` ones close with the first value (F. N. Fritsch, J. Butland, 1984)."""
-    values = np.asarray(values, dtype=float)
-    values = np.append(values, values[0]) if periodic else values
-    rise = np.diff(values)
-    before, after = (np.roll(rise, 1), rise) if periodic else (rise[:-1], rise[1:])
-    product = before * after
-    slope = np.where(product > 0, 2 * product / np.where(product > 0, before + after, 1.0), 0.0)
-    slope = np.append(slope, slope[0]) if periodic else np.concatenate([[0.0], slope, [0.0]])
-    left, right = slope[:-1], slope[1:]
-    return Table(start, width, np.stack([values[:-1], left, 3 * rise - 2 * left - right, left + right - 2 * rise], axis=1))
-
-
 def cycle_table(stiffness: Stiffness) -> Table:
-    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law."""
+    """`Table` over one cycle of a number, of equally spaced samples, of a `StiffnessCurve`, of `Samples`, or of a law.
+
+    Through samples smooth cubics (`gearfe.machine.phase_table.smooth_table`), through a `StiffnessCurve` those of `table`.
+    """
     if isinstance(stiffness, Table):
         return stiffness
     if isinstance(stiffness, ForceLaw):
@@ -97,7 +53,9 @@ def cycle_table(stiffness: Stiffness) -> Table:
             values = np.interp(np.arange(FINE) / FINE, phase, values, period=1.0)
     if values.ndim != 1 or not np.isfinite(values).all() or (values < 0).any():
         raise ValueError("stiffness: give a number, samples over one cycle or a StiffnessCurve, finite and not negative [N/m]")
-    return table(values, 0.0, 1.0 / values.size, periodic=True)
+    if isinstance(stiffness, StiffnessCurve) or values.size < SMOOTH:  # bent where pairs come in
+        return table(values, 0.0, 1.0 / values.size, periodic=True)
+    return smooth_table(values)
 
 
 @dataclass(frozen=True, slots=True)

@@ -290,11 +290,11 @@ class Machine:
         x = self.compressions(self.rest())
         free = gaps > 0
         for i in np.flatnonzero((gaps > 0) & (x > 0)):  # these carry, and the flanks before them do not
-            free |= (self.G == -self.G[i]).all(axis=1)
+            free |= (self.G + self.G[i] == 0).all(axis=1)
         touching = np.array([bool(mesh.secants) or not self.curved for mesh in self.meshes])
         return np.where(touching & ~free & (depth(x, self.law) == 0), TOUCH, x)
 
-    def compressions(self, q: NDArray[np.float64]) -> NDArray[np.float64]:
+    def compressions(self, q: NDArray[Any]) -> NDArray[np.float64]:
         """Compressions of the meshes ``(m,)`` [m] at displacements ``(n,)``, errors disregarded."""
         return self.G @ q - np.array([mesh.gap for mesh in self.meshes])
 

@@ -113,7 +113,9 @@ def simulate(
         step (under a law of contact that is not linear, of a third), over their ranges
         (`gearfe.motion.step_control.difference`), on ``stats["error_seconds"]`` of the run, about the worst damaged tooth or
         where the speed is highest, or on the whole run; ``stats["error_acceleration"]`` is that of the accelerations. Without
-        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). ``stats["loads"]`` says
+        damping the error goes on growing after such a stretch: ask for the whole run (``error=True``). These are of the
+        integration; ``stats["error_phases"]`` is how far stiffnesses over the phase may be off between their samples, over their
+        spread (`gearfe.motion.law_range.between_phases`): where it is the larger, solve more phases. ``stats["loads"]`` says
         which mesh forces leave the loads that their law of force or stiffness curve was solved for, if any do.
 
     Raises

@@ -216,3 +216,23 @@ def test_one_curve_says_within_which_loads_it_holds():
     for load, change in ((least, -0.01), (most, 0.01)):
         k = gf.mesh_stiffness(PAIR, load, STEEL, phases=32).k.mean()
         assert_allclose(k / curve.k.mean() - 1, change, rtol=0.15)
+
+
+@pytest.mark.parametrize("phases", [32, 64, 128])
+def test_the_error_of_a_stiffness_between_its_phases_is_told_and_covers(phases):
+    curve, fine = (gf.mesh_stiffness(PAIR, 1600.0, STEEL, phases=count) for count in (phases, 1024))
+    made = mass(curve, 2500.0, 1600.0)
+    told = gf.simulate(made, 0.002).stats["error_phases"]
+    true = rms(made.meshes[0].cycle(fine.phase) - fine.k) / np.ptp(fine.k)
+    assert true < told < 20 * true
+
+
+def test_smooth_samples_are_known_between_them_and_laws_have_an_error_of_their_own():
+    def told(count):
+        wave = 3e8 * (1 + 0.1 * np.cos(6 * np.pi * np.arange(count) / count + 0.3))
+        return gf.simulate(mass(wave, 2500.0, 1600.0), 0.002).stats["error_phases"]
+
+    assert told(64) < 1e-3
+    assert told(256) < told(128) / 12
+    assert "error_phases" not in gf.simulate(mass(law(), 2500.0, 1600.0), 0.002).stats
+    assert "error_phases" not in gf.simulate(mass(3e8, 2500.0, 1600.0), 0.002).stats
