@@ -16,7 +16,6 @@ from ..threads import single
 from . import excitation
 from .fixed_step import fixed_steps
 from .law_range import compared
-from .propagator import is_bent
 from .reference import SOLVERS, reference
 from .response import Response, all_channels
 from .step_control import (
@@ -28,6 +27,7 @@ from .step_control import (
     difference,
     estimate,
     estimate_along,
+    is_rough,
     longest_seen,
     unseen,
 )
@@ -273,7 +273,7 @@ class _Runs:
         every = self.steps(math.ceil(self.duration / self.count / dt * (1 - 1e-9)))
         out = self(every, adapt=True)
         if not (out.stats["losses"] or error):
-            if is_bent(self.machine):
+            if is_rough(self.machine):
                 found = estimate_along(out, found)
             return told(out, error=found.error, error_acceleration=found.acceleration, error_seconds=found.length)
         length = float(self.duration)
