@@ -148,6 +148,7 @@ def test_mirrored_helix_gives_the_mirrored_influence(helical, solved, steel):
     assert abs(left - right).max() > 1e-3 * abs(right).max(), "odd modes change sign"
 
 
+@pytest.mark.slow
 def test_small_helix_angle_is_spur(steel):
     found, tiny = patches(GEAR, axial=3), replace(GEAR, beta=1e-6)
     mesh = mesh_of(GEAR, found)
