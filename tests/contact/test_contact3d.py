@@ -216,6 +216,7 @@ def test_a_corner_that_meets_its_mate_late_is_cut_into_cells_from_there():
     assert_allclose(k.k, fine.k, rtol=3e-4)
 
 
+@pytest.mark.slow
 def test_error_estimate_sees_the_length_of_the_cells():
     """Near a tip corner cells err more than the bodies do: the estimate covers what half of them give."""
     rack = {"m_n": 2.0, "alpha_n": math.radians(20), "b": 6.75, "beta": math.radians(8.72), "tip_radius": 0.2}

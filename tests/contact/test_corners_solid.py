@@ -54,7 +54,8 @@ def test_loads_lighter_than_resolved_see_the_same_wedge_from_nearer():
     assert_allclose(coarse, fine, rtol=0.05)
 
 
-@pytest.mark.parametrize("degrees", [0.0, pytest.param(16.0, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("degrees", [0.0, 16.0])
 def test_the_lightest_loads_follow_the_logarithm(degrees):
     """Contact softens by the logarithm of the load and by nothing else: 1 / k is nearly straight over ln F, down to 0.001 N/mm.
 

@@ -204,6 +204,7 @@ def test_a_section_says_that_it_knows_no_width():
         solved(misalignment=0.01)
 
 
+@pytest.mark.slow
 def test_the_pattern_marks_edge_contact(tmp_path):
     found = gf.contact_pattern(PAIR, 2000.0, STEEL, misalignment=gf.Misalignment(F_beta=0.02), phases=4)
     assert {z for cells in found.cells for z, _ in cells.at_ends(PAIR)} == {0.0}

@@ -81,6 +81,7 @@ def test_every_method_has_a_column_or_a_reason(found, scene):
     assert "not for rings" in one.left_out["textbook"]
 
 
+@pytest.mark.slow
 def test_losses_are_judged_by_a_finer_solve(found, scene):
     """The estimate covers what a two and a half times finer mesh of the finite elements changes."""
     rough = gf.compare(scene, case="cracked", phases=16, refine=0.4)
