@@ -28,6 +28,7 @@ def stiffer(machine):
     return replace(machine, springs=tuple(replace(s, k=100 * s.k, c=10 * s.c) for s in machine.springs))
 
 
+@pytest.mark.slow
 def test_planetary_stage_within_a_thousandth_of_the_reference(spur_stage):
     """Damaged, on supports 100 times as stiff as usual."""
     machine = stiffer(spur(spur_stage, damaged=True))
