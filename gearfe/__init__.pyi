@@ -22,6 +22,7 @@ from .epicyclic.rim_supports import RimBed as RimBed
 from .epicyclic.rim_supports import RimSupports as RimSupports
 from .epicyclic.shape import plot_planetary_set as plot_planetary_set
 from .epicyclic.solve import planetary_stiffness as planetary_stiffness
+from .epicyclic.with_set import with_set as with_set
 from .machine.campbell import Campbell as Campbell
 from .machine.campbell import campbell as campbell
 from .machine.compound_planetary import compound_planetary as compound_planetary
