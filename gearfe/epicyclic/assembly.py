@@ -18,13 +18,15 @@ class Bodies(NamedTuple):
     """How gears yield between meshes [mm per N/mm]: tables of `gearfe.epicyclic.whole_gear`.
 
     `sun` and `ring` ``(z, PLACES, z, PLACES)`` between right flanks, `planet` ``(z, PLACES, PLACES)`` of a right flank by loads
-    on a left one so many teeth before it, `rim` what the ring's support adds.
+    on a left one so many teeth before it, `rim` what the ring's support adds. `planets` ``(z, PLACES, z, PLACES)`` of a right
+    flank by left ones, of planets with cracks, by their number.
     """
 
     sun: NDArray[np.float64]
     planet: NDArray[np.float64]
     ring: NDArray[np.float64]
     rim: Rim
+    planets: dict[int, NDArray[np.float64]]
 
 
 class Position(NamedTuple):
@@ -128,8 +130,11 @@ class Set:
             rows, columns, side = a.teeth[0] % gears.sun.z, b.teeth[0] % gears.sun.z, (0, 0)
             own = bodies.sun[np.ix_(rows, range(PLACES), columns, range(PLACES))]
         elif a.planet == b.planet:
-            side = (1, 0)
-            own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % gears.planet.z].transpose(0, 2, 1, 3)
+            side, z = (1, 0), gears.planet.z
+            if a.planet in bodies.planets:
+                own = bodies.planets[a.planet][np.ix_(a.teeth[1] % z, range(PLACES), b.teeth[0] % z, range(PLACES))]
+            else:
+                own = bodies.planet[(a.teeth[1][:, None] - b.teeth[0]) % z].transpose(0, 2, 1, 3)
         else:
             return None
         rows, columns = a.spread[side[0]], b.spread[side[1]]

@@ -1,6 +1,7 @@
 """Loads, stiffness and motions of a planetary set over its positions, from one contact problem over all meshes."""
 
 import time
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ..steps import steps
 from ..stiffness.limits import FURTHEST
 from .assembly import Bodies, Position, Set
 from .case import PlanetaryCase
+from .cracked import cracked, cracks_of
 from .curves import SetCurves
 from .meshes import Meshes, near_load
 from .rim import ring_on
@@ -107,9 +109,26 @@ def _position(of: Set, meshes: Meshes, i: int) -> Position:
 
 def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) -> Bodies:
     """`Bodies` of a case."""
-    gears = case.gears.sun, case.gears.planet, case.ring_gear
+    gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
-    rim = solved_gears(cache).get(("rim", ring.gear, case.material[2], case.ring, case.width, refine),
-                                  lambda: ring_on(ring, case.ring, case.width))  # fmt: skip
+    names = dict.fromkeys(("sun", "ring"), (slice(PLACES), slice(PLACES)))
+    names |= {("planet", i): (slice(PLACES), slice(PLACES, None)) for i in range(case.planets)}
+    hurt = {name: tuple(case.damage[name]) for name in names if case.damage.get(name)}
+    tables, cracks = {}, {}
+    for name, found in hurt.items():
+        whole = {"sun": sun, "ring": ring}.get(name, planet)
+        key = whole.gear, whole.material, found, refine
+        cracks[name] = kept.get(("cracks", *key), partial(cracks_of, whole, found, refine))
+        table = kept.get(("cracked", *key), partial(_held_table, cracks[name]))
+        tables[name] = table[:, names[name][0]][:, :, :, names[name][1]]
+    rim = kept.get(("rim", ring.gear, case.material[2], case.ring, case.width, refine, hurt.get("ring")),
+                   lambda: ring_on(ring, case.ring, case.width, cracks.get("ring")))  # fmt: skip
     both = planet.held()[:, :PLACES, PLACES:]
-    return Bodies(between_teeth(sun.held()), both, between_teeth(ring.held()), rim)
+    planets = {name[1]: table for name, table in tables.items() if name not in ("sun", "ring")}
+    plain = {"sun": lambda: between_teeth(sun.held()), "ring": lambda: between_teeth(ring.held())}
+    own = [tables[name] if name in tables else make() for name, make in plain.items()]
+    return Bodies(own[0], both, own[1], rim, planets)
+
+
+def _held_table(cracks):
+    return cracked(cracks, cracks.whole.held_inverse()).table
