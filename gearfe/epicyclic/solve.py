@@ -111,24 +111,23 @@ def bodies_of(case: PlanetaryCase, *, refine: float = 1.0, cache: Any = True) ->
     """`Bodies` of a case."""
     gears, kept = (case.gears.sun, case.gears.planet, case.ring_gear), solved_gears(cache)
     sun, planet, ring = (whole_gear(gear, m, refine=refine, cache=cache) for gear, m in zip(gears, case.material, strict=True))
-    names = dict.fromkeys(("sun", "ring"), (slice(PLACES), slice(PLACES)))
-    names |= {("planet", i): (slice(PLACES), slice(PLACES, None)) for i in range(case.planets)}
-    hurt = {name: tuple(case.damage[name]) for name in names if case.damage.get(name)}
-    tables, cracks = {}, {}
-    for name, found in hurt.items():
-        whole = {"sun": sun, "ring": ring}.get(name, planet)
-        key = whole.gear, whole.material, found, refine
-        cracks[name] = kept.get(("cracks", *key), partial(cracks_of, whole, found, refine))
-        table = kept.get(("cracked", *key), partial(_held_table, cracks[name]))
-        tables[name] = table[:, names[name][0]][:, :, :, names[name][1]]
-    rim = kept.get(("rim", ring.gear, case.material[2], case.ring, case.width, refine, hurt.get("ring")),
-                   lambda: ring_on(ring, case.ring, case.width, cracks.get("ring")))  # fmt: skip
+    cracks = {}
+    for name, found in case.damage.items():
+        if found:
+            of = {"sun": sun, "ring": ring}.get(name, planet), tuple(found), refine
+            cracks[name] = kept.get(("cracks", of[0].gear, of[0].material, *of[1:]), partial(cracks_of, *of))
+    key = ring.gear, case.material[2], case.ring, case.width, refine, case.damage.get("ring")
+    rim = kept.get(("rim", *key), lambda: ring_on(ring, case.ring, case.width, cracks.get("ring")))
+    planets = {name[1]: _held(one)[..., PLACES:] for name, one in cracks.items() if name not in ("sun", "ring")}
     both = planet.held()[:, :PLACES, PLACES:]
-    planets = {name[1]: table for name, table in tables.items() if name not in ("sun", "ring")}
-    plain = {"sun": lambda: between_teeth(sun.held()), "ring": lambda: between_teeth(ring.held())}
-    own = [tables[name] if name in tables else make() for name, make in plain.items()]
-    return Bodies(own[0], both, own[1], rim, planets)
+    return Bodies(_alike(sun, cracks.get("sun")), both, _alike(ring, cracks.get("ring")), rim, planets)
 
 
-def _held_table(cracks):
-    return cracked(cracks, cracks.whole.held_inverse()).table
+def _alike(whole, cracks):
+    """Flexibility ``(z, PLACES, z, PLACES)`` between the right flanks of a gear, its edge held."""
+    return between_teeth(whole.held()) if cracks is None else _held(cracks)[..., :PLACES].copy()
+
+
+def _held(cracks):
+    """That of its right flanks by loads on both."""
+    return cracked(cracks, cracks.whole.held_inverse()).table[:, :PLACES]
