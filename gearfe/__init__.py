@@ -85,6 +85,7 @@ _HOME = {
     "with_errors": "gearfe.machine.mesh_errors",
     "Speed": "gearfe.machine.speed",
     "with_speed": "gearfe.machine.run_up",
+    "with_set": "gearfe.epicyclic.with_set",
     "expected_lines": "gearfe.signal.spectral_lines",
     "fit_surrogate": "gearfe.many.surrogates.fit",
     "export_mesh": "gearfe.decks.mesh_file",
